@@ -54,3 +54,16 @@ def test_a_key_depends_on_the_code_that_a_run_needs(package, name, counts):
 def test_a_start_that_is_not_there_is_an_error(package):
     with pytest.raises(ModuleNotFoundError, match="gone"):
         source_digest(frozenset({f"{package.name}.trackers.gone"}))
+
+
+@pytest.mark.parametrize("name", ["plugged", "plugs.cells"])
+def test_a_plug_in_counts_where_it_is_installed(tmp_path, monkeypatch, name):
+    file = tmp_path.joinpath(*name.split(".")).with_suffix(".py")
+    file.parent.mkdir(exist_ok=True)
+    monkeypatch.syspath_prepend(tmp_path)
+    digests = set()
+    for text in ("X = 1\n", "X = 2\n"):
+        file.write_text(text)
+        source_digest.cache_clear()
+        digests.add(source_digest(frozenset({name})))
+    assert len(digests) == 2

@@ -21,6 +21,7 @@ from vehicle_pf_tracker.parameters.counting_plan import (
     CountingLine,
     CountingPlan,
     CountingZone,
+    Region,
     read_counting_plan,
 )
 
@@ -30,6 +31,9 @@ lines:
   exit: {from: [0, 20], to: [320, 20]}
 zones:
   queue: [[0, 60], [320, 60], [320, 120], [0, 120]]
+roi:
+  road: {inside: [[0, 60], [320, 60], [320, 240]]}
+  caption: {outside: [[0, 0], [90, 0], [90, 16]]}
 """
 
 
@@ -43,22 +47,26 @@ def read(tmp_path):
     return read
 
 
-def test_lines_and_zones_are_read(read):
+def test_lines_zones_and_regions_are_read(read):
     assert read(GOOD) == CountingPlan(
         lines=(
             CountingLine("stop line", (0, 120), (320.5, 118), ("towards", "away")),
             CountingLine("exit", (0, 20), (320, 20), ("in", "out")),
         ),
         zones=(CountingZone("queue", ((0, 60), (320, 60), (320, 120), (0, 120))),),
+        regions=(
+            Region(((0, 60), (320, 60), (320, 240)), is_inside=True),
+            Region(((0, 0), (90, 0), (90, 16)), is_inside=False),
+        ),
     )
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "must have the keys lines and zones"),
-        ("[]", "must have the keys lines and zones"),
-        ("lines: {}", "neither a line nor a zone"),
+        ("", "must have the keys lines and zones and roi"),
+        ("[]", "must have the keys lines and zones and roi"),
+        ("lines: {}", "neither a line nor a zone nor a region"),
         ("line: {a: {from: [0, 0], to: [9, 9]}}", "did you mean 'lines'"),
         ("lines: [{from: [0, 0], to: [9, 9]}]", "lines must be a mapping by name"),
         ("lines: {a: {from: [0, 0], to: [9, 9]}, a: {from: [1, 0], to: [9, 9]}}", "there twice"),
@@ -82,6 +90,9 @@ def test_lines_and_zones_are_read(read):
         ("zones: {a: [[0, 0], [9, 9], [18, 18]]}", "has no area"),
         ("zones: {a: [[0, 0], [9, 9], [9, 0], [0, 12]]}", "crosses itself"),
         (f"zones: {{a: {[[k, k * k] for k in range(101)]}}}", "more than 100 corners"),
+        ("roi: {a: {within: [[0, 0], [9, 0], [9, 9]]}}", "known: inside, outside"),
+        ("roi: {a: {}}", "the region 'a' must have one of the keys inside and outside"),
+        ("roi: {a: {inside: [[0, 0], [9, 9]]}}", "the region 'a' needs three corners"),
         (
             "lines: {a: {from: [0, 0], to: [9, 9]}}\nzones: {a: [[0, 0], [9, 0], [9, 9]]}",
             "the name of a line and of a zone",
@@ -96,9 +107,3 @@ def test_a_mistake_is_one_sentence_that_names_the_file(read, text, said):
     assert said in str(error.value)
     assert "lines.yaml" in str(error.value)
     assert "\n" not in str(error.value)
-
-
-def test_lines_beyond_the_image_are_found(read):
-    assert read(GOOD).outside(320, 240) == []
-    assert read(GOOD).outside(320, 100) == ["stop line"]
-    assert read("zones: {a: [[400, 0], [500, 0], [450, 9]]}").outside(320, 240) == ["a"]

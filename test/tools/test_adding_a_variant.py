@@ -83,7 +83,7 @@ def test_toy_follows_a_steady_vehicle():
     assert error(estimates[-1], street, 29) < 5
 """
 
-ENTRY = '    Variant("toy", "papers.toy:Toy", "steady colour filter (nobody)", "tests"),\n'
+ENTRY = '    Variant("toy", ".papers.toy:Toy", "steady colour filter (nobody)", "tests"),\n'
 
 EXECUTABLES = """
 import runpy, setuptools

@@ -81,7 +81,7 @@ VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "params": ("params", "print the commented default parameters of a variant"),
         "run": ("run", "track vehicles in a video, recording or stream, without ROS"),
         "traffic": ("traffic", "follow every vehicle in view, and count them at lines"),
-        "pick": ("pick", "point at vehicles in a frame, to get their boxes for run"),
+        "pick": ("pick", "draw vehicles, counting lines and zones on a page, for run and traffic"),
         "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
         "tune": (
             "tune",

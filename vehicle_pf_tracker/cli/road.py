@@ -23,8 +23,9 @@ from pathlib import Path
 import numpy as np
 
 from vehicle_pf_tracker.cli import pick
-from vehicle_pf_tracker.cli.console import UsageError, counting
+from vehicle_pf_tracker.cli.console import counting
 from vehicle_pf_tracker.cli.requests import OverwriteOption, option, positional, positive
+from vehicle_pf_tracker.cli.tracking_options import read_list
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.offline.drawing import draw_road_grid
 from vehicle_pf_tracker.offline.output_files import write_picture, write_text
@@ -73,10 +74,9 @@ class Request(OverwriteOption):
 
 def run(request: Request) -> int:
     """Fit, print the residuals, and write parameters and picture."""
-    pairs = (
-        *parse_pairs(";".join(request.pairs)),
-        *(pick.read_pairs(request.file) if request.file else ()),
-    )
+    pairs = parse_pairs(";".join(request.pairs))
+    if request.file:
+        pairs += tuple(read_list(request.file, pick.PAIRS, pick.PAIR_FORM, pick.pair_of))
     source = open_source(request.source, topic=request.topic)
     inputs = (request.source, request.file)
     with claimed((request.grid, request.output), inputs, overwrite=request.overwrite):
@@ -86,9 +86,9 @@ def run(request: Request) -> int:
 def _calibrate(request: Request, source: Source, pairs: tuple[Pair, ...]) -> int:
     with counting("read") as progress:
         frame = frame_at(source, request.frame, progress)
-    pairs = pairs or tuple(pick.ask(source, pick.POINTS, request.frame))
     if not pairs:
-        raise UsageError("nothing was picked")
+        drawn = pick.ask(source, [pick.PAIRS], request.frame)
+        pairs = tuple(map(pick.pair_of, drawn[pick.PAIRS]))
     road = _road(request, pairs)
     plane = road.plane(road.lens, None)
     print(_table(plane, pairs), end="")

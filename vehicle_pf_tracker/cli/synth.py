@@ -27,7 +27,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.image.compressed_image import jpeg
-from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.offline.output_files import replacing
 from vehicle_pf_tracker.offline.pictures import NO_ENCODER, SUFFIX, has_encoder, video_writer
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.recordings.importing import FORMATS
@@ -140,6 +140,7 @@ def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
     size = scene.width, scene.height
     with (
         claimed([out, table], [], overwrite=overwrite),
+        replacing(table) as partial,
         video_writer(out, size, scene.frame_rate) as write,
         counting("rendered") as progress,
     ):
@@ -150,7 +151,7 @@ def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
             cells = (f"{value:.3f}" for value in (box.x, box.y, box.width, box.height))
             lines.append(f"{number},{','.join(cells)},{rendered.truth.occlusion.value}")
             progress(number, scene.frame_count)
-        write_text(table, "\n".join(lines) + "\n")
+        partial.write_text("\n".join([*lines, ""]), encoding="utf-8", newline="\n")
     return table, boxes[0]
 
 

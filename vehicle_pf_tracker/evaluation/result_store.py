@@ -120,15 +120,16 @@ def source_digest(modules: frozenset[str]) -> str:
     ----------
     modules : frozenset of str
         Full names, such as ``vehicle_pf_tracker.trackers.papers.apf``: of the trackers, only those
-        beside the modules count.
+        beside the modules count. Of a module without a package only its own file counts.
     """
-    folders = {_PACKAGE / name for name in _SHARED}
+    paths = {path for name in _SHARED for path in (_PACKAGE / name).glob("*.py")}
     for name in modules:
         found = importlib.util.find_spec(name)
         if found is None or found.origin is None:
             raise ModuleNotFoundError(f"{name} is to count for a cache key, and is not there")
-        folders.add(Path(found.origin).parent)
+        own = Path(found.origin)
+        paths |= set(own.parent.glob("*.py")) if "." in name else {own}
     digest = hashlib.sha256()
-    for path in sorted(path for folder in folders for path in folder.glob("*.py")):
+    for path in sorted(paths):
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()

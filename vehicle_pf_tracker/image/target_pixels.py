@@ -76,6 +76,10 @@ def contrast(frame: Frame, box: Box) -> float:
 PATIENCE = 5.0
 """Seconds without a movement before a target is doubted: a vehicle in traffic that other vehicles
 pass rarely stands longer, but for a red light; then the warning is true, and ends as it drives."""
+_WORDS = (
+    f"the target has not moved for {PATIENCE:g} s while other things did: it stands, or it is no "
+    "vehicle"
+)
 _DRIVEN = 0.5
 """Way from the first position, in widths of the box, that only a vehicle drives: that of a box on
 an empty road trembled by less than a tenth of it."""
@@ -111,17 +115,18 @@ class Stillness:
         self._before: Array | None = None
         self._others_move = False
 
-    def look(self, frame: Frame, box: Box, stamp_ns: int) -> None:
-        """Take the target's box in the next image."""
+    def look(self, frame: Frame, box: Box, stamp_ns: int) -> list[str]:
+        """Take the target's box in the next image; return a warning where it becomes suspect."""
         self.moved = max(self.moved, math.dist(self._first.centre, box.centre))
         if self.moved > _DRIVEN * self._first.width:  # also of a car that parks later
             self.is_suspect = False
-            return
+            return []
         if self._looked_ns is None or stamp_ns - self._looked_ns >= _EVERY * 1e9:
             self._looked_ns = stamp_ns
             self._compare(frame, box)
         waited = (stamp_ns - self._began_ns) * 1e-9
-        self.is_suspect = self._others_move and waited >= PATIENCE
+        was_suspect, self.is_suspect = self.is_suspect, self._others_move and waited >= PATIENCE
+        return [_WORDS] if self.is_suspect and not was_suspect else []
 
     def _compare(self, frame: Frame, box: Box) -> None:
         """Note where the image, without the target, differs from that of the look before."""

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Lines and zones that vehicles are counted at."""
+"""Lines and zones that vehicles are counted at, and regions that they are looked for in."""
 
 from __future__ import annotations
 
@@ -30,11 +30,14 @@ from vehicle_pf_tracker.parameters.files import read_yaml_file
 _LARGEST = 1e5
 """Bound of coordinates in px: three times the largest side of an image (32767 px)."""
 _MOST_CORNERS = 100
-"""Corners of a zone; one that is drawn by hand has ten, and every vehicle is tested against all."""
+"""Corners of a polygon; drawn by hand it has ten, and every vehicle is tested against all."""
 _LONGEST_NAME = 80
 """Letters of a name, which is written into pictures and tables."""
 
+_SECTIONS = ("lines", "zones", "roi", "targets", "pairs")
+"""Sections of a file of `pick`; the last two are for others."""
 _LINE_KEYS = ("from", "to", "directions")
+_REGION_KEYS = ("inside", "outside")
 _DEFAULT_DIRECTIONS = ("in", "out")
 
 
@@ -91,19 +94,33 @@ class CountingZone:
 
 
 @dataclass(frozen=True, slots=True)
+class Region:
+    """Polygon in or outside of which vehicles are looked for.
+
+    Attributes
+    ----------
+    corners : tuple of (float, float)
+        Corners in px, in order around it.
+    is_inside : bool
+        True: vehicles are looked for in it, and in others like it; False: nowhere in it.
+    """
+
+    corners: tuple[Position, ...]
+    is_inside: bool
+
+
+@dataclass(frozen=True, slots=True)
 class CountingPlan:
-    """All lines and zones; their names are distinct."""
+    """All lines and zones, of distinct names, and the regions of interest."""
 
     lines: tuple[CountingLine, ...] = ()
     zones: tuple[CountingZone, ...] = ()
+    regions: tuple[Region, ...] = ()
 
-    def outside(self, width: int, height: int) -> list[str]:
-        """Return the names of those that no vehicle in an image of this size can reach."""
-        points = {
-            **{line.name: (line.start, line.end) for line in self.lines},
-            **{zone.name: zone.corners for zone in self.zones},
-        }
-        return [name for name, some in points.items() if _all_beyond(some, width, height)]
+    @property
+    def is_counting(self) -> bool:
+        """Tell whether there is anything to count at."""
+        return bool(self.lines or self.zones)
 
 
 def read_counting_plan(path: Path) -> CountingPlan:
@@ -122,14 +139,16 @@ def read_counting_plan(path: Path) -> CountingPlan:
 
 
 def parse_counting_plan(document: Any) -> CountingPlan:
-    """Make the plan of a document: ``lines`` and ``zones``, each a mapping by name.
+    """Make the plan of a document: ``lines``, ``zones`` and ``roi``, each a mapping by name.
+
+    Other sections of a file of `pick` are left to their own readers.
 
     Raises
     ------
     InputError
-        If a key is unknown, a point is not two numbers, or a line or zone is degenerate.
+        If a key is unknown, a point is not two numbers, or a line or polygon is degenerate.
     """
-    sections = _mapping(document, "the file", ("lines", "zones"))
+    sections = _mapping(document, "the file", _SECTIONS)
     lines = _named(sections.get("lines"), "lines")
     zones = _named(sections.get("zones"), "zones")
     for name in lines:
@@ -137,10 +156,13 @@ def parse_counting_plan(document: Any) -> CountingPlan:
             raise InputError(f"{name!r} is the name of a line and of a zone; rename one")
     plan = CountingPlan(
         tuple(_line(name, body) for name, body in lines.items()),
-        tuple(_zone(name, body) for name, body in zones.items()),
+        tuple(
+            CountingZone(name, _polygon(body, f"the zone {name!r}")) for name, body in zones.items()
+        ),
+        tuple(_region(name, body) for name, body in _named(sections.get("roi"), "roi").items()),
     )
-    if not (plan.lines or plan.zones):
-        raise InputError("there is neither a line nor a zone in it")
+    if not (plan.is_counting or plan.regions):
+        raise InputError("there is neither a line nor a zone nor a region of interest in it")
     return plan
 
 
@@ -192,8 +214,16 @@ def _directions(value: Any, what: str) -> tuple[str, str]:
     return good[0], good[1]
 
 
-def _zone(name: str, body: Any) -> CountingZone:
-    what = f"the zone {name!r}"
+def _region(name: str, body: Any) -> Region:
+    what = f"the region {name!r}"
+    sides = _mapping(body, what, _REGION_KEYS)
+    if len(sides) != 1:
+        raise InputError(f"{what} must have one of the keys {' and '.join(_REGION_KEYS)}")
+    ((side, corners),) = sides.items()
+    return Region(_polygon(corners, what), side == "inside")
+
+
+def _polygon(body: Any, what: str) -> tuple[Position, ...]:
     if not isinstance(body, list) or len(body) < 3:
         raise InputError(f"{what} needs three corners or more, as [[0, 0], [90, 0], [90, 60]]")
     if len(body) > _MOST_CORNERS:
@@ -203,7 +233,7 @@ def _zone(name: str, body: Any) -> CountingZone:
         raise InputError(f"{what} has no area; its corners lie on a line")
     if _crosses_itself(corners):
         raise InputError(f"{what} crosses itself; give its corners in order around it")
-    return CountingZone(name, corners)
+    return corners
 
 
 def _point(value: Any, what: str) -> Position:
@@ -238,9 +268,3 @@ def _cross(one: _Points, other: _Points) -> bool:
 
 def _turn(a: Position, b: Position, c: Position) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-
-
-def _all_beyond(points: Sequence[Position], width: int, height: int) -> bool:
-    """Test whether all points lie beyond the same border of the image."""
-    xs, ys = zip(*points, strict=True)
-    return bool(max(xs) < 0 or max(ys) < 0 or min(xs) > width or min(ys) > height)

@@ -101,40 +101,41 @@ def answer_usage(name: str, words: Sequence[str], usage: str) -> int:
 NodeT = TypeVar("NodeT", bound=Node)
 
 
-def spin_node(
-    make_node: Callable[[], NodeT],
+def spin_nodes(
+    makers: Sequence[Callable[[], NodeT]],
     image_bytes: int,
     spin: Callable[[SingleThreadedExecutor, NodeT], int],
 ) -> int:
-    """Make a node, run `spin`, and destroy the node.
+    """Make nodes, run `spin`, and destroy the nodes.
 
     Parameters
     ----------
-    make_node : callable
-        Makes the node.
+    makers : sequence of callable
+        Each makes a node.
     image_bytes : int
         Size of the images of which shared memory should have room for some.
     spin : callable
-        Runs the node's callbacks; returns the exit status.
+        Runs the callbacks of all, and logs as the first; returns the exit status.
 
     Returns
     -------
     int
         That of `spin`; 0 where a signal took the ground from under a call.
     """
-    executor, node = SingleThreadedExecutor(), None
+    executor, nodes = SingleThreadedExecutor(), list[NodeT]()
     try:
         with image_transport(image_bytes, rclpy.get_rmw_implementation_identifier()) as notices:
-            node = make_node()
+            for make in makers:
+                nodes.append(make())
+                executor.add_node(nodes[-1])
         for notice in notices:
-            node.get_logger().warning(notice)
-        executor.add_node(node)
-        return spin(executor, node)
+            nodes[0].get_logger().warning(notice)
+        return spin(executor, nodes[0])
     except Exception:
         if rclpy.ok():
             raise
     finally:
-        if node is not None:
+        for node in nodes:
             node.destroy_node()
         executor.shutdown()
     return 0

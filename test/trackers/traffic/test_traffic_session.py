@@ -18,11 +18,11 @@ import numpy as np
 import pytest
 from traffic_samples import vehicle
 
+from vehicle_pf_tracker.parameters.counting_plan import Region
 from vehicle_pf_tracker.trackers.image_stream import StrayImageError
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 PERIOD_NS = 40_000_000
 FRAME = np.zeros((48, 64, 3), np.uint8)
@@ -166,15 +166,18 @@ def test_time_that_goes_back_and_stays_there_begins_anew(resets, expected):
     assert "time jumped back" in session.events
 
 
-def test_a_detector_of_every_third_image_is_not_asked_in_between():
-    asked = []
-
-    class Counting(MotionDetector):
-        def detect(self, frame, tracks=()):
-            asked.append(len(asked))
-            return super().detect(frame, tracks)
-
-    session = TrafficSession(TrafficTracker(), Counting, frame_rate=25.0, every=3)
-    for index in range(10):
-        session.feed(np.zeros((48, 64, 3), np.uint8), index * 40_000_000)
-    assert len(asked) == 4
+def test_detections_count_in_inner_regions_and_in_no_outer_one():
+    left, top, hole = (
+        Region(tuple(map(tuple, corners)), is_inside)
+        for corners, is_inside in (
+            ([[0, 0], [20, 0], [20, 30], [0, 30]], True),
+            ([[0, 0], [40, 0], [40, 10], [0, 10]], True),
+            ([[0, 0], [10, 0], [10, 10], [0, 10]], False),
+        )
+    )
+    # Centres: in `hole`, in `left`, in `top`, in none.
+    boxes = np.array([[1, 1, 8, 8], [12, 18, 8, 8], [30, 1, 8, 8], [28, 18, 8, 8]], float)
+    for regions, kept in (((left, top, hole), [1, 2]), ((hole,), [1, 2, 3]), ((top,), [0, 2])):
+        session = TrafficSession(Steps(), regions=regions)
+        session.feed(FRAME, 0, Detections.make(boxes))
+        assert session.tracker.seen[-1].boxes.tolist() == boxes[kept].tolist()

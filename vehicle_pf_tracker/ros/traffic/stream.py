@@ -31,8 +31,8 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.offline.detectors import PacedDetector
 from vehicle_pf_tracker.offline.drawing import Colour, draw_box, line_width
-from vehicle_pf_tracker.offline.traffic_drawing import annotated
 from vehicle_pf_tracker.parameters.configuration import Configuration, NodeParameters
 from vehicle_pf_tracker.ros.messages import WAITING, detections_type, image_message, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
@@ -48,7 +48,7 @@ from vehicle_pf_tracker.ros.traffic.messages import (
     scalars,
     tracks_message,
 )
-from vehicle_pf_tracker.ros.traffic.rates import Rates, TimedDetector
+from vehicle_pf_tracker.ros.traffic.rates import Rates
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
@@ -105,23 +105,14 @@ class TrafficOutputs(Outputs):
         name = self.node_name
         self.send("counts", counts_message, header, name, self.hardware_id, counter, latest)
 
-    def publish_overlay(
-        self,
-        header: Header,
-        frame: Frame,
-        estimates: Sequence[TrackEstimate],
-        counter: Counter | None,
-        selected: TrackEstimate | None,
-    ) -> None:
+    def publish_overlay(self, header: Header, frame: Frame, vehicles: Vehicles) -> None:
         """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
         if not self.is_heard("overlay"):
             return
-        if selected is not None:
+        if vehicles.selected is not None:
             frame = np.array(frame, order="C")
-            draw_box(frame, selected.box, _SELECTED, 3 * line_width(frame))
-        confirmed = sum(one.mode in CONFIRMED for one in estimates)
-        picture = annotated(frame, f"{confirmed} vehicles", estimates, counter)
-        self.send("overlay", image_message, header, picture)
+            draw_box(frame, vehicles.selected.box, _SELECTED, 3 * line_width(frame))
+        self.send("overlay", image_message, header, vehicles.drawn(frame))
 
 
 class TrafficStream(NodeStream):
@@ -302,12 +293,12 @@ class TrafficStream(NodeStream):
         period = vehicles.session.tracker.frame_period
         estimates, selected = vehicles.estimates, vehicles.selected
         self._outputs.publish_vehicles(header, estimates, own, period)
-        if vehicles.counter is not None:
+        if vehicles.counter.plan.is_counting:
             self._outputs.publish_counts(header, vehicles.counter, vehicles.latest)
         if selected is not None:
             self._outputs.publish_vehicle(in_pixels(header, own), selected, own, period)
         if own.publish.overlay:
-            self._outputs.publish_overlay(header, frame, estimates, vehicles.counter, selected)
+            self._outputs.publish_overlay(header, frame, vehicles)
         mode = WAITING if selected is None else selected.mode.value
         values = {"reason": self._reason} if selected is None else scalars(selected)
         values |= {**vehicles.summary(), "step_ms": step_ms}
@@ -329,7 +320,7 @@ class TrafficStream(NodeStream):
         detector, found, seconds = self.vehicles.session.detector, len(self._detections or ()), 0.0
         if self._waiting is not None:
             seconds = self._waiting.latency
-        elif isinstance(detector, TimedDetector):
+        elif isinstance(detector, PacedDetector):
             found, seconds = detector.found, detector.seconds
         known = [one.identity for one in estimates if one.mode in CONFIRMED]
         visible = sum(one.mode is TrackMode.TRACKING for one in estimates)

@@ -25,6 +25,7 @@ from sensor_msgs.msg import RegionOfInterest
 from std_msgs.msg import Int64
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.offline.model_files import is_url
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import detections_type
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
@@ -74,6 +75,8 @@ class TrafficNode(ImageNode):
                 "detector.kind is topic, and vision_msgs, which detections come in, is not "
                 "installed (apt: ros-<release>-vision-msgs)"
             )
+        if is_url(configuration.tracker.detector.model):
+            self.get_logger().info("fetching the network, unless it is in the cache")
         outputs = TrafficOutputs(self, image_topic(self, configuration.node.image_transport))
         self._outputs = outputs
         self.stream = TrafficStream(self, configuration, outputs, self.diagnostics.begin())

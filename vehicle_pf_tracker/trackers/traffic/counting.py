@@ -110,16 +110,24 @@ class Counter:
     ----------
     totals : Counter of (str, str, str)
         Crossings by place, direction and class.
+    plane : RoadPlane or None
+        The road, for vehicles that come from now on.
     """
 
     def __init__(self, plan: CountingPlan, plane: RoadPlane | None = None) -> None:
         self.plan = plan
         self.totals: Tally[tuple[str, str, str]] = Tally()
-        self._plane = plane
+        self.plane = plane
         self.vehicles: dict[int, _Vehicle] = {}  # by their tracks
         self._occupancy = {zone.name: 0 for zone in plan.zones}
         self._last_ns: int | None = None
         self._before_ns: int | None = None
+
+    @property
+    def directions(self) -> Mapping[str, tuple[str, str]]:
+        """Names of the two directions of each line and zone, by its name."""
+        lines = {line.name: line.directions for line in self.plan.lines}
+        return lines | {zone.name: (ENTRY, EXIT) for zone in self.plan.zones}
 
     @property
     def occupancy(self) -> Mapping[str, int]:
@@ -131,6 +139,11 @@ class Counter:
         return sum(
             number for (at, to, _), number in self.totals.items() if (at, to) == (place, direction)
         )
+
+    def speed_kmh(self, serial: int) -> float | None:
+        """Return the speed of the vehicle with this track; None where it is not known."""
+        vehicle = self.vehicles.get(serial)
+        return None if vehicle is None else vehicle.speed.kmh()
 
     def forget_vehicles(self) -> None:
         """Discard where all vehicles were, as when a recording begins again; totals stay."""
@@ -216,7 +229,7 @@ class Counter:
     def _made(self, stamp_ns: int) -> _Vehicle:
         lines = [LineWatch(line) for line in self.plan.lines]
         zones = [ZoneWatch(zone) for zone in self.plan.zones]
-        return _Vehicle(lines, zones, PassageSpeed(self._plane), stamp_ns)
+        return _Vehicle(lines, zones, PassageSpeed(self.plane), stamp_ns)
 
     def _drop_old(self, stamp_ns: int) -> None:
         old = [

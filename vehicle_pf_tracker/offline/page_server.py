@@ -1,0 +1,106 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Pages of this machine's own, served to who knows their address."""
+
+from __future__ import annotations
+
+import secrets
+import sys
+from abc import abstractmethod
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
+
+from vehicle_pf_tracker.core.errors import InputError
+
+Content = tuple[str, bytes]
+"""Media type and bytes of an answer."""
+
+
+class PageServer(ThreadingHTTPServer):
+    """Serves a page to this machine, under a path that nobody can guess.
+
+    Each connection has a thread: browsers open some ahead and leave them idle.
+
+    Parameters
+    ----------
+    handler : type of PageHandler
+        Answers the requests.
+    port : int
+        Port; 0 takes a free one.
+
+    Attributes
+    ----------
+    base : str
+        The path under which everything is.
+    url : str
+        Address of the page.
+
+    Raises
+    ------
+    InputError
+        If the port cannot be had.
+    """
+
+    daemon_threads = True
+    block_on_close = False
+
+    def __init__(self, handler: type[PageHandler], port: int = 0) -> None:
+        try:
+            super().__init__(("127.0.0.1", port), handler)
+        except OSError as error:
+            raise InputError(f"cannot serve at port {port}: {error.strerror}") from None
+        self.base = f"/{secrets.token_urlsafe(16)}/"
+        self.url = f"http://127.0.0.1:{self.server_port}{self.base}"
+
+    @abstractmethod
+    def content(self, what: str) -> Content | None:
+        """Return what is at a path below `base`; None where there is nothing."""
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Pass over browsers that hang up, as they do when another frame is asked for."""
+        if not isinstance(sys.exc_info()[1], ConnectionError):
+            super().handle_error(request, client_address)
+
+
+class PageHandler(BaseHTTPRequestHandler):
+    """Answers the requests of a page."""
+
+    server: PageServer
+
+    def do_GET(self) -> None:
+        """Answer with what the server has under this path."""
+        what = self.asked()
+        self.answer(None if what is None else self.server.content(what))
+
+    def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - the base's name
+        """Say nothing: the terminal is the user's."""
+
+    def asked(self) -> str | None:
+        """Return the path below the secret one; None for all others."""
+        base = self.server.base
+        return self.path[len(base) :] if self.path.startswith(base) else None
+
+    def answer(self, content: Content | None, status: HTTPStatus = HTTPStatus.OK) -> None:
+        """Send content; None is not found."""
+        if content is None:
+            self.send_error(HTTPStatus.NOT_FOUND)
+            return
+        self.send_response(status)
+        self.send_header("Content-Type", content[0])
+        self.send_header("Content-Length", str(len(content[1])))
+        self.send_header("Cache-Control", "no-store")
+        self.end_headers()
+        self.wfile.write(content[1])
