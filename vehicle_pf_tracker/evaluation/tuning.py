@@ -164,10 +164,7 @@ def best_of(trials: Sequence[Trial], objective: Objective) -> Trial:
 
 
 def _run_missing(
-    what: SearchTask,
-    grids: Sequence[Sequence[GridCell] | None],
-    store: ResultStore,
-    runner: Runner,
+    what: SearchTask, grids: Sequence[Sequence[GridCell] | None], store: ResultStore, runner: Runner
 ) -> Iterator[int]:
     """Run what the store lacks, for all candidates; yield the number done after each."""
     cells = {what.key(cell): cell for grid in grids for cell in grid or ()}

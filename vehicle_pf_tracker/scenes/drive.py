@@ -221,12 +221,7 @@ class Drive:
         side_road(picture, (middle, -1.0), (middle, self.road.top + 4.0), 2 * SIDE_ROAD, rng)
         return picture
 
-    def scene(
-        self,
-        front: Iterable[Actor] = (),
-        *,
-        behind: Iterable[Actor] | None = None,
-    ) -> Scene:
+    def scene(self, front: Iterable[Actor] = (), *, behind: Iterable[Actor] | None = None) -> Scene:
         """Make the scene: the target between what is `behind` it and what is in `front` of it.
 
         The traffic of the far lane is behind if nothing is said, and that of the other carriageway

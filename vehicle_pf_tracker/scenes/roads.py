@@ -33,14 +33,7 @@ from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, cells_i
 from vehicle_pf_tracker.scenes.models import SHADOW_OPACITY, moving
 from vehicle_pf_tracker.scenes.scene import Actor, Path
 from vehicle_pf_tracker.scenes.scenery import PAINT, asphalt, concrete, foliage, grass, value_noise
-from vehicle_pf_tracker.scenes.solids import (
-    ELEVATION,
-    Face,
-    draw,
-    extent,
-    mirrored,
-    shadow,
-)
+from vehicle_pf_tracker.scenes.solids import ELEVATION, Face, draw, extent, mirrored, shadow
 from vehicle_pf_tracker.scenes.vehicles import car, saloon, tinted, van
 
 LANE_WIDTH = 3.25

@@ -85,8 +85,7 @@ class EvidenceParameters:
         unit="share of the clear level",
     )
     minimum: float = share(
-        0.3,
-        "Similarity below which there is no evidence, whatever the clear level is.",
+        0.3, "Similarity below which there is no evidence, whatever the clear level is."
     )
     level_rate: float = share(
         0.05, "Higher: the clear level follows the similarity faster.", unit="per frame",
@@ -146,6 +145,5 @@ class ParticleParameters(CommonParameters):
     """Parameters of every particle filter."""
 
     num_particles: int = particles_parameter(
-        200,
-        "More: steadier estimates, at more time per frame.",
+        200, "More: steadier estimates, at more time per frame."
     )

@@ -147,12 +147,7 @@ def on_this_machine(workers: int) -> Runner:
     return functools.partial(run_in_processes, run_cell, workers=workers)
 
 
-def complete(
-    plan: Plan,
-    folder: Path,
-    runner: Runner,
-    on_progress: OnProgress,
-) -> int:
+def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) -> int:
     """Run the cells of `plan` that `folder` does not have, and return how many those were.
 
     Parameters

@@ -158,10 +158,7 @@ def write_figures(
 
 
 def _curves(
-    evaluation: ScoredEvaluation,
-    order: Sequence[str],
-    slots: Mapping[str, int],
-    name: str,
+    evaluation: ScoredEvaluation, order: Sequence[str], slots: Mapping[str, int], name: str
 ) -> Drawn | None:
     """Draw a curve of `CURVES`: means over the seeds of a recording, then over recordings.
 

@@ -27,17 +27,8 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import (
-    EvaluationFolder,
-    Source,
-    SystemEntry,
-)
-from vehicle_pf_tracker.evaluation.metrics import (
-    Curve,
-    Metrics,
-    curves,
-    measure,
-)
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, SystemEntry
+from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 

@@ -31,13 +31,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.report.page import render
-from vehicle_pf_tracker.evaluation.tables import (
-    NOTHING,
-    Header,
-    Table,
-    TableCell,
-    markdown,
-)
+from vehicle_pf_tracker.evaluation.tables import NOTHING, Header, Table, TableCell, markdown
 from vehicle_pf_tracker.evaluation.traffic.scoring import (
     TRAFFIC_BASELINES,
     TrafficWorker,

@@ -55,13 +55,7 @@ from vehicle_pf_tracker.image.kernels.numba_windows import (
 )
 from vehicle_pf_tracker.image.similarity import Histogram, Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
-from vehicle_pf_tracker.image.window import (
-    Coefficients,
-    Positions,
-    Window,
-    WindowFeature,
-    to_grey,
-)
+from vehicle_pf_tracker.image.window import Coefficients, Positions, Window, WindowFeature, to_grey
 
 
 class Placement(NamedTuple):
@@ -238,11 +232,7 @@ def _counts_edges(feature: WindowFeature) -> TypeGuard[GradientDirections]:
 
 
 def _compare_pixels(
-    feature: WindowFeature,
-    frame: Frame,
-    positions: Positions,
-    window: Window,
-    table: CellTable,
+    feature: WindowFeature, frame: Frame, positions: Positions, window: Window, table: CellTable
 ) -> Reals:
     """Compare windows by their pixels."""
     planes = 3 if type(feature) is RgbMarginals else 1

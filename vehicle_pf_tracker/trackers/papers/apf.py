@@ -31,11 +31,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.filtering.motion import (
-    RAYLEIGH_MEAN,
-    sample_normal,
-    sample_normal_rayleigh,
-)
+from vehicle_pf_tracker.filtering.motion import RAYLEIGH_MEAN, sample_normal, sample_normal_rayleigh
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.image.colour import Histogram, JointColour

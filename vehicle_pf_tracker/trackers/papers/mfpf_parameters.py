@@ -183,11 +183,7 @@ class MfpfParameters(FeatureFilterParameters):
         """Return the parameters as printed; see `CommonParameters.printed`."""
         printed = common_print(self)
         return replace(
-            printed,
-            edges=PRINTED_EDGES,
-            texture="glcm",
-            update_unused=True,
-            joint_resampling=False,
+            printed, edges=PRINTED_EDGES, texture="glcm", update_unused=True, joint_resampling=False
         )
 
 

@@ -251,11 +251,7 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
         return bool(best < test.similarity * self._judge.level)
 
     def _regenerate(
-        self,
-        frame: Frame,
-        particles: WeighedParticles,
-        kept: npt.NDArray[np.bool_],
-        spread: float,
+        self, frame: Frame, particles: WeighedParticles, kept: npt.NDArray[np.bool_], spread: float
     ) -> WeighedParticles:
         """Replace all particles but the kept ones by copies of those; only these are weighed."""
         missing = len(kept) - int(kept.sum())

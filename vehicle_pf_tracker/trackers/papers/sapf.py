@@ -126,8 +126,7 @@ class SapfParameters(ColourParameters):
     """Parameters of `sapf`."""
 
     num_particles: int = particles_parameter(
-        50,
-        "Particles of each layer; more: steadier estimates, at more time per frame.",
+        50, "Particles of each layer; more: steadier estimates, at more time per frame."
     )
     annealing: AnnealingParameters = group(AnnealingParameters)
 
