@@ -22,7 +22,7 @@ from mcap.writer import CompressionType, Writer
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.cdr import definition, serialize
+from vehicle_pf_tracker.recordings.messages import definition, serialize
 
 PERIOD_NS = 40_000_000
 

@@ -29,7 +29,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import mcap_blocks, messages
-from vehicle_pf_tracker.recordings.cdr import header_stamp_ns
+from vehicle_pf_tracker.recordings.messages import header_stamp_ns
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 

@@ -38,12 +38,13 @@ from vehicle_pf_tracker.offline.drawing import (
 )
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, message_class
 from vehicle_pf_tracker.recordings.messages import (
     DIAGNOSTIC_ARRAY,
+    IMAGE_ANNOTATIONS,
     POINT_STAMPED,
     POLYGON_STAMPED,
     as_token,
+    message_class,
 )
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.writer import RecordingWriter

@@ -28,10 +28,10 @@ from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.image.encodings import frame_of_message
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
-from vehicle_pf_tracker.recordings.cdr import deserialize, header_stamp_ns
 from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.mcap_blocks import Message
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex, merged_messages, read_index
+from vehicle_pf_tracker.recordings.messages import deserialize, header_stamp_ns
 from vehicle_pf_tracker.recordings.topic_table import (
     ReadNotices,
     TopicInfo,

@@ -30,7 +30,7 @@ from vehicle_pf_tracker.core.outputs import BAG_INFORMATION, check_free, output_
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.bag_folder import RELIABLE_QOS, bag_information, to_yaml
-from vehicle_pf_tracker.recordings.cdr import definition, serialize, type_hash
+from vehicle_pf_tracker.recordings.messages import definition, serialize, type_hash
 
 
 def _check_replaceable(target: Path, overwrite: bool) -> None:
