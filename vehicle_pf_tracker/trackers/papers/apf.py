@@ -155,9 +155,9 @@ class ApfVelocityParameters:
 class ApfParameters(ParticleParameters):
     """Parameters of `apf`."""
 
-    as_printed: bool = as_printed_switch("interpretations 1, 5, 6, 7, 11 and 27")
+    as_printed: bool = as_printed_switch(source="interpretations 1, 5, 6, 7, 11 and 27")
     histogram_bits: int = histogram_bits_parameter()
-    resampling: str = resampling_parameter("P1 Algorithm 2")
+    resampling: str = resampling_parameter(source="P1 Algorithm 2")
     motion: ApfMotionParameters = group(ApfMotionParameters)
     likelihood: LikelihoodParameters = group(LikelihoodParameters)
     reference: ApfReferenceParameters = group(ApfReferenceParameters)

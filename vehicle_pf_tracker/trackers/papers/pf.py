@@ -62,7 +62,7 @@ class ColourParameters(ParticleParameters):
         bounds=(0.01, 1000.0), unit="px/frame", source="P1 eq. 7", tuned=True,
     )  # fmt: skip
     histogram_bits: int = histogram_bits_parameter(tuned=True)
-    resampling: str = resampling_parameter("P1 Algorithm 2")
+    resampling: str = resampling_parameter(source="P1 Algorithm 2")
     # 0.158 is Perez's lambda of 20.
     likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.158)
 

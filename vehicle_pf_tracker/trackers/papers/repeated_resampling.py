@@ -53,7 +53,7 @@ from vehicle_pf_tracker.trackers.parameters import share
 class RepeatedResamplingParameters(ColourParameters):
     """Parameters of both filters of P3."""
 
-    as_printed: bool = as_printed_switch("interpretations 21, 22 and 29")
+    as_printed: bool = as_printed_switch(source="interpretations 21, 22 and 29")
     sigma: float = parameter(
         14.0,
         "About 1.75 times the speed: less loses fast vehicles, more follows similar vehicles.",

@@ -16,11 +16,12 @@
 
 from __future__ import annotations
 
+import functools
 from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -69,28 +70,20 @@ def log_likelihood(coefficients: Array, parameters: LikelihoodParameters) -> Wei
     return np.asarray(distance / (-2 * parameters.sigma_v**2))
 
 
-def as_printed_switch(source: str) -> Any:
-    """Make the switch that follows the paper to the letter; `source` names what it undoes."""
-    return parameter(
-        False, "Follow the paper to the letter: overrides every interpretation below.",
-        source=source,
-    )  # fmt: skip
-
-
-def histogram_bits_parameter(*, tuned: bool = False) -> Any:
-    """Make the resolution of joint colour histograms."""
-    return parameter(
-        3, "More: finer colours, more easily upset by light and noise.", bounds=(1, 5),
-        unit="bits/channel", source="P1 section III-C", effect="relearns", tuned=tuned,
-    )  # fmt: skip
-
-
-def resampling_parameter(source: str) -> Any:
-    """Make the choice of a resampling scheme; `source` is where the paper resamples."""
-    return parameter(
-        "multinomial", "How ancestors are drawn; systematic and stratified vary less.",
-        choices=SCHEMES, source=source,
-    )  # fmt: skip
+as_printed_switch = functools.partial(
+    parameter, False, "Follow the paper to the letter: overrides every interpretation below."
+)
+"""Make the switch that follows the paper to the letter; `source` names what it undoes."""
+histogram_bits_parameter = functools.partial(
+    parameter, 3, "More: finer colours, more easily upset by light and noise.", bounds=(1, 5),
+    unit="bits/channel", source="P1 section III-C", effect="relearns",
+)  # fmt: skip
+"""Make the resolution of joint colour histograms."""
+resampling_parameter = functools.partial(
+    parameter, "multinomial", "How ancestors are drawn; systematic and stratified vary less.",
+    choices=SCHEMES,
+)  # fmt: skip
+"""Make the choice of a resampling scheme; `source` is where the paper resamples."""
 
 
 class MeanVelocity:
