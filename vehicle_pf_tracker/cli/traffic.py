@@ -34,7 +34,6 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.offline.detectors import DetectionFile
-from vehicle_pf_tracker.offline.driver import is_road_given
 from vehicle_pf_tracker.offline.live_page import live_page
 from vehicle_pf_tracker.offline.model_files import model_file
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
@@ -42,7 +41,7 @@ from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import RUN, RunInfo, describe
 from vehicle_pf_tracker.offline.traffic_following import TrafficRun
 from vehicle_pf_tracker.offline.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
-from vehicle_pf_tracker.recordings.source import Source, open_source
+from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
@@ -109,7 +108,7 @@ def run(request: Request) -> int:
     detections = DetectionFile(request.detections) if request.detections else None
     stop = Stop()
     tracking = _tracking(request, configuration, detections, stop)
-    source = open_source(request.source, topic=request.topic, fps=request.fps)
+    source = request.open_source()
     folder = request.output or Path("results", f"{Path(request.source).stem or 'run'}_traffic")
     outputs = (Products(folder, PRODUCTS), request.video)
     inputs = (*request.inputs, request.detections, request.model, request.lines)
@@ -142,12 +141,10 @@ def _tracking(
             "without a detector nothing is followed; give vehicles with --target x,y,w,h, or "
             "--detections FILE"
         )
-    road = configuration.session.road
-    plane = road.plane(road.lens, road.pose) if is_road_given(road) else None
     is_network = parameters.detector.kind == MODEL
     leavable = (lambda one: _LeavableDetector(one, stop)) if is_network else (lambda one: one)
     with shown_progress() as show:
-        parts = session_and_counter(configuration, plane, leavable, show)
+        parts = session_and_counter(configuration, leavable, show)
     return TrafficRun(*parts, detections_of=detections.of if detections is not None else None)
 
 

@@ -57,6 +57,8 @@ class Source:
         Number of images, and their size in px.
     digest : str
         SHA-256 of its content.
+    identity : int or None
+        Number of the target, where the truth has several.
     """
 
     name: str
@@ -66,17 +68,13 @@ class Source:
     width: int
     height: int
     digest: str
+    identity: int | None = None
 
 
 FORMAT = 2
 """Format of the folder; folders of another format are refused."""
 PLAN, FAILED = "evaluation.json", "failed.json"
 TRUTH = "truth.csv"
-
-_SOURCE: Mapping[str, type] = {
-    "name": str, "path": str, "topic": str, "frames": int, "width": int, "height": int,
-    "digest": str,
-}  # fmt: skip
 
 COLUMNS = ("frame", "stamp_ns", "x", "y", "width", "height", "occlusion")
 
@@ -199,10 +197,7 @@ class EvaluationFolder:
                 f"{self.plan['format']}, not {FORMAT}): evaluate again into another folder"
             )
         try:
-            self.recordings = tuple(
-                Source(**{name: kind(entry[name]) for name, kind in _SOURCE.items()})
-                for entry in self.plan["recordings"]
-            )
+            self.recordings = tuple(_source(entry) for entry in self.plan["recordings"])
             self.seeds = tuple(map(int, self.plan["seeds"]))
             self.shifted = tuple(map(str, self.plan.get("shifted_starts", ())))
             self.systems = tuple(_system(entry, self.seeds) for entry in self.plan["systems"])
@@ -257,6 +252,12 @@ def read_document(path: Path) -> dict[str, Any]:
     if not isinstance(document, dict):
         raise InputError(f"{path} does not hold a JSON object")
     return document
+
+
+def _source(entry: Mapping[str, Any]) -> Source:
+    name, path, topic, digest = (str(entry[key]) for key in ("name", "path", "topic", "digest"))
+    frames, width, height = (int(entry[key]) for key in ("frames", "width", "height"))
+    return Source(name, path, topic, frames, width, height, digest, entry.get("identity"))
 
 
 def _system(entry: Mapping[str, Any], seeds: Sequence[int]) -> SystemEntry:

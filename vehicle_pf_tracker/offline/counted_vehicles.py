@@ -27,7 +27,6 @@ from vehicle_pf_tracker.offline.model_files import Progress, silent
 from vehicle_pf_tracker.offline.traffic_drawing import Trails, annotated
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
-from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
@@ -115,7 +114,6 @@ class CountedVehicles:
 
 def session_and_counter(
     configuration: Configuration,
-    plane: RoadPlane | None,
     change: Callable[[Detector], Detector] = lambda detector: detector,
     progress: Progress = silent,
 ) -> tuple[TrafficSession, Counter]:
@@ -125,8 +123,6 @@ def session_and_counter(
     ----------
     configuration : Configuration
         The parameters.
-    plane : RoadPlane or None
-        The road.
     change : callable
         Is given each detector, and returns the one in use.
     progress : Progress
@@ -138,7 +134,7 @@ def session_and_counter(
         If the network or the file of lines and zones cannot be used, or a library is missing.
     """
     check_library()
-    parameters = configuration.tracker
+    parameters, plane = configuration.tracker, configuration.session.road.fixed_plane()
     plan = read_counting_plan(Path(parameters.lines)) if parameters.lines else CountingPlan()
     make, every = detector_maker(parameters.detector, progress), parameters.detector.every
     session = TrafficSession(

@@ -186,11 +186,14 @@ def _track_row(frame: int, stamp_ns: int, one: TrackEstimate) -> list[Any]:
     ]  # fmt: skip
 
 
-def _mot_row(frame: int, one: TrackEstimate) -> str:
+def mot_numbers(frame: int, one: TrackEstimate) -> list[float]:
     """Return the MOTChallenge row of a tracked or occluded vehicle."""
     share = _HIDDEN_CONFIDENCE if one.mode is TrackMode.OCCLUDED else 1.0
-    numbers = ",".join(f"{value:.2f}" for value in astuple(one.box))
-    return f"{frame},{one.identity},{numbers},{share * one.confidence:.4f},-1,-1,-1\n"
+    return [frame, one.identity, *astuple(one.box), share * one.confidence, -1, -1, -1]
+
+
+def _mot_row(frame: int, one: TrackEstimate) -> str:
+    return "{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.4f},{},{},{}\n".format(*mot_numbers(frame, one))
 
 
 def _count_row(frame: int, crossing: Crossing) -> list[Any]:

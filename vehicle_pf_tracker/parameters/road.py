@@ -113,6 +113,21 @@ class RoadParameters:
             raise InputError("the road of a camera needs both its lens and its pose")
         return RoadPlane.of_camera(lens, pose, coarsest=self.coarsest)
 
+    def fixed_plane(self) -> RoadPlane | None:
+        """Make the plane of the parameters alone; None where no road is set.
+
+        Raises
+        ------
+        InputError
+            If lens or pose are to come from topics.
+        """
+        if self.is_set and (self.from_camera_info or self.from_tf):
+            raise InputError(
+                "road.from_camera_info and road.from_tf are for nodes of one vehicle; here "
+                "give road.intrinsics, road.distortion and road.camera_pose"
+            )
+        return self.plane(self.lens, self.pose) if self.is_set else None
+
     def validate(self) -> None:
         """Refuse what makes no road, as far as it does not wait for CameraInfo or TF."""
         lens, pose = self.lens, self.pose

@@ -175,8 +175,7 @@ def _chosen(
     listed = ", ".join([*map(str, sorted(targets)[:_IDS_SHOWN]), "..."][: len(targets)])
     if identity is None and len(targets) > 1:
         raise UnreadTruthError(
-            f"{path} has the truth of {len(targets)} targets; `run` and `import` take one with "
-            f"--id: {listed}"
+            f"{path} has the truth of {len(targets)} vehicles; choose one with --id: {listed}"
         )
     if identity is not None and identity not in targets:
         raise InputError(f"the truth {path} has no target {identity}; it has {listed}")

@@ -391,7 +391,7 @@ def test_lines_are_counted(bench, tmp_path):
     [
         ({"lines": "/nowhere.yaml"}, "/nowhere.yaml"),
         ({"detector__kind": "model"}, "detector.model names no .onnx file"),
-        ({"road__from_tf": True, "road__intrinsics": "1,1,1,1"}, "no road from topics"),
+        ({"road__from_tf": True, "road__intrinsics": "1,1,1,1"}, "are for nodes of one"),
         ({"num_particles": 1}, "num_particles must be from 10 to 10000"),
     ],
 )

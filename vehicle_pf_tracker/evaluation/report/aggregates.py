@@ -282,7 +282,7 @@ def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
     result = f"All {cells} of the grid have a result."
     if failed:
         result = f"{failed} of {cells} have no result; see Failed cells."
-    return [*_leader(aggregates), *filter(None, best), result]
+    return [*_leader(aggregates), *filter(None, best), result, *evaluation.mixed_versions]
 
 
 def _leader(aggregates: Aggregates) -> list[str]:

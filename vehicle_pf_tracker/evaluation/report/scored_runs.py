@@ -32,6 +32,9 @@ from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measur
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 
+_DECIDING = ("vehicle_pf_tracker", "opencv", "numpy")
+"""Programs whose version moves estimates."""
+
 
 @dataclass(frozen=True, slots=True)
 class ScoredRun:
@@ -51,6 +54,8 @@ class ScoredRun:
         Estimates by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
+    versions : mapping of str to str or None
+        Versions of what it was made with, by program.
     """
 
     recording: str
@@ -62,6 +67,7 @@ class ScoredRun:
     boxes: Sequence[Box | None]
     rows: Sequence[EstimateRow]
     curves: Mapping[str, Curve]
+    versions: Mapping[str, str | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +128,16 @@ class ScoredEvaluation:
             if recording in {None, run.recording} and system in {None, run.system}
         ]
 
+    @property
+    def mixed_versions(self) -> list[str]:
+        """A sentence where runs were made with different versions; baselines have their own."""
+        ours = {one.label for one in self.systems if not one.kind.startswith("baseline:")}
+        runs = [run for run in (*self.runs, *self.shifted) if run.system in ours]
+        found = {key: {str(run.versions.get(key)) for run in runs} for key in _DECIDING}
+        mixed = [f"{key} {' and '.join(sorted(v))}" for key, v in found.items() if len(v) > 1]
+        words = "Results of different versions are compared"
+        return [f"{words}: {'; '.join(mixed)}; evaluate again to have all of one."] if mixed else []
+
     def by_system(self, recording: str, order: Sequence[str]) -> dict[str, list[ScoredRun]]:
         """Return the runs on a recording by their systems, of those in `order` that have any."""
         return {label: runs for label in order if (runs := self.of(recording, label))}
@@ -173,6 +189,7 @@ def _result(
         boxes=[_box(frame) for frame in frames],
         rows=cell.rows,
         curves=curves(counted),
+        versions=cell.run.get("versions", {}),
     )
 
 

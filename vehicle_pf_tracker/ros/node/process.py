@@ -102,7 +102,7 @@ def run_nodes(
     def serve(words: list[str]) -> int:
         if words:
             return answer_usage(name, words, usage)
-        return spin_nodes(makers, _OVERLAY_BYTES, _spin)
+        return spin_nodes(makers, _OVERLAY_BYTES, _spin, arguments)
 
     status = run_process(name, arguments, serve)
     if is_loading():  # a thread in LLVM would be left behind

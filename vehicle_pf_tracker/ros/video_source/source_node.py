@@ -276,7 +276,7 @@ def run_video_source(arguments: Sequence[str]) -> int:
     def serve(words: list[str]) -> int:
         if len(words) > 1 or any(word.startswith("-") for word in words):
             return answer_usage(_NAME, words, _USAGE)
-        return spin_nodes([lambda: VideoSourceNode(*words)], _IMAGE_BYTES, _spin)
+        return spin_nodes([lambda: VideoSourceNode(*words)], _IMAGE_BYTES, _spin, arguments)
 
     return run_process(_NAME, arguments, serve)
 
