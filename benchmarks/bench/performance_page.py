@@ -192,11 +192,14 @@ def _steps(results: Results) -> str:
 
 def _deliveries(results: Results) -> str:
     lines = [
-        f"`{one.name}`, a camera for each node: {one.sent} images at {one.rate_hz:g} Hz each, "
-        f"{one.lost} lost, {one.cpu_ms:.3g} ms of CPU per image."
+        f"- `{one.name}`: {one.sent} images at {one.rate_hz:g} Hz each, {one.lost} lost, "
+        f"{one.cpu_ms:.3g} ms of CPU per image, {one.memory_mb:.0f} MB in all."
         for one in results.deliveries
     ]
-    return "\n".join(lines) + "\n"
+    head = (
+        "Several nodes, each with a camera, in processes of their own and in one (`container`):\n"
+    )
+    return "\n".join([head, *lines]) + "\n"
 
 
 def _memory(results: Results) -> str:

@@ -219,7 +219,16 @@ class SourceOptions(TopicOption):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TruthOptions(VerbRequest):
+class IdOption(VerbRequest):
+    """Request that reads truth of several targets."""
+
+    id: int | None = option(
+        type=int, metavar="N", help="number of the vehicle, where the truth has several"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class TruthOptions(IdOption):
     """Request that reads the truth of videos and folders."""
 
     truth: Path | None = option(
@@ -227,9 +236,6 @@ class TruthOptions(VerbRequest):
         help="truth of a video or a folder (default: what lies beside a folder's images); "
         "docs/evaluation.md lists the formats",
     )  # fmt: skip
-    identity: int | None = option(
-        "--id", type=int, metavar="N", help="number of the target, where the truth has several"
-    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -77,7 +77,7 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
 def run(request: Request) -> int:
     """Track, write the results, and print a summary of each target."""
     variant = find_variant(request.variant)
-    source = request.open_source(truth=request.truth, identity=request.identity)
+    source = request.open_source(truth=request.truth, identity=request.id)
     path = request.output or Path("results", Path(request.source).stem or "run")
     outputs = (Products(path, PRODUCTS), request.video, request.recording)
     stop = Stop()

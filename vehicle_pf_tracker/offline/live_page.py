@@ -22,8 +22,8 @@ from collections.abc import Callable, Mapping
 from importlib import resources
 
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.page_server import Content, PageHandler, PageServer
-from vehicle_pf_tracker.recordings.importing import jpeg
 
 _SECONDS = 2.0
 """Longest wait for the next image, after which the one before is shown: cameras of less than one

@@ -77,7 +77,8 @@ def test_several_nodes_share_a_process_and_answer_as_offline(
 def test_a_plug_in_is_a_node_of_its_own_name(bench, start_any):
     node = start_any("--variant", "steady", "--ros-args", "-r", "image:=/camera/image")
     node.wait_for_output("ready: images on /camera/image")
-    assert ("steady_tracker", "/") in bench.node.get_node_names_and_namespaces()
+    own = ("steady_tracker", "/")
+    bench.wait_for(lambda: own in bench.node.get_node_names_and_namespaces())
 
 
 @pytest.mark.parametrize(
