@@ -21,7 +21,10 @@ import os
 import re
 import signal
 import sys
+import threading
+import time
 from pathlib import Path
+from urllib.request import ProxyHandler, build_opener
 
 import cv2
 import numpy as np
@@ -133,7 +136,7 @@ def table(path):
 def test_tracks_of_every_frame_are_written(run):
     out = run()
     assert {path.name for path in out.iterdir()} == {
-        "tracks.csv", "tracks.txt", "run.json", "summary.png",
+        "tracks.csv", "tracks.txt", "run.json", "summary.png", "heat.png",
     }  # fmt: skip
     rows = table(out / "tracks.csv")
     assert len(rows) == 2 * COUNT
@@ -307,6 +310,7 @@ def test_targets_given_by_hand_are_followed_from_their_frame(run):
         (["--start", "99"], True, "no frame lies between", 1),
         (["--lines", "none.yaml"], True, "cannot read the counting lines none.yaml", 1),
         (["--detector", "nothing"], False, "invalid choice", 2),
+        (["--serve", "70000"], True, "'70000' is not a port, 0 to 65535", 2),
     ],
 )  # fmt: skip
 def test_a_mistake_is_one_sentence(run, tmp_path, capsys, words, detections, said, status):
@@ -322,6 +326,42 @@ def test_without_scipy_the_extra_is_named(run, monkeypatch, capsys):
     out = run(status=1)
     assert "pip install 'vehicle_pf_tracker[video]'" in capsys.readouterr().err
     assert not out.exists()
+
+
+def test_a_page_shows_picture_and_counts_meanwhile(run, monkeypatch, tmp_path, capsys):
+    answers = []
+
+    class Watched(Follower):
+        """Has somebody ask for the picture while the third image is followed."""
+
+        steps = 0
+
+        def step(self, frame, detections=None, elapsed=1.0):
+            self.steps += 1
+            if self.steps == 3:
+                (url,) = re.findall(
+                    r"open (http://127\.0\.0\.1:\d+/\S+/) in", capsys.readouterr().out
+                )
+                self.asking = threading.Thread(target=self.ask, args=[url])
+                self.asking.start()
+                time.sleep(0.5)
+            return super().step(frame, detections, elapsed)
+
+        def ask(self, url):
+            get = build_opener(ProxyHandler({})).open
+            answers.extend(get(url + name).read() for name in ("picture.jpg", "counts.json"))
+
+    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Watched)
+    run("--serve", "--lines", tmp_path / "lines.yaml")
+    wait_until = time.monotonic() + 30
+    while len(answers) < 2 and time.monotonic() < wait_until:
+        time.sleep(0.05)
+    picture, facts = answers
+    assert picture.startswith(b"\xff\xd8")
+    assert json.loads(facts) == {
+        "vehicles": 2, "yard: inside": 2, "exit: down": 0, "exit: up": 0,
+        "yard: entry": 0, "yard: exit": 0,
+    }  # fmt: skip
 
 
 def test_an_interrupt_keeps_what_was_written(run, monkeypatch, capsys):
@@ -372,13 +412,3 @@ def test_the_lines_of_the_page_are_counted_at(run, tmp_path):
     counts = table(run("--lines", tmp_path / "page.yaml") / "counts.csv")
     # The first vehicle begins below the line, and drives past its end at x = 40.
     assert [(row["place"], row["direction"], row["id"]) for row in counts] == [("exit", "in", "2")]
-
-
-def test_the_example_of_the_page_runs(capsys):
-    rng = np.random.default_rng(0)
-    frame = rng.integers(90, 120, (240, 320, 3), np.uint8)
-    camera = [(frame, [[60, 3.0 * index, 30, 20]], [0.9], ["car"]) for index in range(40)]
-    exec(compile(block("py"), "traffic.md", "exec"), {"camera": camera})
-    identity, box, mode, _, label = capsys.readouterr().out.splitlines()[-1].split()
-    assert (identity, mode, label) == ("1", "TRACKING", "car")
-    assert list(map(float, box.split(","))) == pytest.approx([60, 117, 30, 20], abs=2)

@@ -22,9 +22,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, counting, print_rows, tell_notices
-from vehicle_pf_tracker.cli.requests import MaxDiffOption, TruthOptions, option, switch
+from vehicle_pf_tracker.cli.requests import MaxDiffOption, Names, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
-from vehicle_pf_tracker.cli.stopping import stopping
+from vehicle_pf_tracker.cli.stopping import Stop, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -43,7 +43,7 @@ from vehicle_pf_tracker.offline.run_folder import (
     RunInfo,
     describe_run,
 )
-from vehicle_pf_tracker.recordings.source import Source, open_source
+from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 SHEET = "summary.png"
@@ -56,7 +56,10 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
     """Request of `run`."""
 
     variant: str = option(
-        default="fusion", metavar="NAME", help=f"one of: {', '.join(VARIANTS)} (default: fusion)"
+        default="fusion",
+        choices=Names(VARIANTS),
+        metavar="NAME",
+        help=f"one of: {', '.join(VARIANTS)} (default: fusion)",
     )
     output: Path | None = option(
         "-o", type=Path, metavar="DIR",
@@ -74,19 +77,20 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
 def run(request: Request) -> int:
     """Track, write the results, and print a summary of each target."""
     variant = find_variant(request.variant)
-    source = open_source(
-        request.source, topic=request.topic, fps=request.fps, truth=request.truth,
-        identity=request.identity,
-    )  # fmt: skip
+    source = request.open_source(truth=request.truth, identity=request.id)
     path = request.output or Path("results", Path(request.source).stem or "run")
     outputs = (Products(path, PRODUCTS), request.video, request.recording)
+    stop = Stop()
     with claimed(outputs, (*request.inputs, request.truth), overwrite=request.overwrite):
-        return _track(request, variant, source, RunFolder(path))
+        status = _track(request, variant, source, RunFolder(path), stop)
+    return stop.ended(status)
 
 
-def _track(request: Request, variant: Variant, source: Source, folder: RunFolder) -> int:
+def _track(
+    request: Request, variant: Variant, source: Source, folder: RunFolder, stop: Stop
+) -> int:
     pictures = Pictures(request.video, particles=request.particles)
-    with stopping() as stop, counting("tracked") as progress:
+    with stopping(stop), counting("tracked") as progress:
         (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
         trackers = _trackers(request, variant, source, first, found.stamp_ns)
         recording: AbstractContextManager[OnFrame | None] = nullcontext()

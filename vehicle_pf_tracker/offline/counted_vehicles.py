@@ -17,20 +17,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections import Counter as Tally
 from pathlib import Path
 
 from vehicle_pf_tracker.core.frame import CodedFrame, Frame
-from vehicle_pf_tracker.offline.detectors import PacedDetector, detector_maker
+from vehicle_pf_tracker.offline.detectors import PacedDetector, Run, call, detector_maker
 from vehicle_pf_tracker.offline.model_files import Progress, silent
+from vehicle_pf_tracker.offline.traffic_drawing import Trails, annotated
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
-from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.association import check_library
-from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
-from vehicle_pf_tracker.trackers.traffic.session import Detector, TrafficSession
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 
@@ -48,11 +48,14 @@ class CountedVehicles:
     ----------
     session, counter
         The same.
+    trails : Trails
+        Paths over the last images.
     """
 
     def __init__(self, session: TrafficSession, counter: Counter | None = None) -> None:
         self.session = session
         self.counter = counter or Counter(CountingPlan())
+        self.trails = Trails()
         self._restarts = session.restarts
 
     @property
@@ -79,7 +82,28 @@ class CountedVehicles:
             detector.pace(time.perf_counter() - began, self.session.tracker.frame_period)
         if self.session.restarts != self._restarts:
             self._begin_anew()
+        self.trails.add(self.estimates)
         return self.counter.update(self.estimates, stamp_ns)
+
+    def drawn(self, frame: Frame, head: str = "") -> Frame:
+        """Return a copy of the last image with vehicles, counts, `head` and their number."""
+        modes = Tally(one.mode for one in self.estimates)
+        hidden = f", {modes[TrackMode.OCCLUDED]} occluded" if modes[TrackMode.OCCLUDED] else ""
+        words = f"{head}{sum(modes[mode] for mode in CONFIRMED)} vehicles{hidden}"
+        return annotated(frame, words, self.estimates, self.counter, self.trails)
+
+    def facts(self) -> dict[str, object]:
+        """Return the number of vehicles, and what was counted, by name."""
+        counter = self.counter
+        return {
+            "vehicles": sum(one.mode in CONFIRMED for one in self.estimates),
+            **{f"{zone}: inside": there for zone, there in counter.occupancy.items()},
+            **{
+                f"{place}: {to}": counter.count(place, to)
+                for place, both in counter.directions.items()
+                for to in both
+            },
+        }
 
     def _begin_anew(self) -> None:
         """Note that the session has discarded all vehicles but its `successors`."""
@@ -89,8 +113,7 @@ class CountedVehicles:
 
 def session_and_counter(
     configuration: Configuration,
-    plane: RoadPlane | None,
-    change: Callable[[Detector], Detector] = lambda detector: detector,
+    run: Run = call,
     progress: Progress = silent,
 ) -> tuple[TrafficSession, Counter]:
     """Make what parameters of `TRAFFIC` ask for.
@@ -99,10 +122,8 @@ def session_and_counter(
     ----------
     configuration : Configuration
         The parameters.
-    plane : RoadPlane or None
-        The road.
-    change : callable
-        Is given each detector, and returns the one in use.
+    run : callable
+        Calls the network.
     progress : Progress
         Shows how a network is fetched.
 
@@ -112,12 +133,12 @@ def session_and_counter(
         If the network or the file of lines and zones cannot be used, or a library is missing.
     """
     check_library()
-    parameters = configuration.tracker
+    parameters, plane = configuration.tracker, configuration.session.road.fixed_plane()
     plan = read_counting_plan(Path(parameters.lines)) if parameters.lines else CountingPlan()
     make, every = detector_maker(parameters.detector, progress), parameters.detector.every
     session = TrafficSession(
         TrafficTracker(parameters, plane),
-        (lambda: PacedDetector(change(make()), every)) if make else None,
+        (lambda: PacedDetector(make(), every, run)) if make else None,
         frame_rate=parameters.frame_rate,
         reset_on_time_jump=configuration.session.reset_on_time_jump,
         regions=plan.regions,

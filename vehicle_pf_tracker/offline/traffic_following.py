@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
 from types import MappingProxyType
 
@@ -27,14 +27,15 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles
 from vehicle_pf_tracker.offline.driver import RATE_FRAMES, Numbered, frame_rate_of
 from vehicle_pf_tracker.offline.estimates import clock_words
+from vehicle_pf_tracker.offline.live_page import LivePage
 from vehicle_pf_tracker.offline.pictures import Pictures
-from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, annotated
-from vehicle_pf_tracker.offline.traffic_results import TrackFiles, TrafficSummary
+from vehicle_pf_tracker.offline.traffic_pictures import HeatPicture, PathPicture
+from vehicle_pf_tracker.offline.traffic_results import TrackFiles
+from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.session import TrackerError
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
@@ -60,6 +61,8 @@ class TrafficRun(CountedVehicles):
         Vehicles and occlusions.
     paths : PathPicture
         Picture of all paths.
+    heat : HeatPicture
+        Picture of where vehicles drove and stood.
     """
 
     def __init__(
@@ -72,6 +75,7 @@ class TrafficRun(CountedVehicles):
         super().__init__(session, counter)
         self.summary = TrafficSummary()
         self.paths = PathPicture()
+        self.heat = HeatPicture()
         self._notices: list[str] = []
         self._more_notices = 0
         self._last_events: list[str] = []
@@ -96,6 +100,7 @@ class TrafficRun(CountedVehicles):
         frames: Numbered,
         files: TrackFiles,
         pictures: Pictures | None = None,
+        page: LivePage | None = None,
         targets: Mapping[str, Mapping[int, Box]] = MappingProxyType({}),
     ) -> None:
         """Follow all vehicles through `frames`.
@@ -108,6 +113,8 @@ class TrafficRun(CountedVehicles):
             Files of the results.
         pictures : Pictures or None
             Pictures to make meanwhile.
+        page : LivePage or None
+            Page to show them on.
         targets : mapping of str to mapping of int to Box
             Vehicles given by hand, by name: boxes in px by the numbers of their frames.
 
@@ -131,9 +138,12 @@ class TrafficRun(CountedVehicles):
                 files.write(number, found.stamp_ns, estimates, crossings)
                 self.summary.add(estimates, self.counter.occupancy)
                 self.paths.add(found.frame, estimates)
-                words = _words(number, found.stamp_ns - start_ns, estimates)
-                draw = partial(annotated, found.frame, words, estimates, self.counter)
+                self.heat.add(found.frame, estimates, self.session.tracker.frame_period)
+                elapsed = clock_words(found.stamp_ns - start_ns)
+                draw = partial(self.drawn, found.frame, f"{elapsed}  frame {number}  ")
                 take((), draw, found.frame, found.stamp_ns)
+                if page is not None:
+                    page.show(draw, self.facts)
 
     def sentences(self, detector: str) -> list[str]:
         """Return the summary, a line for each fact, or why there is no vehicle.
@@ -205,11 +215,3 @@ class TrafficRun(CountedVehicles):
             if name in self._by_name:
                 self.session.remove(self._by_name[name])
             self._by_name[name] = self.session.add(box, "" if name.isdecimal() else name)
-
-
-def _words(number: int, elapsed_ns: int, estimates: Sequence[TrackEstimate]) -> str:
-    """Return the line of words over a frame."""
-    confirmed = sum(one.mode in CONFIRMED for one in estimates)
-    hidden = sum(one.mode is TrackMode.OCCLUDED for one in estimates)
-    occluded = f", {hidden} occluded" if hidden else ""
-    return f"{clock_words(elapsed_ns)}  frame {number}  {confirmed} vehicles{occluded}"

@@ -19,7 +19,7 @@ import pytest
 from fusion_samples import texture
 
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.kernels.choice import load_kernels
+from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
 from vehicle_pf_tracker.trackers.fusion.parameters import FilterParameters
 

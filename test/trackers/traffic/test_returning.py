@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 from traffic_samples import track
 
-from vehicle_pf_tracker.trackers.traffic.association import former, resume
-from vehicle_pf_tracker.trackers.traffic.track import BINS
+from vehicle_pf_tracker.trackers.traffic.association import former
+from vehicle_pf_tracker.trackers.traffic.colours import BINS
 
 RED, BLUE = np.eye(BINS)[:2]
 
@@ -31,7 +31,7 @@ def confirmed(number, left, colours=RED, **facts):
 def test_a_vehicle_that_reappears_a_little_off_is_the_hidden_one():
     hidden, new = confirmed(1, 100.0, undetected=20.0), confirmed(2, 130.0)
     assert former(new, [hidden, new]) is hidden
-    resume(hidden, new)
+    hidden.resume(new)
     assert hidden.identity == 1
     assert hidden.state.edges[0] == pytest.approx(130)
     assert hidden.undetected == 0

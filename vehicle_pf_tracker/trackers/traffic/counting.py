@@ -124,6 +124,12 @@ class Counter:
         self._before_ns: int | None = None
 
     @property
+    def directions(self) -> Mapping[str, tuple[str, str]]:
+        """Names of the two directions of each line and zone, by its name."""
+        lines = {line.name: line.directions for line in self.plan.lines}
+        return lines | {zone.name: (ENTRY, EXIT) for zone in self.plan.zones}
+
+    @property
     def occupancy(self) -> Mapping[str, int]:
         """Confirmed vehicles in each zone in the last image, by its name."""
         return self._occupancy
