@@ -59,7 +59,7 @@ test-all: .venv/installed .venv/colcon kernels  ## every test, with branch cover
 
 # Compiled once, before the parts would each do it.
 kernels: .venv/installed
-	$(BIN)/python -c "from vehicle_pf_tracker.image.kernels.choice import load_kernels; load_kernels('auto')"
+	$(BIN)/python -c "from vehicle_pf_tracker.image.kernels.interface import load_kernels; load_kernels('auto')"
 
 test-offline: .venv/installed
 	$(RUN) $(addprefix --ignore test/,$(test-ros) $(test-footage) $(test-programs))

@@ -39,10 +39,9 @@ from vehicle_pf_tracker.cli.requests import IdOption, MaxDiffOption, TopicOption
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.grid.cells import Plan
+from vehicle_pf_tracker.evaluation.grid.cells import Plan, shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
-from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
@@ -90,13 +89,13 @@ def check(request: TrafficRequest) -> None:
 
 def run_traffic(request: TrafficRequest) -> int:
     """Run the comparison, write its report, and print its tables."""
-    from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
     from vehicle_pf_tracker.evaluation.traffic.comparison import (
         NAME,
         cases_of,
         compare,
         write_traffic_report,
     )
+    from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
     from vehicle_pf_tracker.parameters.configuration import Configuration
     from vehicle_pf_tracker.trackers.registry import TRAFFIC

@@ -26,10 +26,11 @@ from vehicle_pf_tracker.cli.requests import Names, OverwriteOption, option, posi
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.output_files import replacing
 from vehicle_pf_tracker.offline.pictures import NO_ENCODER, SUFFIX, has_encoder, video_writer
 from vehicle_pf_tracker.parameters.table import specs
-from vehicle_pf_tracker.recordings.importing import FORMATS, jpeg
+from vehicle_pf_tracker.recordings.importing import FORMATS
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.scenes.catalogue import (
     SCENES,

@@ -29,8 +29,7 @@ from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.image.stillness import Stillness
-from vehicle_pf_tracker.image.target_pixels import doubts
+from vehicle_pf_tracker.image.target_pixels import Stillness, doubts
 from vehicle_pf_tracker.offline.drawing import Annotator, annotated
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame

@@ -21,10 +21,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
-from vehicle_pf_tracker.evaluation.report.scored_runs import (
-    ScoredEvaluation,
-    ScoredRun,
-)
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.statistics import (
     FEWEST_RECORDINGS,
     Ranking,

@@ -27,19 +27,8 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import (
-    EvaluationFolder,
-    Source,
-    SystemEntry,
-)
-from vehicle_pf_tracker.evaluation.metrics import (
-    Curve,
-    Metrics,
-    measure,
-    normalised_precision_curve,
-    precision_curve,
-    success_curve,
-)
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, SystemEntry
+from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 
@@ -192,11 +181,6 @@ def _result(
     except InputError as error:
         return FailedCell(*key, str(error))
     counted, frames = scores.counted, scores.frames
-    curves = {
-        "precision": precision_curve(counted),
-        "success": success_curve(counted),
-        "normalised": normalised_precision_curve(counted),
-    }
     errors = [frame.error if frame.counts else None for frame in frames]
     return ScoredRun(
         *key,
@@ -204,7 +188,7 @@ def _result(
         errors=np.array(errors, dtype=np.float64),  # None is NaN
         boxes=[_box(frame) for frame in frames],
         rows=cell.rows,
-        curves={name: curve for name, curve in curves.items() if curve is not None},
+        curves=curves(counted),
         versions=cell.run.get("versions", {}),
     )
 
