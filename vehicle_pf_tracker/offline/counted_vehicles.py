@@ -27,9 +27,10 @@ from vehicle_pf_tracker.offline.traffic_drawing import Trails, annotated
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.trackers.traffic.association import check_library
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 

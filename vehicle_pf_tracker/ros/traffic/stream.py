@@ -54,10 +54,11 @@ from vehicle_pf_tracker.ros.traffic.rates import Rates
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 _BY_PIXELS = "vehicles are followed by their pixels meanwhile"
 
