@@ -32,8 +32,8 @@ from small_recordings import COUNT, frame_folder, frame_of, record
 from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.pick import USES, Editor, FrameStore
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
-from vehicle_pf_tracker.recordings.importing import jpeg
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import open_source
 

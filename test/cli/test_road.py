@@ -18,7 +18,7 @@ from small_recordings import record
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.parameters.files import read_yaml
-from vehicle_pf_tracker.road.calibration import parse_pairs
+from vehicle_pf_tracker.parameters.road import parse_pairs
 
 PAIRS = ["0,0=0,0", "90,0=9,0", "90,60=9,6", "0,60=0,6"]
 

@@ -32,7 +32,7 @@ from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline import pictures
 from vehicle_pf_tracker.offline.estimates import read_estimates
-from vehicle_pf_tracker.recordings.cdr import deserialize
+from vehicle_pf_tracker.recordings.messages import deserialize
 from vehicle_pf_tracker.recordings.reader import Recording
 
 

@@ -412,13 +412,3 @@ def test_the_lines_of_the_page_are_counted_at(run, tmp_path):
     counts = table(run("--lines", tmp_path / "page.yaml") / "counts.csv")
     # The first vehicle begins below the line, and drives past its end at x = 40.
     assert [(row["place"], row["direction"], row["id"]) for row in counts] == [("exit", "in", "2")]
-
-
-def test_the_example_of_the_page_runs(capsys):
-    rng = np.random.default_rng(0)
-    frame = rng.integers(90, 120, (240, 320, 3), np.uint8)
-    camera = [(frame, [[60, 3.0 * index, 30, 20]], [0.9], ["car"]) for index in range(40)]
-    exec(compile(block("py"), "traffic.md", "exec"), {"camera": camera})
-    identity, box, mode, _, label = capsys.readouterr().out.splitlines()[-1].split()
-    assert (identity, mode, label) == ("1", "TRACKING", "car")
-    assert list(map(float, box.split(","))) == pytest.approx([60, 117, 30, 20], abs=2)

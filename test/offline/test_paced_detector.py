@@ -43,9 +43,9 @@ def test_a_detector_looks_at_every_third_image_and_says_whether_it_looked():
     ("network", "others", "rate", "every"),
     [
         (0.018, 0.005, 30, 1),
-        (0.018, 0.020, 30, 3),  # 6.7 ms are left of 26.7
+        (0.018, 0.015, 30, 2),  # 11.7 ms are left of 26.7
         (0.018, 0.020, 10, 1),
-        (0.2, 0.1, 30, 4),  # too slow for any: a seventh of a second, no longer
+        (0.2, 0.1, 30, 3),  # too slow for any: a tenth of a second, no longer
         (0.2, 0.1, 2, 1),
     ],
 )

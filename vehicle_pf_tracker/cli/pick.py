@@ -36,16 +36,16 @@ from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, opti
 from vehicle_pf_tracker.cli.tracking_options import TARGET_FORM, list_in, target_of
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import claimed
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.drawing import draw_pixel_grid
 from vehicle_pf_tracker.offline.output_files import write_picture, write_text
 from vehicle_pf_tracker.offline.page_server import Content, PageHandler, PageServer
 from vehicle_pf_tracker.offline.pictures import has_display
 from vehicle_pf_tracker.parameters.counting_plan import parse_counting_plan
 from vehicle_pf_tracker.parameters.files import read_yaml_file
-from vehicle_pf_tracker.recordings.importing import jpeg
+from vehicle_pf_tracker.parameters.road import format_pairs
 from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.recordings.source import Source, frame_at, open_source
-from vehicle_pf_tracker.road.calibration import format_pairs
+from vehicle_pf_tracker.recordings.source import Source, frame_at
 from vehicle_pf_tracker.road.plane import Pair
 
 Document: TypeAlias = dict[str, Any]
@@ -268,7 +268,7 @@ class Request(SourceOptions, OverwriteOption):
 
 def run(request: Request) -> int:
     """Serve the page until the user is done, and print or write what was drawn."""
-    source = open_source(request.source, topic=request.topic, fps=request.fps)
+    source = request.open_source()
     output = request.grid or request.output or request.edit
     is_in_place = output == request.edit
     inputs = [request.source, None if is_in_place else request.edit]

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, counting, print_rows, tell_notices
-from vehicle_pf_tracker.cli.requests import MaxDiffOption, TruthOptions, option, switch
+from vehicle_pf_tracker.cli.requests import MaxDiffOption, Names, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import Stop, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
@@ -43,7 +43,7 @@ from vehicle_pf_tracker.offline.run_folder import (
     RunInfo,
     describe_run,
 )
-from vehicle_pf_tracker.recordings.source import Source, open_source
+from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 SHEET = "summary.png"
@@ -56,7 +56,10 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
     """Request of `run`."""
 
     variant: str = option(
-        default="fusion", metavar="NAME", help=f"one of: {', '.join(VARIANTS)} (default: fusion)"
+        default="fusion",
+        choices=Names(VARIANTS),
+        metavar="NAME",
+        help=f"one of: {', '.join(VARIANTS)} (default: fusion)",
     )
     output: Path | None = option(
         "-o", type=Path, metavar="DIR",
@@ -74,10 +77,7 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
 def run(request: Request) -> int:
     """Track, write the results, and print a summary of each target."""
     variant = find_variant(request.variant)
-    source = open_source(
-        request.source, topic=request.topic, fps=request.fps, truth=request.truth,
-        identity=request.identity,
-    )  # fmt: skip
+    source = request.open_source(truth=request.truth, identity=request.id)
     path = request.output or Path("results", Path(request.source).stem or "run")
     outputs = (Products(path, PRODUCTS), request.video, request.recording)
     stop = Stop()

@@ -41,16 +41,22 @@ _OF_ROS_PREFIX = "qos_overrides."
 
 
 @dataclass(frozen=True, kw_only=True)
-class ParameterOptions(VerbRequest):
-    """Options that choose parameters."""
+class StartOptions(VerbRequest):
+    """Options that choose parameters to start from."""
 
     params: Path | None = option(
-        type=Path, metavar="FILE", help="ROS parameter file, as `params` prints it"
+        type=Path, metavar="FILE", help="file of parameters, as the verb params prints it"
     )
     assignments: Sequence[str] = option(
         "--set", action="append", default=[], metavar="NAME=VALUE",
         help="set a parameter, over the file; repeatable",
     )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class ParameterOptions(StartOptions):
+    """Options that choose parameters."""
+
     seed: int | None = option(
         type=int, help="seed of the random numbers; -1 draws one and run.json keeps it"
     )

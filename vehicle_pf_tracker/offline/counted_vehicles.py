@@ -18,21 +18,20 @@ from __future__ import annotations
 
 import time
 from collections import Counter as Tally
-from collections.abc import Callable
 from pathlib import Path
 
 from vehicle_pf_tracker.core.frame import CodedFrame, Frame
-from vehicle_pf_tracker.offline.detectors import PacedDetector, detector_maker
+from vehicle_pf_tracker.offline.detectors import PacedDetector, Run, call, detector_maker
 from vehicle_pf_tracker.offline.model_files import Progress, silent
 from vehicle_pf_tracker.offline.traffic_drawing import Trails, annotated
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
-from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.association import check_library
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.session import Detector, TrafficSession
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 
@@ -115,8 +114,7 @@ class CountedVehicles:
 
 def session_and_counter(
     configuration: Configuration,
-    plane: RoadPlane | None,
-    change: Callable[[Detector], Detector] = lambda detector: detector,
+    run: Run = call,
     progress: Progress = silent,
 ) -> tuple[TrafficSession, Counter]:
     """Make what parameters of `TRAFFIC` ask for.
@@ -125,10 +123,8 @@ def session_and_counter(
     ----------
     configuration : Configuration
         The parameters.
-    plane : RoadPlane or None
-        The road.
-    change : callable
-        Is given each detector, and returns the one in use.
+    run : callable
+        Calls the network.
     progress : Progress
         Shows how a network is fetched.
 
@@ -138,12 +134,12 @@ def session_and_counter(
         If the network or the file of lines and zones cannot be used, or a library is missing.
     """
     check_library()
-    parameters = configuration.tracker
+    parameters, plane = configuration.tracker, configuration.session.road.fixed_plane()
     plan = read_counting_plan(Path(parameters.lines)) if parameters.lines else CountingPlan()
     make, every = detector_maker(parameters.detector, progress), parameters.detector.every
     session = TrafficSession(
         TrafficTracker(parameters, plane),
-        (lambda: PacedDetector(change(make()), every)) if make else None,
+        (lambda: PacedDetector(make(), every, run)) if make else None,
         frame_rate=parameters.frame_rate,
         reset_on_time_jump=configuration.session.reset_on_time_jump,
         regions=plan.regions,

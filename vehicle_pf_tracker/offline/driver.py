@@ -29,14 +29,12 @@ from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.image.stillness import Stillness
-from vehicle_pf_tracker.image.target_pixels import doubts
+from vehicle_pf_tracker.image.target_pixels import Stillness, doubts
 from vehicle_pf_tracker.offline.drawing import Annotator, annotated
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame
 from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
-from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.estimate import START, Estimate
 from vehicle_pf_tracker.trackers.image_stream import StrayImageError
@@ -218,23 +216,7 @@ class OfflineTracker:
 def _localisation(session: Session) -> Localisation | None:
     """Make the localisation where a road is set."""
     road = session.settings.road
-    return Localisation(session.variant.name, road) if is_road_given(road) else None
-
-
-def is_road_given(road: RoadParameters) -> bool:
-    """Return whether a road is set.
-
-    Raises
-    ------
-    InputError
-        If its lens or its pose are to come from topics, which only nodes have.
-    """
-    if road.is_set and (road.from_camera_info or road.from_tf):
-        raise InputError(
-            "road.from_camera_info and road.from_tf are for nodes; offline, give road.intrinsics, "
-            "road.distortion and road.camera_pose"
-        )
-    return road.is_set
+    return Localisation(session.variant.name, road) if road.fixed_plane() else None
 
 
 def with_target(settings: SessionParameters, box: Box) -> SessionParameters:

@@ -33,7 +33,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
-from vehicle_pf_tracker.image.stillness import Stillness
+from vehicle_pf_tracker.image.target_pixels import Stillness
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation

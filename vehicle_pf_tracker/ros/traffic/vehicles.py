@@ -29,11 +29,9 @@ from vehicle_pf_tracker.core.frame import CodedFrame, Frame
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.parameters.road import RoadParameters
-from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.counting import Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 NONE = 0
 """Number that ends a selection; vehicles have numbers from 1."""
@@ -138,8 +136,7 @@ class Vehicles(CountedVehicles):
     """
 
     def __init__(self, configuration: Configuration) -> None:
-        plane = plane_of(configuration.session.road)
-        super().__init__(*session_and_counter(configuration, plane))
+        super().__init__(*session_and_counter(configuration))
         self._configuration = configuration
         self.latest: dict[str, Crossing] = {}
         self.selection = Selection()
@@ -165,7 +162,8 @@ class Vehicles(CountedVehicles):
             If the image cannot be used; all vehicles are kept.
         """
         for crossing in self.follow(image, stamp_ns, detections):
-            self.latest[crossing.place] = crossing
+            if not crossing.doubt:
+                self.latest[crossing.place] = crossing
         self._is_shown, self._added = True, 0
         return [*self.session.events, *self._add_waiting()]
 
@@ -230,7 +228,7 @@ class Vehicles(CountedVehicles):
             reset_on_time_jump=configuration.session.reset_on_time_jump,
         )
         if configuration.session.road != before.road:
-            plane = plane_of(configuration.session.road)
+            plane = configuration.session.road.fixed_plane()
             self.session.tracker.road = self.counter.plane = plane
             self.counter.forget_vehicles()
 
@@ -267,19 +265,3 @@ class Vehicles(CountedVehicles):
             return NONE
         self.given.append(box)
         return identity
-
-
-def plane_of(road: RoadParameters) -> RoadPlane | None:
-    """Return the calibrated road; its lens and pose cannot come from topics.
-
-    Raises
-    ------
-    InputError
-        If they should.
-    """
-    if road.from_camera_info or road.from_tf:
-        raise InputError(
-            "traffic_tracker takes no road from topics; instead of road.from_camera_info and "
-            "road.from_tf give road.intrinsics, road.distortion and road.camera_pose"
-        )
-    return road.plane(road.lens, road.pose) if road.is_set else None

@@ -28,7 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.flow import PointFlow
+from vehicle_pf_tracker.image.shared_motion import PointFlow
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, TrafficNumbers, areas
 from vehicle_pf_tracker.trackers.traffic.track import Track
