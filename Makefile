@@ -14,6 +14,9 @@ INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps
 # What the versions of NumPy and OpenCV decide: numbers, pixels and messages.
 VERSIONED := $(addprefix test/,filtering image trackers recordings scenes/test_first_scenes_stay.py \
 	ros/test_conversions.py ros/node/test_node_images.py ros/node/test_node_encodings.py)
+# Lifecycle, parameters, targets, processes and a replay: what a release of rclpy may change.
+KILTED := $(addprefix test/ros/,test_rclpy_internals.py test_transport.py node/test_node_lifecycle.py \
+	node/test_several_nodes.py node/test_node_requests.py replay/test_replay_lockstep.py)
 # What each part of the tests but test-offline runs, which has the rest.
 test-ros := ros
 test-footage := scenes recordings reproduction
@@ -25,7 +28,7 @@ COVERED := 92
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
 # Each target that says of itself what it does, with two hashes, is listed by `make help`.
-.PHONY: help demo test test-all test-offline test-footage test-programs test-ros test-noble kernels lint types format config colcon baselines bench reproduce docs dist clean
+.PHONY: help demo test test-all test-offline test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs dist clean
 
 demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
@@ -56,7 +59,7 @@ test-all: .venv/installed .venv/colcon kernels  ## every test, with branch cover
 
 # Compiled once, before the parts would each do it.
 kernels: .venv/installed
-	$(BIN)/python -c "from vehicle_pf_tracker.image.kernels.choice import load_kernels; load_kernels('auto')"
+	$(BIN)/python -c "from vehicle_pf_tracker.image.kernels.interface import load_kernels; load_kernels('auto')"
 
 test-offline: .venv/installed
 	$(RUN) $(addprefix --ignore test/,$(test-ros) $(test-footage) $(test-programs))
@@ -68,6 +71,9 @@ test-ros test-footage test-programs: .venv/installed
 
 test-noble: .venv-noble/installed  ## numbers, pixels and messages with the NumPy and OpenCV of Ubuntu 24.04
 	.venv-noble/bin/python -m pytest -m "not slow" $(PYTEST_ARGS) $(VERSIONED)
+
+test-kilted: .venv-kilted/installed  ## some tests of the nodes with the ROS 2 after Jazzy
+	.venv-kilted/bin/python -m pytest -m "not slow" $(KILTED)
 
 colcon: .venv/colcon  ## colcon build and its tests, in a scratch folder
 	PATH="$(CURDIR)/$(BIN):$$PATH" .ci/colcon
@@ -112,7 +118,7 @@ dist: .venv/docs  ## build the wheel and the source archive, into results/dist
 		PYTHONPATH=. $(CURDIR)/$(BIN)/python -m pytest -m "not slow" test/core test/packaging test/tools test/test_walls.py
 
 clean:  ## remove what the other targets made
-	rm -rf .venv .venv-noble .venv-baselines build install log results *.egg-info
+	rm -rf .venv .venv-noble .venv-kilted .venv-baselines build install log results *.egg-info
 	rm -rf .coverage .coverage.* .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
@@ -124,10 +130,13 @@ clean:  ## remove what the other targets made
 .venv-noble/locked: requirements/noble.txt requirements/ros-jazzy.txt
 	.ci/make-venv .venv-noble requirements/noble.txt $(or $(NOBLE_PYTHON),3.12 3.11 3.10)
 
+.venv-kilted/locked: requirements/noble.txt requirements/ros-kilted.txt
+	ROS_LOCK=requirements/ros-kilted.txt .ci/make-venv .venv-kilted requirements/noble.txt $(or $(NOBLE_PYTHON),3.12 3.11 3.10)
+
 .venv-baselines/locked: vehicle_pf_tracker/evaluation/baselines.txt
 	.ci/make-venv --without-ros .venv-baselines vehicle_pf_tracker/evaluation/baselines.txt $(PYTHON)
 
-.venv/installed .venv-noble/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml package.xml \
+.venv/installed .venv-noble/installed .venv-kilted/installed: %/installed: %/locked setup.py setup.cfg pyproject.toml package.xml \
 		vehicle_pf_tracker/trackers/registry.py
 	$*/bin/python $(INSTALL) --no-build-isolation --editable .
 	touch $@

@@ -36,7 +36,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder

@@ -42,9 +42,8 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
 from vehicle_pf_tracker.offline.output_files import write_text
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
-from vehicle_pf_tracker.parameters.road import RoadParameters
+from vehicle_pf_tracker.parameters.road import RoadParameters, format_pairs
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.road.calibration import format_pairs
 from vehicle_pf_tracker.road.plane import Pair
 from vehicle_pf_tracker.trackers.localisation import Localisation
 from vehicle_pf_tracker.trackers.registry import find_variant

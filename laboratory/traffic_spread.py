@@ -32,9 +32,8 @@ from pathlib import Path
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION
-from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
+from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker, counts, kept_identities
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, Detections, TrafficNumbers
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode

@@ -15,35 +15,31 @@
 """A tracker for each camera of a file: `ros2 launch … cameras.launch.py cameras:=FILE`."""
 
 from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
-from launch.actions import (
-    DeclareLaunchArgument,
-    GroupAction,
-    IncludeLaunchDescription,
-    OpaqueFunction,
-)
-from launch.launch_description_sources import PythonLaunchDescriptionSource
-from launch.substitutions import PathJoinSubstitution
+from launch.actions import DeclareLaunchArgument, GroupAction, OpaqueFunction
+from launch_ros.parameter_descriptions import Parameter
 from launch_ros.substitutions import FindPackageShare
 
-from vehicle_pf_tracker.ros.launching import read_cameras
+from vehicle_pf_tracker.ros.cameras import read_cameras
+from vehicle_pf_tracker.ros.launching import (
+    ARGUMENTS,
+    declared,
+    included_tracker,
+    is_true,
+    started,
+)
 
 FOR_ALL = {
-    "use_sim_time": ("false", "Follow /clock"),
-    "log_level": ("info", "Least severity to log: debug, info, warn, error or fatal"),
+    **{name: ARGUMENTS[name] for name in ("use_sim_time", "log_level", "large_images")},
     "respawn": ("true", "Start a node again when it ends"),
-    "large_images": ("false", "Shared memory for large images, in Fast DDS"),
 }
+CONTAINER = {"container": ("false", "Run all nodes in one process, in turns")}
 
 
 def generate_launch_description() -> LaunchDescription:
-    declared = [
-        DeclareLaunchArgument(name, default_value=default, description=words)
-        for name, (default, words) in FOR_ALL.items()
-    ]
     return LaunchDescription(
         [
             DeclareLaunchArgument("cameras", description="YAML of cameras by name"),
-            *declared,
+            *declared({**FOR_ALL, **CONTAINER}),
             OpaqueFunction(function=start),
         ]
     )
@@ -51,24 +47,23 @@ def generate_launch_description() -> LaunchDescription:
 
 def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     given = context.launch_configurations
-    tracker = PathJoinSubstitution(
-        [FindPackageShare("vehicle_pf_tracker"), "launch", "tracker.launch.py"]
-    )
+    cameras = read_cameras(given["cameras"])
+    if is_true(given["container"]):
+        return started(
+            given,
+            FindPackageShare("vehicle_pf_tracker").perform(context),
+            executable="vehicle_tracker",
+            arguments=["--cameras", given["cameras"]],
+            parameters=[Parameter("use_sim_time", is_true(given["use_sim_time"]))],
+        )
     groups = []
-    for camera in read_cameras(given["cameras"]):
+    for camera in cameras:
         arguments = {
             "variant": camera.variant,
             "params_file": camera.write_parameters(),
             "image_topic": camera.topic,
-            "image_transport": "",
-            "detections_topic": "",
-            "lines": "",
             "namespace": camera.name,
-            "name": "",
             **{name: given[name] for name in FOR_ALL},
         }
-        include = IncludeLaunchDescription(
-            PythonLaunchDescriptionSource(tracker), launch_arguments=arguments.items()
-        )
-        groups.append(GroupAction([include], scoped=True))
+        groups.append(GroupAction([included_tracker(arguments)], scoped=True))
     return groups

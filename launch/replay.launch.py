@@ -18,18 +18,11 @@ import sys
 from pathlib import Path
 
 from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
-from launch.actions import (
-    DeclareLaunchArgument,
-    IncludeLaunchDescription,
-    OpaqueFunction,
-    Shutdown,
-)
-from launch.launch_description_sources import PythonLaunchDescriptionSource
-from launch.substitutions import PathJoinSubstitution
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch_ros.actions import Node
-from launch_ros.substitutions import FindPackageShare
 
 from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.ros.launching import ARGUMENTS, declared, included_tracker, is_true
 from vehicle_pf_tracker.ros.replay.publishing import RecordedImages, recorded_images
 
 OWN = {
@@ -38,25 +31,18 @@ OWN = {
     "rate": ("1.0", "Speed of the replay"),
     "loop": ("false", "Begin again at the end"),
 }
+_NAMES = ("variant", "params_file", "namespace", "name", "log_level", "rviz", "foxglove")
 PASSED_ON = {
-    "variant": ("apf", "Tracker to run"),
-    "params_file": ("", "Parameter YAML; empty takes that of the variant"),
-    "namespace": ("", "Of the node"),
-    "name": ("", "Of the node; empty takes VARIANT_tracker"),
+    **{name: ARGUMENTS[name] for name in _NAMES},
     "use_sim_time": ("false", "Follow /clock, which the replay then publishes"),
-    "log_level": ("info", "Least severity to log: debug, info, warn, error or fatal"),
 }
 
 
 def generate_launch_description() -> LaunchDescription:
-    declared = [
-        DeclareLaunchArgument(name, default_value=default, description=words)
-        for name, (default, words) in {**OWN, **PASSED_ON}.items()
-    ]
     return LaunchDescription(
         [
             DeclareLaunchArgument("recording", description="rosbag2 folder, or bare .mcap file"),
-            *declared,
+            *declared({**OWN, **PASSED_ON}),
             OpaqueFunction(function=start),
         ]
     )
@@ -65,19 +51,9 @@ def generate_launch_description() -> LaunchDescription:
 def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     given = {name: context.launch_configurations[name] for name in ("recording", *OWN, *PASSED_ON)}
     images = recorded_images(Recording(Path(given["recording"]), given["topic"] or None))
-    tracker = PathJoinSubstitution(
-        [FindPackageShare("vehicle_pf_tracker"), "launch", "tracker.launch.py"]
-    )
-    own = {
-        "image_topic": images.base, "image_transport": images.transport,
-        "respawn": "false", "large_images": "false",
-        "detections_topic": "", "lines": "",
-    }  # fmt: skip
-    passed_on = {name: given[name] for name in PASSED_ON}
+    found = {"image_topic": images.base, "image_transport": images.transport}
     return [
-        IncludeLaunchDescription(
-            PythonLaunchDescriptionSource(tracker), launch_arguments={**passed_on, **own}.items()
-        ),
+        included_tracker({**{name: given[name] for name in PASSED_ON}, **found}),
         Node(
             package="vehicle_pf_tracker",
             executable="bag_replay",
@@ -100,8 +76,8 @@ def words(given: dict[str, str], images: RecordedImages) -> list[str]:
         chosen += ["--target", given["target"]]
     elif given["variant"] == "traffic":  # it finds its vehicles itself
         chosen.append("--no-target")
-    if given["loop"].lower() in {"true", "1"}:
+    if is_true(given["loop"]):
         chosen.append("--loop")
-    if given["use_sim_time"].lower() in {"true", "1"}:
+    if is_true(given["use_sim_time"]):
         chosen += ["--clock", "100"]
     return chosen

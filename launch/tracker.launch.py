@@ -14,55 +14,33 @@
 
 """One tracker node on a camera: `ros2 launch vehicle_pf_tracker tracker.launch.py variant:=apf`."""
 
-import sys
-from pathlib import Path
-
 from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
-from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
+from launch.actions import LogInfo, OpaqueFunction
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import Parameter
 from launch_ros.substitutions import FindPackageShare
 
-from vehicle_pf_tracker.ros.launching import parameter_file
-from vehicle_pf_tracker.ros.transport import PROFILE_VARIABLES
-
-# Defaults are constants: a default made of another argument would stay for the next inclusion.
-ARGUMENTS = {
-    "variant": ("apf", "Tracker to run"),
-    "params_file": ("", "Parameter YAML; empty takes that of the variant"),
-    "image_topic": ("/camera/image_raw", "Images; compressed ones are below it, in /compressed"),
-    "image_transport": ("", "raw or compressed; empty leaves it to the parameter file"),
-    "detections_topic": (
-        "", "For traffic: detections (vision_msgs/Detection2DArray) to follow; empty leaves the "
-        "detector to the parameter file",
-    ),
-    "lines": (
-        "", "For traffic: YAML of lines and zones to count at; empty leaves it to the parameter "
-        "file",
-    ),
-    "namespace": ("", "Of the node"),
-    "name": ("", "Of the node; empty takes VARIANT_tracker"),
-    "use_sim_time": ("false", "Follow /clock"),
-    "log_level": ("info", "Least severity to log: debug, info, warn, error or fatal"),
-    "respawn": ("false", "Start the node again when it ends"),
-    "large_images": (
-        "false", "Give what starts from here on shared memory for large images, in Fast DDS",
-    ),
-}  # fmt: skip
+from vehicle_pf_tracker.ros.cameras import image_remappings
+from vehicle_pf_tracker.ros.launching import (
+    ARGUMENTS,
+    declared,
+    is_true,
+    layout_for,
+    parameter_file,
+    program,
+    started,
+)
 
 
 def generate_launch_description() -> LaunchDescription:
-    declared = [
-        DeclareLaunchArgument(name, default_value=default, description=words)
-        for name, (default, words) in ARGUMENTS.items()
-    ]
-    return LaunchDescription([*declared, OpaqueFunction(function=start)])
+    return LaunchDescription([*declared(ARGUMENTS), OpaqueFunction(function=start)])
 
 
 def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     given = {name: context.launch_configurations[name] for name in ARGUMENTS}
     share = FindPackageShare("vehicle_pf_tracker").perform(context)
-    executable = f"{given['variant']}_tracker"
+    executable, words = program(given["variant"])
+    name = given["name"] or f"{given['variant']}_tracker"
     # Not a dictionary: launch_ros writes one to a file that it never removes.
     own = [Parameter("use_sim_time", is_true(given["use_sim_time"]))]
     if given["image_transport"]:
@@ -71,28 +49,32 @@ def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
         own.append(Parameter("detector.kind", "topic"))
     if given["lines"]:
         own.append(Parameter("lines", given["lines"]))
-    node = Node(
-        package="vehicle_pf_tracker",
+    path = parameter_file(given["params_file"], given["variant"], share)
+    node = started(
+        given,
+        share,
         executable=executable,
-        name=given["name"] or executable,
+        arguments=words,
+        name=name,
         namespace=given["namespace"],
-        parameters=[parameter_file(given["params_file"], given["variant"], share), *own],
+        parameters=[*([path] if path else []), *own],
         remappings=[
-            ("image", given["image_topic"]),
-            ("image/compressed", f"{given['image_topic']}/compressed"),
+            *image_remappings(given["image_topic"]),
             *([("detections", topic)] if (topic := given["detections_topic"]) else []),
         ],
-        ros_arguments=["--log-level", given["log_level"]],
-        respawn=is_true(given["respawn"]),
-        respawn_delay=2.0,
-        output="screen",
-        emulate_tty=sys.stdout.isatty(),
     )
-    if not is_true(given["large_images"]):
-        return [node]
-    path = str(Path(share, "config", "large_images.xml"))
-    return [*(SetEnvironmentVariable(name, path) for name in PROFILE_VARIABLES), node]
+    full_name = "/".join(["", *filter(None, [given["namespace"].strip("/"), name])])
+    return [*node, *viewers(given, full_name, share)]
 
 
-def is_true(word: str) -> bool:
-    return word.lower() in {"true", "1"}
+def viewers(given: dict[str, str], node: str, share: str) -> list[LaunchDescriptionEntity]:
+    found: list[LaunchDescriptionEntity] = []
+    if is_true(given["rviz"]):
+        words = ["-d", layout_for(node, "tracker.rviz", share)]
+        found.append(Node(package="rviz2", executable="rviz2", arguments=words))
+    if is_true(given["foxglove"]):
+        path = layout_for(node, "foxglove_live.json", share)
+        told = f"in Foxglove: open the connection ws://localhost:8765, and import the layout {path}"
+        found.append(Node(package="foxglove_bridge", executable="foxglove_bridge"))
+        found.append(LogInfo(msg=told))
+    return found

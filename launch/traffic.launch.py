@@ -15,43 +15,14 @@
 """Every vehicle before a camera: `ros2 launch vehicle_pf_tracker traffic.launch.py`."""
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
-from launch.launch_description_sources import PythonLaunchDescriptionSource
-from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
-from launch_ros.substitutions import FindPackageShare
+from launch.substitutions import LaunchConfiguration
 
-# Defaults are constants: a default made of another argument would stay for the next inclusion.
-ARGUMENTS = {
-    "image_topic": ("/camera/image_raw", "Images; compressed ones are below it, in /compressed"),
-    "image_transport": ("", "raw or compressed; empty leaves it to the parameter file"),
-    "detections_topic": (
-        "", "Detections (vision_msgs/Detection2DArray) to follow; empty leaves the detector to the "
-        "parameter file, whose default is what moves before a standing camera",
-    ),
-    "lines": ("", "YAML of lines and zones to count at; empty leaves it to the parameter file"),
-    "params_file": ("", "Parameter YAML; empty takes config/traffic.yaml"),
-    "namespace": ("", "Of the node"),
-    "name": ("", "Of the node; empty takes traffic_tracker"),
-    "use_sim_time": ("false", "Follow /clock"),
-    "log_level": ("info", "Least severity to log: debug, info, warn, error or fatal"),
-    "respawn": ("false", "Start the node again when it ends"),
-    "large_images": (
-        "false", "Give what starts from here on shared memory for large images, in Fast DDS",
-    ),
-}  # fmt: skip
+from vehicle_pf_tracker.ros.launching import ARGUMENTS, declared, included_tracker
 
 
 def generate_launch_description() -> LaunchDescription:
-    declared = [
-        DeclareLaunchArgument(name, default_value=default, description=words)
-        for name, (default, words) in ARGUMENTS.items()
-    ]
-    tracker = PathJoinSubstitution(
-        [FindPackageShare("vehicle_pf_tracker"), "launch", "tracker.launch.py"]
+    own = {name: words for name, words in ARGUMENTS.items() if name != "variant"}
+    passed_on = {name: LaunchConfiguration(name) for name in own}
+    return LaunchDescription(
+        [*declared(own), included_tracker({"variant": "traffic", **passed_on})]
     )
-    passed_on = {name: LaunchConfiguration(name) for name in ARGUMENTS}
-    include = IncludeLaunchDescription(
-        PythonLaunchDescriptionSource(tracker),
-        launch_arguments={"variant": "traffic", **passed_on}.items(),
-    )
-    return LaunchDescription([*declared, include])

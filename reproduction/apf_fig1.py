@@ -32,7 +32,7 @@ from reproduction.apf_systems import (
     with_sigma,
 )
 from reproduction.cells import RunCell
-from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
+from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 
 _SPEEDS = tuple(range(2, 21, 2)), (4, 12)
 _SIGMAS = tuple(range(1, 21)), (2, 6, 12)

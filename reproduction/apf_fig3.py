@@ -41,7 +41,7 @@ from reproduction.numbers import (
     rank_correlation,
     share,
 )
-from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
+from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 
 _WIDTHS = tuple(range(0, 121, 2)), (0, 30, 60, 120)
 _PLACE = "section IV, figure 3"

@@ -27,9 +27,8 @@ from reproduction.apf_systems import INTERPRETATIONS, RIVALS, SIX
 from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
 from reproduction.numbers import median_and_range
 from reproduction.shading import shade_occlusions
-from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.plots import STYLES
-from vehicle_pf_tracker.evaluation.scores import Scores
+from vehicle_pf_tracker.evaluation.scores import SETTLING_FRAMES, Scores
 
 _PLACE = "section IV, figure 6"
 

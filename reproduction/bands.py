@@ -23,9 +23,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 from vehicle_pf_tracker.evaluation.plots import Style
-from vehicle_pf_tracker.evaluation.scores import Scores
+from vehicle_pf_tracker.evaluation.scores import CLOSE_PX, Scores
 
 _QUARTILES = 25, 50, 75
 _LEAST_ERROR = 0.5

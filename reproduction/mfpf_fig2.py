@@ -25,7 +25,7 @@ from reproduction.cells import RunCell
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import Weights, from_log
-from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters, log_likelihood
+from vehicle_pf_tracker.trackers.papers.shared import LikelihoodParameters, log_likelihood
 
 _PLACE = "section III-F, figure 2"
 _EVENTS = 10

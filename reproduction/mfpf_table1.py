@@ -30,7 +30,7 @@ from reproduction.case_figure import SHADES, error_case_figure
 from reproduction.cells import RunCell, System
 from reproduction.numbers import mean_and_spread, share
 from reproduction.paper_scenes import CASES
-from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
+from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 
 _PLACE = "section V, table I"
 _PAPER = {

@@ -24,7 +24,7 @@ from reproduction.case_figure import Values
 from reproduction.experiment import Claim, Experiment, Finding, Holds, Report, Results, Size
 from reproduction.mfpf_share import ShareWords, share_report
 from reproduction.numbers import mean_and_spread
-from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
+from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 
 _PLACE = "section V, table III"
 _PAPER = {

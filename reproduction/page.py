@@ -106,9 +106,7 @@ def _seeds(seeds: Sequence[int]) -> str:
 
 def _section(experiment: Experiment, verdict: Mapping[str, Any], picture: str) -> str:
     parts = [
-        f"### {experiment.name}",
-        f"{experiment.title}. **Verdict: {verdict['holds']}.**",
-        f"![{experiment.title}]({_PICTURES}/{picture})",
+        f"### {experiment.name}\n![{experiment.title}]({_PICTURES}/{picture})",
         _claims(verdict["claims"]),
         *verdict["remarks"],
     ]

@@ -38,6 +38,7 @@ ROOT = HERE.parent
 SETUPTOOLS = "setuptools>=77,<80"  # builds this package; the upper limit is colcon's
 BASE = (SETUPTOOLS, f"{ROOT}[dev]")
 ROS = (*BASE, f"{ROOT}[ros]")
+KILTED = (*BASE, "ros-kilted-rclpy[fastrtps]==9.1.2", "ros-kilted-common-interfaces==5.5.1")
 COLCON = (
     *BASE,
     "colcon-bash",
@@ -131,6 +132,7 @@ def own_pins(interpreter: str, version: str) -> dict[str, set[str]]:
     pins = {
         "locked": base,
         "ros-jazzy": resolve(interpreter, ROS) - base,
+        "ros-kilted": resolve(interpreter, KILTED) - base,
         "colcon": resolve(interpreter, COLCON) - base,
     }
     if version in {"3.10", "3.11", "3.12"}:  # NumPy 1.26 has no wheels for later ones

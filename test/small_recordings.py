@@ -20,7 +20,7 @@ from mcap.writer import CompressionType
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.recordings import messages, topics
+from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 COUNT = 12
@@ -61,7 +61,7 @@ def record_two_cameras(folder):
         for index in range(3):
             image = messages.image(stamp_of(index), frame_of(index))
             for topic in ("/left/image", "/right/image"):
-                writer.write(topic, topics.IMAGE, stamp_of(index), image)
+                writer.write(topic, messages.IMAGE, stamp_of(index), image)
     return folder
 
 

@@ -58,7 +58,7 @@ MESSAGES = {
     "visualization_msgs",
 }  # fmt: skip
 ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", *MESSAGES}
-ON_A_ROBOT = {"rclpy", *MESSAGES, "numpy", "scipy", "cv2", "yaml", "numba"}
+ON_A_ROBOT = {"rclpy", "launch", "launch_ros", *MESSAGES, "numpy", "scipy", "cv2", "yaml", "numba"}
 
 
 WITHOUT_FILES = {"filtering", "trackers"}

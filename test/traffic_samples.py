@@ -29,6 +29,8 @@ MODES = {
     "O": TrackMode.OCCLUDED,
     "L": TrackMode.LOST,
 }
+DRIVE = Drive(0.1, 1.0, 300.0)
+"""Motion of these vehicles."""
 
 
 def vehicle(identity, x, bottom, mode=TrackMode.TRACKING, *, label="car", size=(30.0, 20.0)):
@@ -51,5 +53,5 @@ def vehicle(identity, x, bottom, mode=TrackMode.TRACKING, *, label="car", size=(
 def track(number, left, top=100.0, *, confirmed=False, **facts):
     """Make the track of a vehicle of 40 x 30 px that stands under a far horizon."""
     edges = np.array([left, top, left + 40.0, top + 30.0])
-    state = VehicleState(edges, np.ones(4), -1000.0, Drive(0.1, 1.0, 300.0))
+    state = VehicleState(edges, np.ones(4), -1000.0, DRIVE)
     return Track(number, state, number if confirmed else 0, **facts)

@@ -44,13 +44,13 @@ def parameters_page() -> str:
     every = {spec for spec in owners if spec.name in common}
     shared = {spec: names for spec, names in owners.items() if len(names) > 1 and spec not in every}
     effects = "".join(f"- *{name}*: {words}.\n" for name, words in EFFECTS.items())
-    parts = [_PREFACE, effects, "\n## Every node\n\n", _table(s for s in owners if s in every)]
-    parts += ["\n## Several variants\n\n", _table(shared, map(_listed, shared.values()))]
+    parts = [_PREFACE, effects, "\n## Every node\n", _table(s for s in owners if s in every)]
+    parts += ["\n## Several variants\n", _table(shared, map(_listed, shared.values()))]
     for name, table in tables.items():
         own = [spec for spec in table.values() if spec not in every and spec not in shared]
         elsewhere = [spec.name for spec in table.values() if spec in shared]
         words = f"{NODES[name].summary}." + _also(elsewhere) + _lacking(table, common)
-        parts.append(f"\n## {name}\n\n{words}\n" + (f"\n{_table(own)}" if own else ""))
+        parts.append(f"\n## {name}\n{words}\n" + (f"\n{_table(own)}" if own else ""))
     return "".join(parts)
 
 

@@ -26,22 +26,40 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from vehicle_pf_tracker.core.box import Box
     from vehicle_pf_tracker.core.errors import InputError
+    from vehicle_pf_tracker.offline.library import Estimates, track
+    from vehicle_pf_tracker.offline.track_tables import read_counts, read_tracks
+    from vehicle_pf_tracker.offline.traffic_library import TrafficTracker
     from vehicle_pf_tracker.recordings.source import open_source
     from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
     from vehicle_pf_tracker.trackers.registry import make_tracker
-    from vehicle_pf_tracker.trackers.traffic.library import TrafficTracker
 
 __version__: str
-__all__ = ["Box", "Estimate", "InputError", "Mode", "TrafficTracker", "make_tracker", "open_source"]
+__all__ = [
+    "Box",
+    "Estimate",
+    "Estimates",
+    "InputError",
+    "Mode",
+    "TrafficTracker",
+    "make_tracker",
+    "open_source",
+    "read_counts",
+    "read_tracks",
+    "track",
+]
 
 _HOMES = {
     "Box": "core.box",
     "Estimate": "trackers.estimate",
+    "Estimates": "offline.library",
     "InputError": "core.errors",
     "Mode": "trackers.estimate",
-    "TrafficTracker": "trackers.traffic.library",
+    "TrafficTracker": "offline.traffic_library",
     "make_tracker": "trackers.registry",
     "open_source": "recordings.source",
+    "read_counts": "offline.track_tables",
+    "read_tracks": "offline.track_tables",
+    "track": "offline.library",
 }
 
 

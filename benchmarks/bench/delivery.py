@@ -28,7 +28,9 @@ class Delivery:
     sent, lost : int
         Images that were published, and those that no estimate was given for.
     cpu_ms : float
-        CPU of a node's process for each image.
+        CPU of all processes for each image.
+    memory_mb : float
+        Resident memory of all processes, what they share counted once.
     """
 
     name: str
@@ -37,3 +39,4 @@ class Delivery:
     sent: int
     lost: int
     cpu_ms: float
+    memory_mb: float

@@ -16,43 +16,11 @@
 
 from __future__ import annotations
 
-import itertools
-
 from matplotlib.figure import Figure
 
 from benchmarks.bench.results import Results
 from benchmarks.bench.targets import STEPS
 from vehicle_pf_tracker.evaluation.plots import STYLES
-
-_ROUTES = {"kernel": "numba", "kernel-opencv": "without numba"}
-
-
-def kernels_figure(results: Results) -> Figure:
-    """Draw how many times faster than naive the 512-bin similarity is, over the particles."""
-    series: dict[str, list[tuple[int, float]]] = {}
-    for case in results.cases:
-        words = case.name.split("/")
-        if words[1] == "joint512" and words[3] == "vga":
-            line = f"{_ROUTES[words[0]]}, {words[2]}"
-            series.setdefault(line, []).append((int(words[4].removeprefix("n")), case.ratio))
-    figure = Figure(figsize=(7, 4), layout="constrained")
-    axes = figure.add_subplot()
-    for (name, points), style in zip(series.items(), itertools.cycle(STYLES), strict=False):
-        axes.plot(
-            *zip(*sorted(points), strict=True),
-            color=style.colour,
-            linestyle=style.line,
-            marker=style.marker,
-            label=name,
-        )
-    axes.axhline(1, color="0.35", lw=0.8)
-    axes.set(xscale="log", yscale="log", xlabel="particles", ylabel="times faster than naive")
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.grid(color="0.9", lw=0.6)
-    if series:
-        axes.legend(frameon=False)
-    return figure
 
 
 def steps_figure(results: Results) -> Figure:

@@ -18,6 +18,8 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -29,7 +31,14 @@ from benchmarks.bench.case import Case
 from benchmarks.bench.delivery import Delivery
 from benchmarks.bench.effort import Effort
 from benchmarks.bench.memory import MemoryCase
-from benchmarks.bench.processes import NodeProcess, StepMeter, floor_words, tracker_words
+from benchmarks.bench.processes import (
+    NodeProcess,
+    StepMeter,
+    container_words,
+    floor_words,
+    tracker_words,
+)
+from benchmarks.bench.resident import proportional_mb
 
 RATE = 30.0
 FLEET_RATE = 15.0
@@ -96,23 +105,43 @@ def _alternate(
 def fleet(wanted: Callable[[str], bool], effort: Effort) -> list[Delivery]:
     """Let some nodes of ``apf`` follow at once, each with a camera of its own; reliable, 10.
 
+    They run in a process each, and all in one.
+
     Raises
     ------
     InputError
         If a node does not start or answer.
     """
-    name = f"fleet/apf/{effort.fleet_nodes}x640x480"
-    if not wanted(name):
-        return []
+    count = effort.fleet_nodes
+    images = [f"/bench/camera_{number}" for number in range(count)]
+    reliable = [f"qos_overrides.{one}.subscription.reliability:=reliable" for one in images]
+    options = [word for one in reliable for word in ("-p", one)]
+    found = []
+    if wanted(name := f"fleet/apf/{count}x640x480"):
+        answers = [f"/tracker_{number}/position" for number in range(count)]
+        processes = [
+            [
+                *tracker_words("apf", image, queue_depth=10),
+                *("-r", f"__node:=tracker_{number}"),
+                *options[2 * number : 2 * number + 2],
+            ]
+            for number, image in enumerate(images)
+        ]
+        found.append(_delivery(name, dict(zip(images, answers, strict=True)), processes, effort))
+    if wanted(name := f"fleet/container/{count}x640x480"):
+        answers = [f"/camera_{number}/apf_tracker/position" for number in range(count)]
+        with TemporaryDirectory() as folder:
+            words = [*container_words("apf", images, Path(folder, "cameras.yaml")), *options]
+            topics = dict(zip(images, answers, strict=True))
+            found.append(_delivery(name, topics, [words], effort))
+    return found
+
+
+def _delivery(
+    name: str, topics: dict[str, str], processes: list[list[str]], effort: Effort
+) -> Delivery:
     with contextlib.ExitStack() as stack:
-        topics, nodes = {}, []
-        for number in range(effort.fleet_nodes):
-            image, own = f"/bench/camera_{number}", f"tracker_{number}"
-            words = tracker_words("apf", image, queue_depth=10)
-            words += ["-r", f"__node:={own}"]
-            words += ["-p", f"qos_overrides.{image}.subscription.reliability:=reliable"]
-            nodes.append(stack.enter_context(NodeProcess(words)))
-            topics[image] = f"/{own}/position"
+        nodes = [stack.enter_context(NodeProcess(words)) for words in processes]
         camera = stack.enter_context(Camera(topics))
         camera.wait()
         sent, answered = dict(camera.sent), dict(camera.answered)
@@ -121,4 +150,5 @@ def fleet(wanted: Callable[[str], bool], effort: Effort) -> list[Delivery]:
         cpu = sum(node.cpu_seconds for node in nodes) - before
         total = sum(camera.sent.values()) - sum(sent.values())
         lost = total - (sum(camera.answered.values()) - sum(answered.values()))
-    return [Delivery(name, effort.fleet_nodes, FLEET_RATE, total, lost, cpu / total * 1e3)]
+        memory = sum(proportional_mb(node.pid) for node in nodes)
+    return Delivery(name, len(topics), FLEET_RATE, total, lost, cpu / total * 1e3, memory)

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from benchmarks.bench.case import Case
-from benchmarks.bench.figures import kernels_figure, steps_figure
+from benchmarks.bench.figures import steps_figure
 from benchmarks.bench.results import Results
 from benchmarks.bench.targets import TARGETS, Target
 from benchmarks.bench.turns import BLOCK
@@ -39,7 +39,6 @@ interquartile range; above 1 ours is cheaper. Ratios carry over to other machine
 `make bench` writes this page; `bench.json` has all cases, `targets.md` the speed targets.
 """
 _STEPS = f"""## One frame's step
-
 One vehicle of 40x30 px drives through 640x480 images. Each tracker follows it through {BLOCK}
 frames at full speed, then the next one takes its turn. All run with their defaults, OpenCV's
 trackers in a process of their own with one thread. [fusion.md](fusion.md) has the cost of `fusion`
@@ -48,20 +47,10 @@ on real video.
 ![Times faster than CSRT, by variant]({IMAGES}/steps.svg)
 """
 _COSTS = """## Cost of more particles, larger windows and images, more trackers
-
 The default is 200 particles, a window of 41x31 px, 640x480 images and one tracker. Ratio to it,
 and the time of one tracker's step.
 """
-_KERNELS = f"""## Windows measured at once
-
-The baseline measures each particle on its own: one crop, one `cv2.calcHist` of 8x8x8 bins (or the
-three features of `mfpf`) and one coefficient. `kernel` runs with numba, `kernel-opencv` without;
-`1080p-over-vga` compares image sizes.
-
-![Times faster than the baseline, by particles]({IMAGES}/kernels.svg)
-"""
 _NODES = """## The node
-
 The baseline is a node that takes the image and publishes a point, with rclpy's own executor.
 Images of 640x480 come at 30 Hz from another process. `without_step` leaves out the tracker's steps,
 `all_heard` has subscribers to every output. Caches are cold between two images, so a step takes
@@ -79,7 +68,6 @@ def write(results: Results, folder: Path) -> None:
     """Write the page and its figures below `folder`."""
     images = folder / IMAGES
     images.mkdir(parents=True, exist_ok=True)
-    save(kernels_figure(results), images / "kernels.svg")
     save(steps_figure(results), images / "steps.svg")
     (folder / PAGE).write_text(page(results), encoding="utf-8")
 
@@ -94,8 +82,6 @@ def page(results: Results) -> str:
         _steps(results),
         _COSTS,
         _pivot(_costs(results), "change"),
-        _KERNELS,
-        _pivot(_kernels(results), "case"),
         _NODES,
         _cases(results, "node/", "startup/"),
         _deliveries(results),
@@ -142,16 +128,6 @@ def targets_table(results: Results, targets: Iterable[Target]) -> str:
 
 _Cells: TypeAlias = Mapping[str, Mapping[str, Case]]
 """Cases by the row and by the column of a table."""
-
-
-def _kernels(results: Results) -> _Cells:
-    """Cases by route and count of particles; the smaller image stands for both."""
-    cells: dict[str, dict[str, Case]] = {}
-    for case in results.cases:
-        row, _, count = case.name.rpartition("/n")
-        if row.startswith("kernel") and not row.endswith("/1080p"):
-            cells.setdefault(f"`{row}`", {})[f"{count} particles"] = case
-    return cells
 
 
 def _costs(results: Results) -> _Cells:
@@ -216,11 +192,14 @@ def _steps(results: Results) -> str:
 
 def _deliveries(results: Results) -> str:
     lines = [
-        f"`{one.name}`, a camera for each node: {one.sent} images at {one.rate_hz:g} Hz each, "
-        f"{one.lost} lost, {one.cpu_ms:.3g} ms of CPU per image."
+        f"- `{one.name}`: {one.sent} images at {one.rate_hz:g} Hz each, {one.lost} lost, "
+        f"{one.cpu_ms:.3g} ms of CPU per image, {one.memory_mb:.0f} MB in all."
         for one in results.deliveries
     ]
-    return "\n".join(lines) + "\n"
+    head = (
+        "Several nodes, each with a camera, in processes of their own and in one (`container`):\n"
+    )
+    return "\n".join([head, *lines]) + "\n"
 
 
 def _memory(results: Results) -> str:

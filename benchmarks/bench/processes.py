@@ -24,6 +24,8 @@ import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import yaml
+
 from benchmarks.bench.material import drive
 from benchmarks.bench.metered_node import METER
 from benchmarks.bench.resident import resident_mb
@@ -32,6 +34,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.processes import wait_or_kill
 
 _READY = "ready:"
+_SIDES = ("x", "y", "width", "height")
 
 
 class NodeProcess:
@@ -134,11 +137,21 @@ def tracker_words(
         words = ["-m", "benchmarks.bench.metered_node", meter.path, variant]
     box = drive().boxes[0]
     values: dict[str, object] = {
-        "target.x": float(box.x),
-        "target.y": float(box.y),
-        "target.width": float(box.width),
-        "target.height": float(box.height),
+        **{f"target.{name}": float(getattr(box, name)) for name in _SIDES},
         **{name.replace("__", "."): value for name, value in parameters.items()},
     }
     given = [word for name, value in values.items() for word in ("-p", f"{name}:={value}")]
     return [*words, "--ros-args", "-r", f"image:={image}", *given]
+
+
+def container_words(variant: str, images: Sequence[str], path: Path) -> list[str]:
+    """Words that run a node of `variant` for each topic, all in one process; writes `path`."""
+    box = drive().boxes[0]
+    target = [float(getattr(box, name)) for name in _SIDES]
+    entries = {
+        image.rpartition("/")[2]: {"variant": variant, "topic": image, "target": [*target]}
+        for image in images
+    }
+    path.write_text(yaml.safe_dump({"cameras": entries}), encoding="utf-8")
+    code = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('vehicle'))"
+    return ["-c", code, "--cameras", str(path), "--ros-args", "-p", "queue_depth:=10"]

@@ -25,8 +25,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.kernels.choice import load_kernels
-from vehicle_pf_tracker.image.kernels.interface import Kernels
+from vehicle_pf_tracker.image.kernels.interface import Kernels, load_kernels
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
 from vehicle_pf_tracker.image.window import Positions, Window

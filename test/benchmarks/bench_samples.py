@@ -38,6 +38,6 @@ def results():
             Case("cost/particles/mfpf/n50", 0.3, 1.2, 4.0, 0.2),
         ],
         memory=[MemoryCase("memory/node/apf", 240.0, 76.0)],
-        deliveries=[Delivery("fleet/apf/8x640x480", 8, 15.0, 3600, 2, 1.9)],
+        deliveries=[Delivery("fleet/apf/8x640x480", 8, 15.0, 3600, 2, 1.9, 900.0)],
         on_target={"apf": 1.0, "csrt": 0.99, "kcf": 0.5},
     )

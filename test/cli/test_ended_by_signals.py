@@ -91,8 +91,9 @@ def test_a_video_that_is_not_done_leaves_nothing(tmp_path):
     assert end_in_the_middle(tmp_path, signal.SIGTERM, "synth", "highway", "a.mp4") == []
 
 
-def test_an_import_that_is_not_done_leaves_nothing(tmp_path, clip):
-    assert end_in_the_middle(tmp_path, signal.SIGTERM, "import", str(clip), "rec") == []
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_an_import_that_is_not_done_leaves_nothing(tmp_path, clip, number):
+    assert end_in_the_middle(tmp_path, number, "import", str(clip), "rec") == []
 
 
 STUCK = """
@@ -107,8 +108,8 @@ class Stuck:
             open("stuck", "w").close()
             ctypes.CDLL(None).sleep(10_000)
         return Detections.make([[100, 3.0 * call, 40, 30]], [0.9])
-from vehicle_pf_tracker.cli import traffic
-traffic.detector_maker = lambda parameters: Stuck
+from vehicle_pf_tracker.offline import counted_vehicles
+counted_vehicles.detector_maker = lambda *_: Stuck
 """
 
 
@@ -120,6 +121,41 @@ def test_a_network_that_never_returns_is_left_with_what_was_tracked(tmp_path, cl
     told = signalled(tmp_path, number, has_begun, *words, code=STUCK + CODE, status=128 + number)
     assert "a signal ended the run after 40 of " in told
     with (tmp_path / "out" / "tracks.csv").open() as file:
+        assert max(int(row["frame"]) for row in csv.DictReader(file)) == 40
+    assert (tmp_path / "out" / "run.json").is_file()
+
+
+STALLED = """
+import ctypes, itertools
+import cv2, numpy
+class Stalled:
+    counts = itertools.count(1)
+    def __init__(self, *_): pass
+    def isOpened(self): return True
+    def get(self, _): return 0.0
+    def release(self): pass
+    def read(self):
+        count = next(self.counts)
+        if count == 41:
+            open("stuck", "w").close()
+            ctypes.CDLL(None).sleep(10_000)
+        image = numpy.random.default_rng(0).integers(90, 130, (120, 160, 3), numpy.uint8)
+        image[40:60, 2 * count : 2 * count + 30] = (30, 60, 210)
+        return True, image
+cv2.VideoCapture = Stalled
+"""
+
+
+@pytest.mark.parametrize(
+    ("words", "table"),
+    [(["run", "0", "--target", "2,40,30,20"], "estimates.csv"), (["traffic", "0"], "tracks.csv")],
+)
+def test_a_camera_that_stalls_is_left_with_what_was_tracked(tmp_path, words, table):
+    stuck = tmp_path / "stuck"
+    signalled(
+        tmp_path, signal.SIGINT, stuck.exists, *words, "-o", "out", code=STALLED + CODE, status=0
+    )
+    with (tmp_path / "out" / table).open() as file:
         assert max(int(row["frame"]) for row in csv.DictReader(file)) == 40
     assert (tmp_path / "out" / "run.json").is_file()
 

@@ -195,6 +195,31 @@ def test_folders_of_images_are_evaluated_as_their_imports(tmp_path):
     assert scores("out", tmp_path / "frames")["b"] != found["b"]
 
 
+def test_a_vehicle_of_several_is_chosen_by_its_number(tmp_path, capsys):
+    frames = frame_folder(tmp_path / "frames")
+    rows = (frames / "groundtruth.csv").read_text().splitlines()[1:]
+    (frames / "groundtruth.csv").unlink()
+    (frames / "gt").mkdir()
+    boxes = [row.split(",")[:5] for row in rows]
+    (frames / "gt" / "gt.txt").write_text(
+        "\n".join(
+            f"{number},{vehicle},{x},{float(y) + vehicle},{w},{h},1,1,1"
+            for number, x, y, w, h in boxes
+            for vehicle in (4, 7)
+        )
+    )
+    assert evaluate(tmp_path / "out", frames, "--variants", "ms") == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith("gt.txt has the truth of 2 vehicles; choose one with --id: 4, 7")
+    assert evaluate(tmp_path / "out", frames, "--variants", "ms", "--id", 7) == 0
+    (entry,) = json.loads((tmp_path / "out" / "evaluation.json").read_text())["recordings"]
+    assert entry["identity"] == 7
+    truth = (tmp_path / "out" / "recordings" / "frames" / "truth.csv").read_text().splitlines()
+    assert float(truth[1].split(",")[3]) == 24 + 7 - 1  # the file counts pixels from 1
+    assert evaluate(tmp_path / "two", "--traffic", frames, "--id", 7) == 2
+    assert "--id does not go with --traffic" in capsys.readouterr().err
+
+
 def test_recordings_of_one_name_are_told_apart(tmp_path):
     for name in ("a", "b"):
         (tmp_path / name).mkdir()

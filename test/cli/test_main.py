@@ -12,10 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
+import importlib
 import os
 import re
 import subprocess
 import sys
+from dataclasses import fields
 
 import pytest
 
@@ -58,6 +60,28 @@ def test_a_parser_of_all_verbs_has_their_options():
     parser = command.make_parser()
     assert parser.parse_args(["import", "a", "b", "--fps", "5"]).fps == 5.0
     assert parser.parse_args(["road", "calibrate", "a"]).action == "calibrate"
+
+
+@pytest.mark.parametrize(
+    ("verb", "field", "name", "words"),
+    [
+        ("params", "variant", "traffic", ["nope"]),
+        ("run", "variant", "fusion", ["v.mp4", "--variant", "nope"]),
+        ("synth", "scene", "bridge", ["nope", "out"]),
+    ],
+)
+def test_a_shell_completes_names_and_the_verb_refuses_others(capsys, verb, field, name, words):
+    """A program that writes completions reads the choices of the parser."""
+    module = importlib.import_module(f"vehicle_pf_tracker.cli.{verb}")
+    declared = {
+        one.name: one.metadata["settings"] for one in fields(module.Request) if one.metadata
+    }
+    assert name in list(declared[field]["choices"])
+    words = {"params": ["nope"], "run": ["v.mp4", "--variant", "nope"], "synth": ["nope", "o"]}[
+        verb
+    ]
+    assert command.main([verb, *words]) == 1
+    assert "'nope'" in capsys.readouterr().err
 
 
 def test_help_loads_nothing_heavy():

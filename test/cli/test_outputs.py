@@ -14,6 +14,8 @@
 
 """Outputs never take away an input, replace nothing unasked, and belong to one command."""
 
+import contextlib
+import errno
 import os
 import subprocess
 import sys
@@ -24,6 +26,7 @@ from small_recordings import COUNT, TARGET, frame_folder, frame_of, record, writ
 from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.tracking_options import parse_target
+from vehicle_pf_tracker.offline import pictures
 
 HOLD = """
 import sys
@@ -204,3 +207,48 @@ def test_a_lock_ends_with_its_process(hold, here):
     assert (here / "out" / ".lock").exists()
     assert main(ONCE_MORE["run"]) == 0
     assert not (here / "out" / ".lock").exists()
+
+
+@pytest.mark.parametrize("good", [1, 4, COUNT], ids=["first", "middle", "end"])
+@pytest.mark.parametrize(
+    ("words", "table"),
+    [(("run", "--target", TARGET), "estimates.csv"), (("traffic",), "tracks.csv")],
+)
+def test_a_disk_that_fills_costs_the_video_and_nothing_else(
+    here, monkeypatch, capsys, words, table, good
+):
+    @contextlib.contextmanager
+    def filling(path, size, rate):
+        path.write_bytes(b"begun")
+        count = 0
+
+        def write(frame, at):
+            nonlocal count
+            count += 1
+            if count > good:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+        yield write
+        write(None, 0)
+
+    monkeypatch.setattr(pictures, "_h264" if pictures.has_encoder() else "_mpeg4", filling)
+    verb, *options = words
+    assert main([verb, "clip.mp4", *options, "-o", "whole"]) == 0
+    assert main([verb, "clip.mp4", *options, "-o", "out", "--video", "full/v.mp4"]) == 1
+    told = capsys.readouterr()
+    assert "cannot write full/v.mp4: No space left on device; all else is written" in told.err
+    assert "the video is" not in told.out
+    assert not (here / "full").exists()
+    kept, whole = ((here / name / table).read_text().splitlines() for name in ("out", "whole"))
+    assert len(kept) == len(whole)
+    assert (here / "out" / "run.json").is_file()
+
+
+def test_a_disk_that_fills_leaves_no_truth_of_a_video_that_is_not_there(here, monkeypatch, capsys):
+    def full(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(pictures, "_h264" if pictures.has_encoder() else "_mpeg4", full)
+    assert main(["synth", "bar", "full/bar.mp4"]) == 1
+    assert "cannot write full/bar.mp4: No space left on device" in capsys.readouterr().err
+    assert not (here / "full").exists()

@@ -18,7 +18,7 @@ from small_recordings import record
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.parameters.files import read_yaml
-from vehicle_pf_tracker.road.calibration import parse_pairs
+from vehicle_pf_tracker.parameters.road import parse_pairs
 
 PAIRS = ["0,0=0,0", "90,0=9,0", "90,60=9,6", "0,60=0,6"]
 
@@ -68,13 +68,20 @@ def test_pairs_from_a_file(bag, tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "pairs: 3", "pairs: [{pixel: [1, 2]}]", "pairs: [", "a: &a *a"]
+    ("text", "sentence"),
+    [
+        ("", "holds no pairs; it must read pairs:"),
+        ("pairs: 3", "holds no pairs; it must read pairs:"),
+        ("pairs: [{pixel: [1, 2]}]", "holds no pairs; it must read pairs:"),
+        ("pairs: [", "is not valid YAML"),
+        ("a: &a *a", "is not valid YAML"),
+    ],
 )
-def test_files_without_pairs(bag, tmp_path, text, capsys):
+def test_files_without_pairs(bag, tmp_path, text, sentence, capsys):
     path = tmp_path / "pairs.yaml"
     path.write_text(text)
     assert main(["road", "calibrate", bag, "--pairs", str(path)]) == 1
-    assert "holds no pairs; it must read pairs:" in capsys.readouterr().err
+    assert sentence in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

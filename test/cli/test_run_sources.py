@@ -32,7 +32,7 @@ from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline import pictures
 from vehicle_pf_tracker.offline.estimates import read_estimates
-from vehicle_pf_tracker.recordings.cdr import deserialize
+from vehicle_pf_tracker.recordings.messages import deserialize
 from vehicle_pf_tracker.recordings.reader import Recording
 
 
@@ -106,7 +106,7 @@ def test_a_part_keeps_the_numbers_of_its_frames(run, video, tmp_path, end, last)
         (("--fps", "0"), "the frame rate (fps) in --fps must be a number from"),
         (("--video", "out.gif", "--target", TARGET), "must end in .mp4"),
         (("--targets", "none.yaml"), "cannot read the targets none.yaml"),
-        ((), "has no truth to start on"),
+        ((), "draw a box around the vehicle with `vehicle-pf-tracker pick"),
     ],
 )
 def test_mistakes_are_told_in_one_line(run, video, capsys, words, told):
@@ -141,7 +141,7 @@ def test_a_target_is_corrected_in_the_middle(run, video, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "targets", "targets: 3", "targets: [{}]", "targets: [{box: 3}]", "a: [", "[1]"]
+    "text", ["", "targets", "targets: 3", "targets: [{}]", "targets: [{box: 3}]", "a: [1]", "[1]"]
 )
 def test_a_broken_file_of_targets_is_named(run, video, tmp_path, capsys, text):
     path = tmp_path / "targets.yaml"
@@ -156,6 +156,21 @@ def test_doubtful_targets_are_followed_with_a_notice(run, tmp_path, capsys):
     error = capsys.readouterr().err
     assert "the target 8,24,3,2 is doubtful: it is only 3 x 2 px large" in error
     assert "the target 0,0,90,60 is doubtful: it covers 88% of the image" in error
+
+
+def test_a_target_that_stands_while_others_drive_is_a_notice(run, tmp_path, capsys):
+    def with_a_sign(index):
+        frame = frame_of(index)
+        frame[42:58, 70:90] = (40, 160, 60)
+        return frame
+
+    video = write_video(tmp_path / "street.avi", map(with_a_sign, range(COUNT)))
+    assert run(video, "--fps", "2", "--target", f"car:{TARGET}", "--target", "70,42,20,16") == 0
+    notes = [line for line in capsys.readouterr().err.splitlines() if "has not moved" in line]
+    assert notes == [
+        "vehicle-pf-tracker: note: 1: frame 11: the target has not moved for 5 s while other "
+        "things did: it stands, or it is no vehicle"
+    ]
 
 
 def test_a_run_leaves_nothing_of_the_one_before(run, video, tmp_path):

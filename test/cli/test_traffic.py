@@ -21,15 +21,19 @@ import os
 import re
 import signal
 import sys
+import threading
+import time
 from pathlib import Path
+from urllib.request import ProxyHandler, build_opener
 
 import cv2
 import numpy as np
 import pytest
+from small_recordings import write_video
 
-from vehicle_pf_tracker.cli import traffic
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.offline import counted_vehicles
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
@@ -87,7 +91,7 @@ class Follower:
 @pytest.fixture(autouse=True)
 def _tracker(monkeypatch, request):
     if "real" not in request.fixturenames:
-        monkeypatch.setattr(traffic, "TrafficTracker", Follower)
+        monkeypatch.setattr(counted_vehicles, "TrafficTracker", Follower)
 
 
 @pytest.fixture
@@ -132,7 +136,7 @@ def table(path):
 def test_tracks_of_every_frame_are_written(run):
     out = run()
     assert {path.name for path in out.iterdir()} == {
-        "tracks.csv", "tracks.txt", "run.json", "summary.png",
+        "tracks.csv", "tracks.txt", "run.json", "summary.png", "heat.png",
     }  # fmt: skip
     rows = table(out / "tracks.csv")
     assert len(rows) == 2 * COUNT
@@ -230,6 +234,40 @@ def test_motion_is_found_without_any_detections(tmp_path, real, capsys):
     assert float(last["x"]) == pytest.approx(2 * 39 + 18, abs=4)
 
 
+def still(count):
+    return [np.full((96, 128, 3), 90, np.uint8)] * count
+
+
+def cuts(count):
+    """A scene that is another one every ten frames."""
+    scenes = np.random.default_rng(0).integers(0, 255, (9, 12, 16, 3), np.uint8)
+    large = [cv2.resize(one, (128, 96), interpolation=cv2.INTER_NEAREST) for one in scenes]
+    return [large[index // 10] for index in range(count)]
+
+
+@pytest.mark.parametrize(
+    ("frames", "detection", "roi", "why"),
+    [
+        (still(10), "", "", "too few to learn what stands"),
+        (still(40), "", "", "nothing moves in them"),
+        (cuts(90), "", "", "the camera moves"),
+        (still(10), "99,-1,20,20,16,12,0.9", "", "det.txt has no box in them"),
+        (still(10), "5,-1,20,20,16,12,0.9", "", "detections (1) repeat too rarely"),
+        (still(10), "5,-1,20,20,16,12,0.9", "[[60, 0], [90, 0], [90, 90]]", "all 1 detections are"),
+    ],
+)
+def test_a_clip_without_vehicles_says_why(tmp_path, real, capsys, frames, detection, roi, why):
+    video = write_video(tmp_path / "clip.avi", frames)
+    (tmp_path / "det.txt").write_text(detection)
+    (tmp_path / "roi.yaml").write_text(f"roi: {{near: {{inside: {roi}}}}}")
+    words = ["--detections", str(tmp_path / "det.txt")] if detection else []
+    words += ["--lines", str(tmp_path / "roi.yaml")] if roi else []
+    assert main(["traffic", str(video), "-o", str(tmp_path / "out"), *words]) == 0
+    said = capsys.readouterr().out.splitlines()[0]
+    assert said.startswith(f"no vehicle was found in {len(frames)} frames: ")
+    assert why in said
+
+
 def test_a_run_that_fails_keeps_the_results_before(run, capsys):
     out = run()
     before = {path.name: path.read_bytes() for path in out.iterdir()}
@@ -272,6 +310,7 @@ def test_targets_given_by_hand_are_followed_from_their_frame(run):
         (["--start", "99"], True, "no frame lies between", 1),
         (["--lines", "none.yaml"], True, "cannot read the counting lines none.yaml", 1),
         (["--detector", "nothing"], False, "invalid choice", 2),
+        (["--serve", "70000"], True, "'70000' is not a port, 0 to 65535", 2),
     ],
 )  # fmt: skip
 def test_a_mistake_is_one_sentence(run, tmp_path, capsys, words, detections, said, status):
@@ -283,10 +322,46 @@ def test_a_mistake_is_one_sentence(run, tmp_path, capsys, words, detections, sai
 
 
 def test_without_scipy_the_extra_is_named(run, monkeypatch, capsys):
-    monkeypatch.setitem(sys.modules, "scipy", None)
+    monkeypatch.setitem(sys.modules, "scipy.optimize", None)
     out = run(status=1)
     assert "pip install 'vehicle_pf_tracker[video]'" in capsys.readouterr().err
     assert not out.exists()
+
+
+def test_a_page_shows_picture_and_counts_meanwhile(run, monkeypatch, tmp_path, capsys):
+    answers = []
+
+    class Watched(Follower):
+        """Has somebody ask for the picture while the third image is followed."""
+
+        steps = 0
+
+        def step(self, frame, detections=None, elapsed=1.0):
+            self.steps += 1
+            if self.steps == 3:
+                (url,) = re.findall(
+                    r"open (http://127\.0\.0\.1:\d+/\S+/) in", capsys.readouterr().out
+                )
+                self.asking = threading.Thread(target=self.ask, args=[url])
+                self.asking.start()
+                time.sleep(0.5)
+            return super().step(frame, detections, elapsed)
+
+        def ask(self, url):
+            get = build_opener(ProxyHandler({})).open
+            answers.extend(get(url + name).read() for name in ("picture.jpg", "counts.json"))
+
+    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Watched)
+    run("--serve", "--lines", tmp_path / "lines.yaml")
+    wait_until = time.monotonic() + 30
+    while len(answers) < 2 and time.monotonic() < wait_until:
+        time.sleep(0.05)
+    picture, facts = answers
+    assert picture.startswith(b"\xff\xd8")
+    assert json.loads(facts) == {
+        "vehicles": 2, "yard: inside": 2, "exit: down": 0, "exit: up": 0,
+        "yard: entry": 0, "yard: exit": 0,
+    }  # fmt: skip
 
 
 def test_an_interrupt_keeps_what_was_written(run, monkeypatch, capsys):
@@ -299,7 +374,7 @@ def test_an_interrupt_keeps_what_was_written(run, monkeypatch, capsys):
                 os.kill(os.getpid(), signal.SIGINT)
             return super().step(frame, detections, elapsed)
 
-    monkeypatch.setattr(traffic, "TrafficTracker", Interrupted)
+    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Interrupted)
     out = run(status=130)
     assert {row["frame"] for row in table(out / "tracks.csv")} == set("123456789")
     assert (out / "summary.png").exists()
@@ -317,7 +392,7 @@ def test_an_unexpected_error_costs_its_frame_alone(run, monkeypatch):
                 raise ZeroDivisionError("by zero")
             return super().step(frame, detections, elapsed)
 
-    monkeypatch.setattr(traffic, "TrafficTracker", Failing)
+    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Failing)
     out = run()
     frames = {int(row["frame"]) for row in table(out / "tracks.csv")}
     assert frames == {*range(1, 21)} - {9}
@@ -337,13 +412,3 @@ def test_the_lines_of_the_page_are_counted_at(run, tmp_path):
     counts = table(run("--lines", tmp_path / "page.yaml") / "counts.csv")
     # The first vehicle begins below the line, and drives past its end at x = 40.
     assert [(row["place"], row["direction"], row["id"]) for row in counts] == [("exit", "in", "2")]
-
-
-def test_the_example_of_the_page_runs(capsys):
-    rng = np.random.default_rng(0)
-    frame = rng.integers(90, 120, (240, 320, 3), np.uint8)
-    camera = [(frame, [[60, 3.0 * index, 30, 20]], [0.9], ["car"]) for index in range(40)]
-    exec(compile(block("py"), "traffic.md", "exec"), {"camera": camera})
-    identity, box, mode, _, label = capsys.readouterr().out.splitlines()[-1].split()
-    assert (identity, mode, label) == ("1", "TRACKING", "car")
-    assert list(map(float, box.split(","))) == pytest.approx([60, 117, 30, 20], abs=2)

@@ -21,17 +21,15 @@ from scoring_samples import PERIOD_NS, scored
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.metrics import (
+    curves,
     measure,
-    normalised_precision_curve,
-    precision_curve,
-    success_curve,
 )
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 
 
 def test_precision_by_hand():
-    curve = precision_curve([scored(1, 0), scored(2, 10), scored(3, 10.5), scored(4, 99)])
+    curve = curves([scored(1, 0), scored(2, 10), scored(3, 10.5), scored(4, 99)])["precision"]
     assert curve.shares[[0, 9, 10, 11, 50]].tolist() == [0.25, 0.25, 0.5, 0.75, 0.75]
     # 0.25 at 51 thresholds, 0.25 more at 41, and at 40.
     assert curve.auc == pytest.approx((51 + 41 + 40) * 0.25 / 51)
@@ -39,19 +37,19 @@ def test_precision_by_hand():
 
 def test_success_by_hand():
     # 24 px wide: moved by 12 px a third is shared, and by 24 px nothing.
-    curve = success_curve([scored(1, 0), scored(2, 12), scored(3, 24), scored(4, 0)])
+    curve = curves([scored(1, 0), scored(2, 12), scored(3, 24), scored(4, 0)])["success"]
     assert curve.shares.tolist() == [0.75] * 7 + [0.5] * 13 + [0]
     assert curve.at(0.5) == 0.5
 
 
 def test_an_overlap_equal_to_the_threshold_does_not_pass():
-    assert success_curve([scored(1, 0)]).auc == pytest.approx(20 / 21)
-    assert success_curve([scored(1, 24)]).auc == 0
+    assert curves([scored(1, 0)])["success"].auc == pytest.approx(20 / 21)
+    assert curves([scored(1, 24)])["success"].auc == 0
 
 
 def test_normalised_precision_by_hand():
     # 6 px of 24 are 0.25 widths.
-    curve = normalised_precision_curve([scored(1, 0), scored(2, 6)])
+    curve = curves([scored(1, 0), scored(2, 6)])["normalised"]
     assert curve.shares[[0, 24, 25, 50]].tolist() == [0.5, 0.5, 1, 1]
     metrics = measure(Scores((scored(1, 0), scored(2, 6))))
     assert metrics.normalised_precision_20 == 0.5
@@ -59,7 +57,7 @@ def test_normalised_precision_by_hand():
 
 
 def test_no_frames_no_curves():
-    assert precision_curve([]) is success_curve([]) is normalised_precision_curve([]) is None
+    assert curves([]) == {}
 
 
 # Boxes as files of the benchmark have them, (x, y, width, height) by row, and its formulas.
@@ -102,8 +100,8 @@ def scores_of(estimated, true):
 def test_agrees_with_otb_on_the_same_boxes(boxes):
     scores = scores_of(*boxes)
     success, precision = otb_success(*boxes), otb_precision(*boxes)
-    assert success_curve(scores.counted).shares == pytest.approx(success, abs=1e-9)
-    assert precision_curve(scores.counted).shares == pytest.approx(precision, abs=1e-9)
+    assert curves(scores.counted)["success"].shares == pytest.approx(success, abs=1e-9)
+    assert curves(scores.counted)["precision"].shares == pytest.approx(precision, abs=1e-9)
     metrics = measure(scores)
     assert metrics.success_auc == pytest.approx(np.mean(success), abs=1e-9)
     assert metrics.precision_auc == pytest.approx(np.mean(precision), abs=1e-9)

@@ -12,88 +12,58 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-from pathlib import Path
-
 import pytest
 
-import vehicle_pf_tracker
 from vehicle_pf_tracker.evaluation import result_store
 from vehicle_pf_tracker.evaluation.result_store import source_digest
 
-FILES = {
-    "start.py": "from made.middle import thing\nimport numpy\n",
-    "middle.py": "def f():\n    import made.sub.late\n",
-    "sub/__init__.py": "",
-    "sub/late.py": "X = 1\n",
-    "other.py": "Y = 1\n",
-    "table.py": "from made import other\n",
+COUNTS = {
+    "core/box.py": True,
+    "trackers/base.py": True,
+    "trackers/papers/own.py": True,
+    "trackers/papers/beside.py": True,
+    "trackers/fusion/other.py": False,
+    "cli/verb.py": False,
 }
 
 
 @pytest.fixture
-def root(tmp_path):
-    (tmp_path / "made" / "sub").mkdir(parents=True)
-    for name, text in FILES.items():
-        (tmp_path / "made" / name).write_text(text)
-    return tmp_path
-
-
-def digest(root, *modules):
-    result_store.imported_modules.cache_clear()
+def package(tmp_path, monkeypatch):
+    """A package of a name of its own, since a package that was imported stays."""
+    package = tmp_path / f"made_{tmp_path.name}"
+    for name in (*COUNTS, "__init__.py", "trackers/__init__.py", "trackers/papers/__init__.py"):
+        file = package / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text("X = 1\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(result_store, "_PACKAGE", package)
     source_digest.cache_clear()
-    return source_digest(frozenset(modules), root, "made")
+    yield package
+    source_digest.cache_clear()
 
 
-@pytest.mark.parametrize("name", ["start.py", "middle.py", "sub/late.py"])
-def test_whatever_is_imported_counts_also_late(root, name):
-    before = digest(root, "made.start")
-    file = root / "made" / name
-    file.write_text(FILES[name] + "# changed")
-    assert digest(root, "made.start") != before
-    file.write_text(FILES[name])
-    assert digest(root, "made.start") == before
+@pytest.mark.parametrize(("name", "counts"), COUNTS.items())
+def test_a_key_depends_on_the_code_that_a_run_needs(package, name, counts):
+    own = frozenset({f"{package.name}.trackers.papers.own"})
+    before = source_digest(own)
+    (package / name).write_text("X = 2\n")
+    source_digest.cache_clear()
+    assert (source_digest(own) != before) == counts
 
 
-def test_a_start_in_another_package_counts_with_what_it_imports_from_both(root):
-    (root / "guest").mkdir()
-    (root / "guest" / "cells.py").write_text("from guest import scenes\nimport made.start\n")
-    (root / "guest" / "scenes.py").write_text("S = 1\n")
-    before = digest(root, "guest.cells")
-    for folder, name in (("guest", "scenes.py"), ("made", "middle.py")):
-        file = root / folder / name
-        kept = file.read_text()
-        file.write_text(kept + "# changed")
-        assert digest(root, "guest.cells") != before
-        file.write_text(kept)
+def test_a_start_that_is_not_there_is_an_error(package):
+    with pytest.raises(ModuleNotFoundError, match="gone"):
+        source_digest(frozenset({f"{package.name}.trackers.gone"}))
 
 
-def test_what_is_not_imported_does_not_count(root):
-    before = digest(root, "made.start")
-    (root / "made" / "other.py").write_text("Y = 2\n")
-    assert digest(root, "made.start") == before
-    assert digest(root, "made.start", "made.other") != before
-
-
-def test_a_table_and_what_it_lists_do_not_count(root, monkeypatch):
-    monkeypatch.setattr(result_store, "_TABLES", frozenset({"made.table"}))
-    (root / "made" / "sub" / "late.py").write_text("import made.table\n")
-    before = digest(root, "made.start")
-    for name in ("other.py", "table.py"):
-        (root / "made" / name).write_text("Y = 2\n")
-        assert digest(root, "made.start") == before
-
-
-def test_one_variant_does_not_decide_another():
-    names = [
-        f"vehicle_pf_tracker.trackers.{name}" for name in ("papers.apf", "papers.ms", "session")
-    ]
-    assert len({source_digest(frozenset({name})) for name in names}) == 3
-    ours = frozenset({"vehicle_pf_tracker"})
-    root = Path(vehicle_pf_tracker.__file__).parents[1]
-    found = result_store.imported_modules("vehicle_pf_tracker.trackers.session", root, ours)
-    assert "vehicle_pf_tracker.trackers.registry" in found
-
-
-def test_a_start_that_is_not_there_is_an_error(root):
-    with pytest.raises(ModuleNotFoundError, match=r"made\.gone"):
-        digest(root, "made.gone")
+@pytest.mark.parametrize("name", ["plugged", "plugs.cells"])
+def test_a_plug_in_counts_where_it_is_installed(tmp_path, monkeypatch, name):
+    file = tmp_path.joinpath(*name.split(".")).with_suffix(".py")
+    file.parent.mkdir(exist_ok=True)
+    monkeypatch.syspath_prepend(tmp_path)
+    digests = set()
+    for text in ("X = 1\n", "X = 2\n"):
+        file.write_text(text)
+        source_digest.cache_clear()
+        digests.add(source_digest(frozenset({name})))
+    assert len(digests) == 2

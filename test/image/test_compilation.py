@@ -94,7 +94,7 @@ def test_the_folder_of_ones_choice_is_used(copy, tmp_path):
 
 
 FIRST_START = """
-from vehicle_pf_tracker.image.kernels.choice import load_kernels
+from vehicle_pf_tracker.image.kernels.interface import load_kernels
 load_kernels("numba")
 from vehicle_pf_tracker.image.kernels.numba_windows import window_pixels
 print(len(window_pixels.stats.cache_hits), len(window_pixels.stats.cache_misses))
@@ -130,7 +130,7 @@ def test_a_process_that_compiles_ends_with_the_one_that_started_it(tmp_path):
     (tmp_path / "sleeper.py").write_text(SLEEPER)
     code = (
         "import sys; sys.path.insert(0, '.')\n"
-        "from vehicle_pf_tracker.image.kernels.choice import compile_elsewhere\n"
+        "from vehicle_pf_tracker.image.kernels.interface import compile_elsewhere\n"
         "compile_elsewhere('sleeper')\n"
     )
     parent = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path)

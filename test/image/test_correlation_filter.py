@@ -19,7 +19,7 @@ import pytest
 
 from vehicle_pf_tracker.image import correlation_filter
 from vehicle_pf_tracker.image.correlation_filter import CorrelationFilter, climbed
-from vehicle_pf_tracker.image.kernels.choice import load_kernels
+from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.image.spectra import PartialFourier, shifted
 
 SIDE = 32

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.image.gradient_cells import (
     gradient_cells,
     normalised_cells,
 )
-from vehicle_pf_tracker.image.kernels.choice import load_kernels
+from vehicle_pf_tracker.image.kernels.interface import load_kernels
 
 OPENCV = load_kernels("opencv")
 

@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 from vehicle_pf_tracker.image import kernels
 from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections, direction_bins
-from vehicle_pf_tracker.image.kernels.choice import load_kernels
+from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence
@@ -117,7 +117,7 @@ def test_mean_shift_agrees(numba, data, frame, window, bits):
     positions = data.draw(clouds(frame))
     target = tuple(data.draw(clouds(frame))[0])
     reference = Reference(kernel_histogram(frame, target, window, bits))
-    arguments = JointColour(bits), frame, positions, window, reference
+    arguments = frame, positions, window, reference, bits
     similarities = numba.kernel_similarity(*arguments)
     assert np.abs(similarities - OPENCV.kernel_similarity(*arguments)).max() < 1e-9
     moved = numba.mean_shift(*arguments)
@@ -129,7 +129,7 @@ def test_mean_shift_stays_where_there_is_no_colour_of_the_reference(numba):
     frame = np.zeros((30, 30, 3), np.uint8)
     positions = np.array([[12.3, 9.7], [29.0, 29.0]])
     reference = Reference(np.eye(512)[511])
-    moved = numba.mean_shift(JointColour(3), frame, positions, Window(4, 4), reference)
+    moved = numba.mean_shift(frame, positions, Window(4, 4), reference, 3)
     assert np.array_equal(moved, positions)
 
 

@@ -25,6 +25,7 @@ from vehicle_pf_tracker.image.mean_shift import (
     kernel_similarity,
     mean_shift,
 )
+from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Window
 
 RED, GREEN, BLACK = (255, 0, 0), (0, 255, 0), (0, 0, 0)
@@ -41,7 +42,7 @@ def histogram(**shares):
     made = np.zeros(8)
     for name, share in shares.items():
         made[{"red": RED_BIN, "green": GREEN_BIN, "black": 0}[name]] = share
-    return made
+    return Reference(made)
 
 
 def test_kernel_by_hand():
@@ -87,7 +88,7 @@ def test_many_windows_at_once_are_each_as_alone():
     rng = np.random.default_rng(0)
     frame = rng.integers(0, 256, (40, 60, 3), dtype=np.uint8)
     window, positions = Window(6, 4), rng.uniform([0, 0], [60, 40], (25, 2))
-    reference = kernel_histogram(frame, (30.0, 20.0), window, 2)
+    reference = Reference(kernel_histogram(frame, (30.0, 20.0), window, 2))
     together = mean_shift(frame, positions, window, reference, 2)
     similar = kernel_similarity(frame, positions, window, reference, 2)
     for index, position in enumerate(positions):
@@ -102,7 +103,7 @@ def test_steps_end_on_the_patch():
     frame = np.zeros((60, 80, 3), np.uint8)
     frame[20:31, 30:45] = RED
     window = Window(7, 5)
-    reference = kernel_histogram(frame, (37.5, 25.5), window, 3)
+    reference = Reference(kernel_histogram(frame, (37.5, 25.5), window, 3))
     position = np.array([[30.0, 21.0]])
     for _ in range(15):
         position = mean_shift(frame, position, window, reference, 3)
@@ -119,8 +120,8 @@ def test_positions_stay_in_the_image(start, half_width, half_height, seed):
     rng = np.random.default_rng(seed)
     frame = rng.integers(0, 256, (12, 17, 3), dtype=np.uint8)
     window = Window(half_width, half_height)
-    reference = kernel_histogram(frame, (3.0, 4.0), window, 1)
-    assert reference.sum() == pytest.approx(1.0)
+    reference = Reference(kernel_histogram(frame, (3.0, 4.0), window, 1))
+    assert reference.histogram.sum() == pytest.approx(1.0)
     inside = np.clip(np.array([start]), 0.5, [16.5, 11.5])
     shifted = mean_shift(frame, inside, window, reference, 1)
     assert np.all(shifted >= 0.5 - 1e-9)

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.image.stillness import PATIENCE, Stillness
+from vehicle_pf_tracker.image.target_pixels import PATIENCE, Stillness
 
 RATE = 10
 TARGET = Box(200.0, 100.0, 40.0, 30.0)

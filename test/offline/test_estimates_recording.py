@@ -17,7 +17,7 @@ from drive import drive, truth_of
 
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import run_recording
-from vehicle_pf_tracker.recordings.cdr import deserialize
+from vehicle_pf_tracker.recordings.messages import deserialize
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 

@@ -24,7 +24,12 @@ from vehicle_pf_tracker.offline.estimates_recording import (
     LINE_STRIP,
     ImageAnnotator,
 )
-from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, definition, deserialize, serialize
+from vehicle_pf_tracker.recordings.messages import (
+    IMAGE_ANNOTATIONS,
+    definition,
+    deserialize,
+    serialize,
+)
 
 STAMP = 3_000_000_007
 

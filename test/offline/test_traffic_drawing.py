@@ -19,15 +19,18 @@ import pytest
 from traffic_samples import vehicle
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.offline import traffic_drawing
 from vehicle_pf_tracker.offline.drawing import draw_box
 from vehicle_pf_tracker.offline.traffic_drawing import (
     NEUTRAL,
+    Trails,
     annotated,
     draw_counts,
     draw_vehicle,
     identity_colour,
 )
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan, CountingZone
+from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
@@ -65,6 +68,42 @@ def test_a_lost_vehicle_is_not_drawn():
     assert not drawn(TrackMode.LOST).any()
 
 
+def test_a_trail_is_drawn_behind_a_vehicle_until_it_is_lost():
+    trails, counter = Trails(), Counter(CountingPlan())
+    for index in range(100):
+        estimates = [
+            vehicle(1, 100 + index, 200),
+            vehicle(2, 100 + index, 150, TrackMode.TENTATIVE),
+        ]
+        trails.add(estimates)
+    picture = annotated(BLACK, "", estimates, counter, trails)
+    on_road = picture[200, :180].any(axis=1)
+    assert on_road[145:].all()  # 60 positions, the last at 199
+    assert not on_road[:139].any()
+    assert not picture[150, :180].any()
+    trails.add([vehicle(1, 200, 200, TrackMode.LOST)])
+    assert trails.of == {}
+
+
+def test_a_speed_is_written_where_the_road_is_known(monkeypatch):
+    written = []
+    say = lambda _, words, *rest: written.append(words)  # noqa: E731
+    monkeypatch.setattr(traffic_drawing, "write_words", say)
+    corners = ((0.0, 0.0), (320.0, 0.0), (320.0, 240.0), (0.0, 240.0))
+    pairs = [Pair((x, y), (x / 10, y / 10)) for x, y in corners]
+    for plane, said in (
+        (RoadPlane.of_pairs(pairs, None, margin=0.0, coarsest=1.0), "1 car 36 km/h"),
+        (None, "1 car"),
+    ):
+        counter = Counter(CountingPlan(), plane)
+        for index in range(25):
+            estimates = [vehicle(1, 50 + 4 * index, 200)]  # 4 px in 40 ms are 10 m/s
+            counter.update(estimates, index * 40_000_000)
+        annotated(BLACK, "", estimates, counter)
+        assert said in written
+        written.clear()
+
+
 def test_numbers_stand_above_the_box():
     assert drawn(TrackMode.TRACKING)[105:118, 108:150].any()
 
@@ -86,7 +125,7 @@ def test_colours_of_neighbouring_numbers_differ():
 
 def test_the_frame_stays_as_it_was():
     frame = BLACK.copy()
-    picture = annotated(frame, "0:00.0", [vehicle(1, 160, 200)])
+    picture = annotated(frame, "0:00.0", [vehicle(1, 160, 200)], Counter(CountingPlan()))
     assert picture.any()
     assert not frame.any()
 

@@ -51,7 +51,9 @@ def follow():
     def call(stamps, *, unreadable=(), counter=None, targets=None, **options):
         run = TrafficRun(TrafficSession(TrafficTracker()), counter, **options)
         table, mot = io.StringIO(), io.StringIO()
-        run.follow(stamped(stamps, unreadable), TrackFiles(table, mot, None), targets=targets or {})
+        run.follow_all(
+            stamped(stamps, unreadable), TrackFiles(table, mot, None), targets=targets or {}
+        )
         return run, table.getvalue().splitlines()[1:]
 
     return call

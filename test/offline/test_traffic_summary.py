@@ -14,12 +14,17 @@
 
 """Summary and picture of a run over many vehicles."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, identity_colour
-from vehicle_pf_tracker.offline.traffic_results import TrafficSummary
+from vehicle_pf_tracker.offline.traffic_drawing import identity_colour
+from vehicle_pf_tracker.offline.traffic_pictures import HeatPicture, PathPicture
+from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
+from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
+from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 MODES = {
@@ -28,6 +33,8 @@ MODES = {
     "O": TrackMode.OCCLUDED,
     "L": TrackMode.LOST,
 }
+
+NOWHERE = Counter(CountingPlan())
 
 
 def estimate(identity, mode, box=None, label=""):
@@ -56,15 +63,14 @@ def test_occlusions_survived_are_counted():
 def test_a_vehicle_that_is_never_confirmed_is_none():
     summary = summed("ttttt-----")
     assert summary.vehicles == {}
-    assert summary.sentences() == ["no vehicle was found in 10 frames"]
-    assert summary.to_json()["vehicles"] == 0
+    assert summary.to_json(NOWHERE)["vehicles"] == 0
 
 
 def test_a_late_class_counts():
     summary = TrafficSummary()
     summary.add([estimate(1, "T")], {})
     summary.add([estimate(1, "T", label="bus")], {})
-    assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences()
+    assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences(NOWHERE)
 
 
 def drive(picture, count=30, width=320):
@@ -78,7 +84,7 @@ def drive(picture, count=30, width=320):
 def test_the_picture_has_every_path_in_its_colour(tmp_path):
     picture = PathPicture()
     drive(picture)
-    assert picture.write(tmp_path / "paths.png")
+    picture.write(tmp_path / "paths.png", NOWHERE)
     image = cv2.imread(str(tmp_path / "paths.png"))[:, :, ::-1]
     assert image.shape == (480, 640, 3)
     for k in range(3):
@@ -91,7 +97,7 @@ def test_the_picture_has_every_path_in_its_colour(tmp_path):
 
 
 def test_no_frame_no_picture(tmp_path):
-    assert not PathPicture().write(tmp_path / "paths.png")
+    PathPicture().write(tmp_path / "paths.png", NOWHERE)
     assert not (tmp_path / "paths.png").exists()
 
 
@@ -99,5 +105,23 @@ def test_frames_of_another_size_begin_the_picture_anew(tmp_path):
     picture = PathPicture()
     drive(picture, width=160)
     drive(picture, width=320)
-    assert picture.write(tmp_path / "paths.png")
+    picture.write(tmp_path / "paths.png", NOWHERE)
     assert cv2.imread(str(tmp_path / "paths.png")).shape == (480, 640, 3)
+
+
+def test_the_road_is_blue_where_vehicles_drove_and_red_where_they_stood(tmp_path):
+    heat, ground = HeatPicture(), np.full((240, 320, 3), 90, np.uint8)
+    heat.add(ground[:120], [estimate(9, "T", Box(0, 0, 300, 100))], 0.04)
+    for index in range(50):
+        drives = replace(estimate(1, "T", Box(20 + 4 * index, 60, 20, 20)), velocity=(4.0, 0.0))
+        stands = replace(estimate(2, "O", Box(100, 150, 40, 40)), velocity=(0.1, 0.0))
+        away = [estimate(3, mode, Box(200, 200, 40, 30)) for mode in "tL"]
+        heat.add(ground, [drives, stands, *away], 0.04)
+    heat.write(tmp_path / "heat.png", ground)
+    image = cv2.imread(str(tmp_path / "heat.png"))[:, :, ::-1].astype(int)
+    red, green, blue = image[78, 120]  # the lower part of the box
+    assert blue > green > red
+    red, _, blue = image[185, 120]
+    assert red > blue + 100
+    for row, column in ((62, 120), (155, 120), (225, 220), (5, 310)):
+        assert (image[row, column] == 90).all()  # upper parts, and those that are not there

@@ -86,7 +86,7 @@ def test_every_registered_node_has_an_executable(setup):
     scripts = dict(line.split(" = ") for line in setup["entry_points"]["console_scripts"])
     nodes = {name: target for name, target in scripts.items() if name.endswith("_tracker")}
     assert nodes == {
-        f"{variant}_tracker": "vehicle_pf_tracker.ros.executables:main" for variant in NODES
+        f"{name}_tracker": "vehicle_pf_tracker.ros.executables:main" for name in [*NODES, "vehicle"]
     }
     assert callable(executables.main)
 
@@ -94,7 +94,7 @@ def test_every_registered_node_has_an_executable(setup):
 def test_layouts_of_viewers_are_installed(setup):
     viewers = dict(setup["data_files"])["share/vehicle_pf_tracker/viewers"]
     assert sorted(viewers) == sorted(map(str, Path("viewers").iterdir()))
-    assert len(viewers) == 3
+    assert len(viewers) == 4
 
 
 def test_executables_are_installed_where_ros2_run_looks():

@@ -33,7 +33,8 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[2]
 SHARE = Path("share", "vehicle_pf_tracker")
 EXECUTABLES = {
-    "vehicle-pf-tracker", "bag_replay", "video_source", *(f"{name}_tracker" for name in NODES),
+    "vehicle-pf-tracker", "bag_replay", "video_source", "vehicle_tracker",
+    *(f"{name}_tracker" for name in NODES),
 }  # fmt: skip
 ASK = "import vehicle_pf_tracker; print(vehicle_pf_tracker.__file__)"
 

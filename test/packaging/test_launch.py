@@ -36,7 +36,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros.transport import PROFILE_VARIABLES
-from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.registry import TRAFFIC, plug_ins
 
 TRAFFIC_NAMES = set(Configuration.of(TRAFFIC).specs())
 ROOT = Path(__file__).resolve().parents[2]
@@ -51,7 +51,8 @@ def share(monkeypatch, tmp_path):
     (tmp_path / "share" / "vehicle_pf_tracker").symlink_to(ROOT)
     executables = tmp_path / "lib" / "vehicle_pf_tracker"
     executables.mkdir(parents=True)
-    for name in ("apf_tracker", "pf_tracker", "fusion_tracker", "traffic_tracker", "bag_replay"):
+    variants = ("apf", "pf", "fusion", "traffic", "vehicle")
+    for name in (*(f"{variant}_tracker" for variant in variants), "bag_replay"):
         (executables / name).touch(mode=0o755)
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
     return tmp_path / "share" / "vehicle_pf_tracker"
@@ -254,6 +255,40 @@ def test_cameras_start_a_node_each(tmp_path):
         resolve(context, node)
     assert [node.node_name for node in nodes] == ["/front/pf_tracker", "/rear/fusion_tracker"]
     assert ("image", "/r/image") in nodes[1].expanded_remapping_rules
+
+
+def test_cameras_in_a_container_share_a_process(tmp_path):
+    path = tmp_path / "cameras.yaml"
+    path.write_text("cameras: {front: {topic: /f/image}, rear: {topic: /r/image}}\n")
+    context, (node,) = started("cameras", cameras=str(path), container="true")
+    words = command(context, node)
+    assert words[0].endswith("/vehicle_tracker")
+    assert words[1:] == ["--cameras", str(path)]
+    assert parameters_of(context, node) == {"use_sim_time": False}
+    assert "__node:=" not in str(node.cmd)  # it would rename all of them
+
+
+def test_a_plug_in_has_the_executable_of_any(tmp_path, monkeypatch):
+    info = tmp_path / "own-1.dist-info"
+    info.mkdir()
+    (info / "entry_points.txt").write_text("[vehicle_pf_tracker.variants]\nown = own:OwnTracker\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    plug_ins.cache_clear()
+    context, (node,) = started("tracker", variant="own")
+    assert text(context, node.node_executable) == "vehicle_tracker"
+    assert [text(context, word) for word in node._Node__arguments] == ["--variant", "own"]
+    resolve(context, node)
+    assert node.node_name == "/own_tracker"
+    assert not parameter_files(context, node)
+    plug_ins.cache_clear()
+
+
+def test_a_viewer_is_opened_on_the_node(share):
+    context, nodes = started("traffic", rviz="true", foxglove="true", namespace="gate")
+    packages = [text(context, node.node_package) for node in nodes]
+    assert packages == ["vehicle_pf_tracker", "rviz2", "foxglove_bridge"]
+    layout = text(context, nodes[1]._Node__arguments[1])
+    assert "Value: /gate/traffic_tracker/overlay" in Path(layout).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("is_terminal", [False, True])

@@ -59,9 +59,10 @@ MOST_LINES = 2600
 
 
 def sentences(page: Path) -> list[str]:
-    """Text of a page without blocks of code and tables, split behind full stops."""
+    """Text of a page without blocks of code and tables, split behind stops, titles and pictures."""
     text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.M)
     text = re.sub(r"^\|.*$", "", text, flags=re.MULTILINE)
+    text = re.sub(r"^(#|!\[).*$", ".", text, flags=re.MULTILINE)
     return re.split(r"(?<=[.!?])\s+", text)
 
 

@@ -20,8 +20,9 @@ import re
 from pathlib import Path
 
 import pytest
+import yaml
 
-from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, message_class
+from vehicle_pf_tracker.recordings.messages import IMAGE_ANNOTATIONS, message_class
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 VIEWERS = Path(__file__).parents[2] / "viewers"
@@ -116,3 +117,12 @@ def test_the_perspective_configures_plugins_that_it_starts():
     for path in plot["topics"]:
         topic = "/".join(path.split("/")[:3])
         assert_is_number_or_word(topic, path.split("/")[3:])
+
+
+def test_rviz_shows_topics_that_exist():
+    config = yaml.safe_load((VIEWERS / "tracker.rviz").read_text())
+    displays = {
+        one["Class"].rpartition("/")[2]: one["Topic"]["Value"]
+        for one in config["Visualization Manager"]["Displays"]
+    }
+    assert displays == {"Image": f"{NODE}/overlay", "MarkerArray": f"{NODE}/markers"}

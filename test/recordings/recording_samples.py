@@ -21,8 +21,8 @@ from mcap.writer import CompressionType, Writer
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.recordings import messages, topics
-from vehicle_pf_tracker.recordings.cdr import definition, serialize
+from vehicle_pf_tracker.recordings import messages
+from vehicle_pf_tracker.recordings.messages import definition, serialize
 
 PERIOD_NS = 40_000_000
 
@@ -59,10 +59,12 @@ class BareMcap:
 
     def image(self, channel, index, log_time=None, **shape):
         message = messages.image(stamp_of(index), frame_of(index, **shape))
-        self.add(channel, stamp_of(index) if log_time is None else log_time, message, topics.IMAGE)
+        self.add(
+            channel, stamp_of(index) if log_time is None else log_time, message, messages.IMAGE
+        )
 
     def images(self, indices, **shape):
-        camera = self.channel(topics.IMAGE_TOPIC, topics.IMAGE)
+        camera = self.channel(messages.IMAGE_TOPIC, messages.IMAGE)
         for index in indices:
             self.image(camera, index, **shape)
 

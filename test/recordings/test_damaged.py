@@ -24,7 +24,7 @@ from mcap.writer import CompressionType, IndexType
 from recording_samples import BareMcap, frame_of, stamp_of, truth_of
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings import messages, topics
+from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.mcap_index import MAGIC, read_index
 from vehicle_pf_tracker.recordings.reader import Recording
 
@@ -225,12 +225,12 @@ def test_the_truth_of_a_cut_recording_is_whole_up_to_the_cut(record, tmp_path, s
 def image_bag(bare_mcap, broken, **options):
     """Ten images of which those in `broken` hold too few bytes."""
     bag = bare_mcap(**options)
-    camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
+    camera = bag.channel(messages.IMAGE_TOPIC, messages.IMAGE)
     for index in range(10):
         message = messages.image(stamp_of(index), frame_of(index))
         if index in broken:
             message.data = message.data[:-1]
-        bag.add(camera, stamp_of(index), message, topics.IMAGE)
+        bag.add(camera, stamp_of(index), message, messages.IMAGE)
     return bag.close()
 
 
@@ -271,11 +271,11 @@ def test_a_summary_whose_checksum_is_wrong_is_not_believed(bare_mcap):
     path = image_bag(bare_mcap, ())
     data = bytearray(path.read_bytes())
     start = next(summary_records(data))[0]
-    name = data.index(topics.IMAGE_TOPIC.encode(), start)
+    name = data.index(messages.IMAGE_TOPIC.encode(), start)
     data[name + 1 : name + 7] = b"CAMERA"
     path.write_bytes(data)
     recording = Recording(path)
-    assert (recording.image_topic, recording.frame_count) == (topics.IMAGE_TOPIC, 10)
+    assert (recording.image_topic, recording.frame_count) == (messages.IMAGE_TOPIC, 10)
 
 
 def test_counts_that_do_not_add_up_are_counted_again(bare_mcap):
@@ -300,7 +300,7 @@ def test_a_chunk_that_the_summary_lacks_is_found(bare_mcap):
 
 def test_a_broken_message_is_a_broken_image(bare_mcap):
     bag = bare_mcap()
-    camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
+    camera = bag.channel(messages.IMAGE_TOPIC, messages.IMAGE)
     for number, data in enumerate((b"", b"\0", b"\0\1\0\0", b"\0\1\0\0" + bytes(30), b"\xff" * 99)):
         bag.raw(camera, number, data)
     bag.image(camera, 7)

@@ -28,8 +28,8 @@ from recording_samples import PERIOD_NS, frame_of, stamp_of, truth_of
 from rosbags.typesys import Stores, get_typestore
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings import mcap_blocks, messages, topics
-from vehicle_pf_tracker.recordings.cdr import header_stamp_ns
+from vehicle_pf_tracker.recordings import mcap_blocks, messages
+from vehicle_pf_tracker.recordings.messages import header_stamp_ns
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
@@ -43,8 +43,8 @@ def test_raw_frames_come_back_unchanged(record, compression):
     recording = Recording(record(10, compression=compression))
     frames = list(recording.frames())
     assert recording.frame_count == len(frames) == 10
-    assert recording.image_topic == topics.IMAGE_TOPIC
-    assert recording.image_type == topics.IMAGE
+    assert recording.image_topic == messages.IMAGE_TOPIC
+    assert recording.image_type == messages.IMAGE
     for index, found in enumerate(frames):
         assert found.stamp_ns == stamp_of(index)
         assert np.array_equal(found.frame, frame_of(index))
@@ -58,7 +58,7 @@ def test_compressed_frames_come_back(tmp_path, compression):
             coded = cv2.imencode(".png", frame_of(index)[..., ::-1])[1].tobytes()
             writer.write_compressed(stamp_of(index), "png", coded)
     recording = Recording(tmp_path / "bag")
-    assert recording.image_type == topics.COMPRESSED_IMAGE
+    assert recording.image_type == messages.COMPRESSED_IMAGE
     for index, found in enumerate(recording.frames()):
         assert np.array_equal(found.frame, frame_of(index))
     assert stamps(recording) == [stamp_of(index) for index in range(5)]
@@ -133,7 +133,7 @@ def test_messages_keep_their_bytes_and_the_order_of_their_log_times(bare_mcap):
 
 def test_stamps_are_the_headers_not_the_log_times(bare_mcap):
     bag = bare_mcap()
-    camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
+    camera = bag.channel(messages.IMAGE_TOPIC, messages.IMAGE)
     bag.image(camera, 5, log_time=77)
     recording = Recording(bag.close())
     assert stamps(recording) == [stamp_of(5)]
@@ -142,10 +142,10 @@ def test_stamps_are_the_headers_not_the_log_times(bare_mcap):
 
 def test_big_endian_messages_are_read(bare_mcap):
     bag = bare_mcap()
-    camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
+    camera = bag.channel(messages.IMAGE_TOPIC, messages.IMAGE)
     message = messages.image(stamp_of(2), frame_of(2))
     store = get_typestore(Stores.ROS2_JAZZY)
-    data = store.serialize_cdr(message, topics.IMAGE, little_endian=False)
+    data = store.serialize_cdr(message, messages.IMAGE, little_endian=False)
     bag.raw(camera, 1, bytes(data))
     recording = Recording(bag.close())
     assert next(recording.messages()).stamp_ns == stamp_of(2)
@@ -154,7 +154,7 @@ def test_big_endian_messages_are_read(bare_mcap):
 
 def test_messages_of_unknown_types_are_listed(bare_mcap):
     bag = bare_mcap()
-    bag.image(bag.channel(topics.IMAGE_TOPIC, topics.IMAGE), 0)
+    bag.image(bag.channel(messages.IMAGE_TOPIC, messages.IMAGE), 0)
     bag.raw(bag.channel("/bare", "strange_msgs/msg/Bare", schema="int32 x\n"), 2, b"\0\1\0\0abcd")
     bag.raw(bag.channel("/nothing_said", None), 3, b"?")
     bag.raw(bag.channel("/json", "strange_msgs/msg/Json", "json", "{}"), 4, b"{}")
@@ -168,13 +168,13 @@ def test_messages_of_unknown_types_are_listed(bare_mcap):
 def test_several_image_topics_need_a_choice(bare_mcap):
     bag = bare_mcap()
     for topic, index in (("/left", 1), ("/right", 2)):
-        bag.image(bag.channel(topic, topics.IMAGE), index)
-    bag.channel("/never_published", topics.IMAGE)
+        bag.image(bag.channel(topic, messages.IMAGE), index)
+    bag.channel("/never_published", messages.IMAGE)
     bag.add(
-        bag.channel("/point", topics.POINT_STAMPED),
+        bag.channel("/point", messages.POINT_STAMPED),
         5,
         messages.point_stamped(5, 1, 2),
-        topics.POINT_STAMPED,
+        messages.POINT_STAMPED,
     )
     path = bag.close()
     with pytest.raises(InputError, match=r"--topic: /left, /right$"):
@@ -191,7 +191,7 @@ def test_several_image_topics_need_a_choice(bare_mcap):
 def test_one_topic_on_two_channels_is_one_topic(bare_mcap):
     bag = bare_mcap()
     for index in range(4):
-        bag.image(bag.channel("/camera", topics.IMAGE), index)
+        bag.image(bag.channel("/camera", messages.IMAGE), index)
     recording = Recording(bag.close())
     assert recording.frame_count == 4
     assert len(stamps(recording)) == 4
@@ -200,7 +200,7 @@ def test_one_topic_on_two_channels_is_one_topic(bare_mcap):
 def test_no_image_topic_names_what_there_is(bare_mcap):
     bag = bare_mcap()
     point = messages.point_stamped(5, 1, 2)
-    bag.add(bag.channel("/gps", topics.POINT_STAMPED), 5, point, topics.POINT_STAMPED)
+    bag.add(bag.channel("/gps", messages.POINT_STAMPED), 5, point, messages.POINT_STAMPED)
     with pytest.raises(InputError, match=r"no images; its topics are: /gps"):
         Recording(bag.close())
 
@@ -333,11 +333,11 @@ def test_seeking_reads_only_what_is_wanted(record, monkeypatch):
 def test_reading_holds_a_small_part_in_memory(bare_mcap, chunked):
     """30 MB, with chunks (1 MB each) and as the `fastwrite` preset of rosbag2 leaves it."""
     bag = bare_mcap(use_chunking=chunked, index_types=IndexType.ALL)
-    camera = bag.channel(topics.IMAGE_TOPIC, topics.IMAGE)
+    camera = bag.channel(messages.IMAGE_TOPIC, messages.IMAGE)
     frame = frame_of(0, 320, 320)
     for index in range(100):
         message = messages.image(stamp_of(index), frame)
-        bag.add(camera, stamp_of(index), message, topics.IMAGE)
+        bag.add(camera, stamp_of(index), message, messages.IMAGE)
     path = bag.close()
     assert path.stat().st_size > 30e6
     tracemalloc.start()

@@ -254,7 +254,7 @@ def test_the_truth_above_the_folder_of_the_images_is_found(lay):
             "has several boxes in an image, and no tracks",
         ),
         ("project-1.json", '[{"image": "1.jpg"}]', "is not Label Studio's export as JSON"),
-        ("gt/gt.txt", track(3) + track(8), "has the truth of 2 targets; .* --id: 3, 8"),
+        ("gt/gt.txt", track(3) + track(8), "has the truth of 2 vehicles; .* --id: 3, 8"),
     ],
 )
 def test_what_is_seen_and_not_read_is_said(lay, tmp_path, capsys, name, content, said):

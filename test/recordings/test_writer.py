@@ -26,7 +26,7 @@ from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings import messages, topics
+from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings import writer as writing
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
@@ -44,7 +44,7 @@ def information(folder):
 def test_messages_of_a_topic_are_numbered(record):
     with only_mcap(record(4)).open("rb") as stream:
         found = [(c.topic, m.sequence) for _, c, m in make_reader(stream).iter_messages()]
-    for topic in (topics.IMAGE_TOPIC, *topics.TRUTH_TOPICS):
+    for topic in (messages.IMAGE_TOPIC, *messages.TRUTH_TOPICS):
         assert [number for name, number in found if name == topic] == [0, 1, 2, 3]
 
 
@@ -55,7 +55,7 @@ def test_other_readers_find_every_message(record, compression):
         assert sum(1 for _ in reader.messages()) == 28
     with AnyReader([folder]) as reader:
         assert {c.topic: c.msgcount for c in reader.connections} == dict.fromkeys(
-            [topics.IMAGE_TOPIC, *topics.TRUTH_TOPICS], 7
+            [messages.IMAGE_TOPIC, *messages.TRUTH_TOPICS], 7
         )
         connection, _, data = next(reader.messages())
         image = reader.deserialize(data, connection.msgtype)
@@ -110,7 +110,7 @@ def test_type_hash_is_the_one_of_ros(record):
 def test_schema_holds_the_types_it_is_made_of(record):
     with only_mcap(record(1)).open("rb") as stream:
         schemas = make_reader(stream).get_summary().schemas.values()
-    text = next(s.data.decode() for s in schemas if s.name == topics.IMAGE)
+    text = next(s.data.decode() for s in schemas if s.name == messages.IMAGE)
     assert "MSG: std_msgs/Header" in text
     assert "MSG: builtin_interfaces/Time" in text
 
@@ -120,13 +120,13 @@ def test_any_message_can_be_added(tmp_path):
     with RecordingWriter(folder) as writer:
         writer.write_image(stamp_of(0), frame_of(0))
         point = messages.point_stamped(stamp_of(0), 3.5, 4.25)
-        writer.write("/apf_tracker/position", topics.POINT_STAMPED, stamp_of(0), point)
+        writer.write("/apf_tracker/position", messages.POINT_STAMPED, stamp_of(0), point)
         with pytest.raises(InputError, match="carries"):
-            writer.write("/apf_tracker/position", topics.IMAGE, 0, messages.image(0, frame_of(0)))
+            writer.write("/apf_tracker/position", messages.IMAGE, 0, messages.image(0, frame_of(0)))
         with pytest.raises(InputError, match="no_such"):
             writer.write("/x", "no_such/msg/Type", 0, point)
     found = list(Recording(folder).messages({"/apf_tracker/position"}))
-    assert [(m.type_name, m.stamp_ns) for m in found] == [(topics.POINT_STAMPED, stamp_of(0))]
+    assert [(m.type_name, m.stamp_ns) for m in found] == [(messages.POINT_STAMPED, stamp_of(0))]
 
 
 def test_an_interrupted_block_leaves_nothing(tmp_path):

@@ -25,9 +25,9 @@ from laboratory.scenes import TRAFFIC_SCENES, make_traffic_scene
 from laboratory.scenes.traffic_perspective import road_file
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.traffic.identities import matches
+from vehicle_pf_tracker.evaluation.traffic.scoring import matches
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
-from vehicle_pf_tracker.road.calibration import parse_pairs
+from vehicle_pf_tracker.parameters.road import parse_pairs
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.scenes import catalogue
 from vehicle_pf_tracker.scenes.compositing import Sprite

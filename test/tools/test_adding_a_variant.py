@@ -47,7 +47,7 @@ from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
-from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
+from vehicle_pf_tracker.trackers.papers.shared import log_likelihood
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ def test_toy_follows_a_steady_vehicle():
     assert error(estimates[-1], street, 29) < 5
 """
 
-ENTRY = '    Variant("toy", "papers.toy:Toy", "steady colour filter (nobody)", "tests"),\n'
+ENTRY = '    Variant("toy", ".papers.toy:Toy", "steady colour filter (nobody)", "tests"),\n'
 
 EXECUTABLES = """
 import runpy, setuptools

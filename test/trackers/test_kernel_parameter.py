@@ -22,7 +22,7 @@ import pytest
 from street import Street, follow
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.image.kernels import choice
+from vehicle_pf_tracker.image.kernels import interface
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
@@ -37,9 +37,9 @@ def numba_fails(monkeypatch):
 
         monkeypatch.setattr(importlib, "import_module", import_module)
 
-    choice.load_numba.cache_clear()
+    interface.load_numba.cache_clear()
     yield fail_with
-    choice.load_numba.cache_clear()
+    interface.load_numba.cache_clear()
 
 
 ABSENT = ModuleNotFoundError("No module named 'numba'", name="numba")

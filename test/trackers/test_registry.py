@@ -24,7 +24,7 @@ from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.trackers.base import BaseTracker
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
-MODULES = {f"vehicle_pf_tracker.trackers.{one.classes.split(':')[0]}" for one in VARIANTS.values()}
+MODULES = {f"vehicle_pf_tracker.trackers{one.classes.split(':')[0]}" for one in VARIANTS.values()}
 
 
 def loaded_by(program: str) -> set[str]:

@@ -27,7 +27,7 @@ Request = VerbRequest
 
 def run(request: Request) -> int:
     """Compile what is not compiled yet, and say how long it took; 1 if it cannot be kept."""
-    from vehicle_pf_tracker.image.kernels.choice import load_kernels
+    from vehicle_pf_tracker.image.kernels.interface import load_kernels
 
     print("compiling kernels, for up to a minute; later starts load them", flush=True)
     began = time.monotonic()

@@ -35,14 +35,13 @@ from vehicle_pf_tracker.cli.console import (
     tell_notices,
 )
 from vehicle_pf_tracker.cli.report import ReportParts
-from vehicle_pf_tracker.cli.requests import MaxDiffOption, option, switch
+from vehicle_pf_tracker.cli.requests import IdOption, MaxDiffOption, TopicOption, option, switch
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.grid.cells import Plan
+from vehicle_pf_tracker.evaluation.grid.cells import Plan, shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
-from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
@@ -50,7 +49,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 
 _GRID_ONLY = (
-    "params", "without_defaults", "baseline_model", "max_rmse", "topic",
+    "params", "without_defaults", "baseline_model", "max_rmse", "topic", "id",
     "shifted_starts", "figures", "write",
 )  # fmt: skip
 """Options of the grid that do not apply."""
@@ -60,11 +59,11 @@ _GRID_ONLY = (
 class TrafficRequest(EvaluationRequest):
     """Request of the comparison on many vehicles."""
 
-    GROUP = "many vehicles, instead of the grid"
+    GROUP = "many vehicles"
 
     traffic: bool = switch(
-        help="compare `traffic` with SORT, ByteTrack, OC-SORT and C-BIoU; REC are folders as "
-        "MOTChallenge has them; see docs/traffic.md",
+        help="compare `traffic` with SORT, ByteTrack, OC-SORT and C-BIoU instead; REC are folders "
+        "as MOTChallenge has them; see docs/traffic.md",
     )  # fmt: skip
     detections: str | None = option(
         metavar="NAME,…",
@@ -90,13 +89,13 @@ def check(request: TrafficRequest) -> None:
 
 def run_traffic(request: TrafficRequest) -> int:
     """Run the comparison, write its report, and print its tables."""
-    from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
     from vehicle_pf_tracker.evaluation.traffic.comparison import (
         NAME,
         cases_of,
         compare,
         write_traffic_report,
     )
+    from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
     from vehicle_pf_tracker.parameters.configuration import Configuration
     from vehicle_pf_tracker.trackers.registry import TRAFFIC
@@ -142,12 +141,11 @@ _SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "fail
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(TrafficRequest, ReportParts, MaxDiffOption):
+class Request(TrafficRequest, ReportParts, TopicOption, IdOption, MaxDiffOption):
     """Request of `evaluate`."""
 
-    topic: str | None = option(help="the image topic, where recordings have several")
     shifted_starts: bool = switch(
-        help="also start on twelve shifted and scaled boxes (OTB), with the first seed"
+        help="also start on twelve boxes that are a little off, as OTB does; first seed only"
     )
     max_rmse: float | None = option(
         type=float, metavar="PX",
@@ -178,7 +176,7 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
 def _plan(request: Request, sources: Sequence[str]) -> Plan:
     systems, notes = system_options.chosen(request)
     with stages("evaluate") as on_stage:
-        recordings = describe(sources, request.topic, request.max_diff, on_stage)
+        recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)
     tell_notices(notes)
     return Plan(
         dict(recordings),

@@ -53,7 +53,7 @@ def run(request: Request) -> int:
             request.source,
             request.out,
             truth=request.truth,
-            identity=request.identity,
+            identity=request.id,
             fps=request.fps,
             format=request.format,
             progress=progress,

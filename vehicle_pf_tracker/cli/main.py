@@ -27,7 +27,6 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
-from vehicle_pf_tracker import __doc__ as _summary
 from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.cli.console import (
     FAILED,
@@ -75,23 +74,26 @@ def remedy(module: str) -> str:
 
 VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        "demo": ("demo", "run the whole chain on a synthetic scene, scored against truth"),
-        "import": ("import_footage", "convert a video file or a frame folder to a recording"),
-        "synth": ("synth", "render a synthetic scene to a recording, with exact truth"),
-        "params": ("params", "print the commented default parameters of a variant"),
+        "demo": ("demo", "try everything on a synthetic scene: track, replay to a node, score"),
+        "import": ("import_footage", "convert a video or a folder of images to a recording"),
+        "synth": ("synth", "render a synthetic scene to a video or a recording, with exact truth"),
+        "params": ("params", "print the parameters of a variant, as a file to edit"),
         "run": ("run", "track vehicles in a video, recording or stream, without ROS"),
         "traffic": ("traffic", "follow every vehicle in view, and count them at lines"),
-        "pick": ("pick", "point at vehicles in a frame, to get their boxes for run"),
+        "pick": ("pick", "draw vehicles, counting lines and zones on a page, for run and traffic"),
         "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
         "tune": (
             "tune",
             "search a variant's parameters on recordings, and validate them on others",
         ),
-        "report": ("report", "write the report of an evaluation anew"),
+        "report": ("report", "write the report of an evaluation again"),
         "replay": ("replay", "feed a recording to ROS nodes"),
         "set-target": ("set_target", "give a running ROS node its target"),
-        "road": ("road", "calibrate the mapping from pixels to metres on the road"),
-        "compile": ("compile_kernels", "compile the kernels of the extra numba ahead of time"),
+        "road": ("road", "calibrate a camera, for metres and km/h on the road"),
+        "compile": (
+            "compile_kernels",
+            "compile the extra [numba] now, so that no start waits",
+        ),
     }
 )
 """Module in this package and one line of help, by verb."""
@@ -167,7 +169,11 @@ def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
             f"there is no verb {asked!r}{suggestion(asked, VERBS)}; the verbs are "
             f"{', '.join(VERBS)}"
         )
-    parser = argparse.ArgumentParser(prog=PROGRAM, description=_summary)
+    parser = argparse.ArgumentParser(
+        prog=PROGRAM,
+        description="Follow vehicles in traffic video through occlusions.",
+        epilog="`vehicle-pf-tracker VERB --help` has the options of a verb.",
+    )
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {__version__}")
     verbs = parser.add_subparsers(metavar="VERB", required=True)
     for name, (module_name, line) in VERBS.items():

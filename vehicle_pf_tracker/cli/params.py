@@ -18,17 +18,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.cli.requests import VerbRequest, positional
+from vehicle_pf_tracker.cli.requests import Names, VerbRequest, positional
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
-from vehicle_pf_tracker.trackers.registry import Variant, find_node
+from vehicle_pf_tracker.trackers.registry import NODES, Variant, find_node
 
 
 @dataclass(frozen=True, kw_only=True)
 class Request(VerbRequest):
     """Request of `params`."""
 
-    variant: str = positional(help="name of the variant, apf for instance")
+    variant: str = positional(choices=Names(NODES), metavar="VARIANT", help=", ".join(NODES))
 
 
 def run(request: Request) -> int:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`pick`: point at vehicles, or at points of the road, on a page that is served here."""
+"""`pick`: draw vehicles, lines, zones, regions and points of the road on a page served here."""
 
 from __future__ import annotations
 
@@ -21,33 +21,47 @@ import math
 import tempfile
 import threading
 import webbrowser
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
+from http import HTTPStatus
 from importlib import resources
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeAlias
 
 import yaml
 
 from vehicle_pf_tracker.cli.console import UsageError, counting
 from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, option, positive, switch
-from vehicle_pf_tracker.cli.tracking_options import TargetOption, read_list
-from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.cli.tracking_options import TARGET_FORM, list_in, target_of
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import claimed
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.drawing import draw_pixel_grid
 from vehicle_pf_tracker.offline.output_files import write_picture, write_text
 from vehicle_pf_tracker.offline.page_server import Content, PageHandler, PageServer
 from vehicle_pf_tracker.offline.pictures import has_display
-from vehicle_pf_tracker.recordings.importing import jpeg
+from vehicle_pf_tracker.parameters.counting_plan import parse_counting_plan
+from vehicle_pf_tracker.parameters.files import read_yaml_file
+from vehicle_pf_tracker.parameters.road import format_pairs
 from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.recordings.source import Source, frame_at, open_source
-from vehicle_pf_tracker.road.calibration import format_pairs
+from vehicle_pf_tracker.recordings.source import Source, frame_at
 from vehicle_pf_tracker.road.plane import Pair
 
-PickedT = TypeVar("PickedT")
+Document: TypeAlias = dict[str, Any]
+"""What was drawn, by section, as a file of `pick` has it."""
 
 PAIR_FORM = "{pixel: [u, v], road: [x, y]}, …"
+TARGETS, PAIRS = "targets", "pairs"
+USES: Mapping[str, str] = {
+    TARGETS: "run --targets",
+    "lines": "traffic --lines",
+    "zones": "traffic --lines",
+    "roi": "traffic --lines",
+    PAIRS: "road calibrate --pairs",
+}
+"""Verb and option that read a section of the file."""
+_TEXT = "text/plain; charset=utf-8"
 _FILES = {
     "": ("text/html; charset=utf-8", "pick.html"),
     "pick.js": ("text/javascript; charset=utf-8", "pick.js"),
@@ -57,78 +71,35 @@ _LONGEST = 1 << 20
 """Bytes of an answer: ten thousand boxes, and no more memory than that for a stray request."""
 
 
-@dataclass(frozen=True, slots=True)
-class Tool(Generic[PickedT]):
-    """A way to pick.
-
-    Attributes
-    ----------
-    name : str
-        Its name in `pick.js`.
-    read : callable
-        Reads an entry of the page's answer.
-    key : str
-        Name of the list in a file of what was picked, whose entries `entry` makes.
-    entry : callable
-        Makes an entry of that file.
-    use : str
-        Verb and option that read the file.
-    words : callable
-        Makes the words of a command.
-    """
-
-    name: str
-    read: Callable[[dict[str, Any]], PickedT]
-    key: str
-    entry: Callable[[PickedT], dict[str, Any]]
-    use: str
-    words: Callable[[PickedT], str]
-
-
-def _numbers(values: Any) -> list[float]:
-    numbers = [float(value) for value in values]
-    if not all(map(math.isfinite, numbers)):
-        raise ValueError(values)
-    return numbers
-
-
-def _target(entry: dict[str, Any]) -> TargetOption:
-    x, y, width, height = _numbers(entry["box"])
-    name = "".join(
-        c for c in str(entry.get("name", "")) if c.isascii() and (c.isalnum() or c in "_-")
-    )
-    return TargetOption(Box(x, y, width, height), name, int(entry["frame"]))
-
-
-def _target_entry(target: TargetOption) -> dict[str, Any]:
-    box = [round(value, 2) for value in astuple(target.box)]
-    return {"name": target.name, "frame": target.frame or 1, "box": box}
-
-
-def _pair(entry: dict[str, Any]) -> Pair:
-    (u, v), (x, y) = _numbers(entry["pixel"]), _numbers(entry["road"])
+def pair_of(entry: Mapping[str, Any]) -> Pair:
+    """Read a pixel and the point of the road that it shows, as `PAIR_FORM` has them."""
+    (u, v), (x, y) = (map(float, entry[key]) for key in ("pixel", "road"))
+    if not all(map(math.isfinite, (u, v, x, y))):
+        raise ValueError(entry)
     return Pair((u, v), (x, y))
 
 
-BOXES = Tool(
-    "boxes", _target, "targets", _target_entry, "run --targets",
-    lambda target: f"--target {target.name}@{target.frame}:{target.box}",
-)  # fmt: skip
-POINTS = Tool(
-    "points", _pair, "pairs", lambda pair: {"pixel": [*pair.pixel], "road": [*pair.road]},
-    "road calibrate --pairs", lambda pair: f"--pair {format_pairs((pair,))}",
-)  # fmt: skip
-
-
-def read_pairs(path: Path) -> list[Pair]:
-    """Read pixels and the points of the road that they show from a YAML file.
+def checked(document: Any, where: str) -> Document:
+    """Return the sections that hold something, after they were read as their users read them.
 
     Raises
     ------
     InputError
-        If it cannot be read, or an entry is not a pair.
+        If one cannot be used.
     """
-    return read_list(path, POINTS.key, PAIR_FORM, _pair)
+    if not isinstance(document, dict) or not set(document) <= set(USES):
+        raise InputError(f"{where} has other sections than {', '.join(USES)}")
+    found = {key: body for key, body in document.items() if body}
+    for key, form, read in ((TARGETS, TARGET_FORM, target_of), (PAIRS, PAIR_FORM, pair_of)):
+        if key in found:
+            list_in(found, where, key, form, read)
+    plan = {key: body for key, body in found.items() if key not in {TARGETS, PAIRS}}
+    if plan:
+        try:
+            parse_counting_plan(plan)
+        except InputError as error:
+            raise InputError(f"{where}: {error}") from None
+    return found
 
 
 class FrameStore:
@@ -175,25 +146,33 @@ class FrameStore:
             self._file.close()
 
 
-class PickingServer(PageServer, Generic[PickedT]):
-    """Serves the page, and ends with the user's answer.
+class Editor(PageServer):
+    """Serves the page on which the user draws, and ends with what they drew.
 
     Parameters
     ----------
     frames : FrameStore
-        The frames to pick in.
-    tool : Tool
-        What is picked.
+        The frames to draw in.
+    sections : sequence of str
+        What can be drawn, of `USES`; the first is offered first.
     first : int
         Number of the frame shown first.
+    document : dict
+        What is there to be edited.
+
+    Attributes
+    ----------
+    drawn : dict
+        What the user drew; empty if they cancelled.
     """
 
-    def __init__(self, frames: FrameStore, tool: Tool[PickedT], first: int = 1) -> None:
-        super().__init__(PickingHandler)
-        self.frames = frames
-        self.tool = tool
-        self.first = first
-        self._picked: Sequence[PickedT] | None = None
+    def __init__(
+        self, frames: FrameStore, sections: Sequence[str], first: int, document: Document
+    ) -> None:
+        super().__init__(_Handler)
+        self._frames = frames
+        self._facts = {"frame": first, "sections": sections, "document": document}
+        self.drawn: Document = {}
 
     def content(self, what: str) -> Content | None:
         """Return the page, a frame, or what there is to know."""
@@ -201,53 +180,67 @@ class PickingServer(PageServer, Generic[PickedT]):
             kind, name = _FILES[what]
             return kind, resources.files(__package__).joinpath(name).read_bytes()
         if what == "info":
-            found = {"frames": self.frames.count, "frame": self.first, "tool": self.tool.name}
-            return "application/json", json.dumps(found).encode()
+            facts = {**self._facts, "frames": self._frames.count}
+            return "application/json", json.dumps(facts).encode()
         if not what.startswith("frame/") or not what[6:].isdecimal():
             return None
         number = int(what[6:][:9])
-        coded = self.frames.jpeg(number) if number else None
+        coded = self._frames.jpeg(number) if number else None
         return None if coded is None else ("image/jpeg", coded)
 
-    def pick(self) -> Sequence[PickedT]:
-        """Serve until the user is done; empty if they cancel."""
-        self.serve_forever(poll_interval=0.1)
-        return self._picked or ()
+    def finish(self, body: bytes) -> None:
+        """Take what was drawn.
 
-    def finish(self, answer: Sequence[PickedT]) -> None:
-        """End `pick`, from another thread."""
-        self._picked = answer
-        self.shutdown()
-
-
-def ask(source: Source, tool: Tool[PickedT], first: int) -> Sequence[PickedT]:
-    """Let the user pick in the frames of `source`; empty if they cancel."""
-    with closing(FrameStore(source)) as frames, PickingServer(frames, tool, first) as server:
-        print(f"open {server.url} in a browser on this machine; Ctrl-C ends this", flush=True)
-        if has_display():  # without one, a text browser would take the terminal
-            webbrowser.open(server.url)
-        return server.pick()
+        Raises
+        ------
+        InputError
+            If it cannot be used.
+        """
+        try:
+            document = json.loads(body)
+        except (ValueError, RecursionError):
+            raise InputError("what was drawn is not JSON") from None
+        self.drawn = checked(document or {}, "what was drawn")
 
 
-class PickingHandler(PageHandler):
-    """Answers the requests of the page, and takes the user's answer."""
-
-    server: PickingServer[Any]
+class _Handler(PageHandler):
+    server: Editor
 
     def do_POST(self) -> None:  # noqa: N802 - the base's name
-        """Take the user's answer."""
         length = self.headers.get("Content-Length", "")
         if self.asked() != "done" or not length.isdecimal() or int(length) > _LONGEST:
             self.answer(None)
             return
         try:
-            entries = json.loads(self.rfile.read(int(length))) or ()
-            answer = [self.server.tool.read(entry) for entry in entries]
-        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-            self.answer(None)
+            self.server.finish(self.rfile.read(int(length)))
+        except InputError as error:
+            self.answer((_TEXT, str(error).encode()), HTTPStatus.BAD_REQUEST)
             return
-        self.answer(("text/plain", b"finished"))
-        self.server.finish(answer)
+        self.answer((_TEXT, b"finished"))
+        self.server.shutdown()
+
+
+def ask(
+    source: Source, sections: Sequence[str], first: int, document: Document | None = None
+) -> Document:
+    """Let the user draw in the frames of `source`, over what is there already.
+
+    Raises
+    ------
+    UsageError
+        If nothing is drawn, or they cancel.
+    """
+    with (
+        closing(FrameStore(source)) as frames,
+        Editor(frames, sections, first, document or {}) as editor,
+    ):
+        print(f"open {editor.url} in a browser on this machine; Ctrl-C ends this", flush=True)
+        if has_display():  # without one, a text browser would take the terminal
+            webbrowser.open(editor.url)
+        editor.serve_forever(poll_interval=0.1)
+    if not editor.drawn:
+        raise UsageError("nothing was picked")
+    return editor.drawn
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -259,12 +252,14 @@ class Request(SourceOptions, OverwriteOption):
     )
     output: Path | None = option(
         "-o", type=Path, metavar="FILE",
-        help="write the targets to FILE, for run --targets, or the points, for road calibrate "
-        "--pairs; otherwise they are printed",
+        help="write what was drawn to FILE, for run --targets, traffic --lines and road calibrate "
+        "--pairs; otherwise it is printed",
     )  # fmt: skip
-    road: bool = switch(
-        help="pick points of the road instead, four or more, with their places in m"
-    )
+    edit: Path | None = option(
+        type=Path, metavar="FILE",
+        help="begin with what such a file has, and write it there again, or to -o",
+    )  # fmt: skip
+    road: bool = switch(help="only points of the road, four or more, with their x and y in metres")
     grid: Path | None = option(
         type=Path, metavar="PNG",
         help="no page: write the frame with a grid labelled in px to PNG, to read boxes off",
@@ -272,29 +267,46 @@ class Request(SourceOptions, OverwriteOption):
 
 
 def run(request: Request) -> int:
-    """Serve the page until the user is done, and print or write the targets."""
-    source = open_source(request.source, topic=request.topic, fps=request.fps)
-    output = request.output if request.grid is None else request.grid
-    with claimed([output], [request.source], overwrite=request.overwrite):
-        return _pick(request, source)
+    """Serve the page until the user is done, and print or write what was drawn."""
+    source = request.open_source()
+    output = request.grid or request.output or request.edit
+    is_in_place = output == request.edit
+    inputs = [request.source, None if is_in_place else request.edit]
+    with claimed([output], inputs, overwrite=request.overwrite or is_in_place):
+        if request.grid is not None:
+            return _write_grid(request, source, request.grid)
+        return _draw(request, source, output)
 
 
-def _pick(request: Request, source: Source) -> int:
-    if request.grid is not None:
-        with counting("read") as progress:
-            frame = frame_at(source, request.frame, progress)
-        write_picture(request.grid, draw_pixel_grid(frame))
-        print(f"frame {request.frame} with a grid is in {request.grid}")
-        return 0
-    tool: Tool[Any] = POINTS if request.road else BOXES
-    picked = ask(source, tool, request.frame)
-    if not picked:
-        raise UsageError("nothing was picked")
-    if request.output is None:
-        print(" ".join(map(tool.words, picked)))
-        return 0
-    entries = {tool.key: [tool.entry(one) for one in picked]}
-    write_text(request.output, yaml.safe_dump(entries, sort_keys=False, default_flow_style=None))
-    words = f"what was picked ({len(picked)}) is in {request.output}"
-    print(f"{words}; use {tool.use} {request.output}")
+def _write_grid(request: Request, source: Source, path: Path) -> int:
+    with counting("read") as progress:
+        frame = frame_at(source, request.frame, progress)
+    write_picture(path, draw_pixel_grid(frame))
+    print(f"frame {request.frame} with a grid is in {path}")
     return 0
+
+
+def _draw(request: Request, source: Source, output: Path | None) -> int:
+    before = None
+    if request.edit is not None:
+        where = f"the file {request.edit}"
+        before = checked(read_yaml_file(request.edit, "file"), where)
+    drawn = ask(source, (PAIRS,) if request.road else tuple(USES), request.frame, before)
+    text = yaml.safe_dump(drawn, sort_keys=False, default_flow_style=None, allow_unicode=True)
+    if output is None:
+        print(words_of(drawn) if set(drawn) <= {TARGETS, PAIRS} else text)
+        return 0
+    write_text(output, text)
+    uses = " and ".join(dict.fromkeys(f"{USES[key]} {output}" for key in drawn))
+    print(f"what was drawn is in {output}; use {uses}")
+    return 0
+
+
+def words_of(document: Document) -> str:
+    """Write targets and pairs as words of a command."""
+    words = [
+        f"--target {one.name}@{one.frame}:{one.box}"
+        for one in map(target_of, document.get(TARGETS, ()))
+    ]
+    pairs = [f"--pair {format_pairs((pair_of(one),))}" for one in document.get(PAIRS, ())]
+    return " ".join([*words, *pairs])

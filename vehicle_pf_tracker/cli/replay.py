@@ -32,7 +32,8 @@ from vehicle_pf_tracker.cli.console import (
 )
 from vehicle_pf_tracker.cli.requests import (
     OverwriteOption,
-    RosOption,
+    RosOptions,
+    TopicOption,
     number,
     option,
     positional,
@@ -87,7 +88,7 @@ def _absolute(topic: str) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(RosOption, OverwriteOption):
+class Request(RosOptions, TopicOption, OverwriteOption):
     """Request of `replay`, with options named as the rosbag2 player's where it has them."""
 
     recording: Path = positional(type=Path, help="rosbag2 folder or MCAP file")
@@ -123,9 +124,6 @@ class Request(RosOption, OverwriteOption):
         help="publish an image only when every node has answered the one before"
     )
     decompress: bool = switch(help="publish compressed images as raw ones")
-    topic: str | None = option(
-        metavar="TOPIC", help="the image topic, if the recording has several"
-    )
     nodes: Sequence[str] = option(
         "--node", action="append", default=[], metavar="NAME",
         help="a tracker node that takes part, repeatable; all that subscribe if none is named",
@@ -137,10 +135,6 @@ class Request(RosOption, OverwriteOption):
     set_target: bool = option(
         "--no-target", action="store_false",
         help="neither set the nodes' targets nor reset them",
-    )  # fmt: skip
-    timeout: float = option(
-        type=positive_number, default=10.0, metavar="S",
-        help="longest wait for a node in seconds (default: 10)",
     )  # fmt: skip
     output: Path | None = option(
         "-o", type=Path, metavar="DIR",

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli.console import stages
+from vehicle_pf_tracker.cli.console import stages, tell_notices
 from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional
 from vehicle_pf_tracker.core.outputs import Products, claimed
 
@@ -94,5 +94,6 @@ def write(folder: Path, request: ReportParts) -> Report:
             toolkits=request.write,
             on_stage=on_stage,
         )
+    tell_notices(report.evaluation.mixed_versions)
     print(f"the report is {report.paths[0]}")
     return report

@@ -24,10 +24,14 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.recordings.footage import Footage
+    from vehicle_pf_tracker.recordings.reader import Recording
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,6 +68,16 @@ def option(*flags: str, **settings: Any) -> Any:
 def switch(*flags: str, help: str) -> Any:  # noqa: A002 - as in argparse
     """Declare the option without a value that makes a field true."""
     return option(*flags, action="store_true", help=help)
+
+
+class Names(tuple[str, ...]):
+    """Choices that a shell completes; of other names the verb says more than argparse."""
+
+    __slots__ = ()
+
+    def __contains__(self, name: object) -> bool:
+        """Let argparse take every name."""
+        return True
 
 
 def positional(**settings: Any) -> Any:
@@ -112,60 +126,6 @@ def request_of(kind: type[RequestT], args: argparse.Namespace) -> RequestT:
     return kind(**{name: tuple(v) if isinstance(v, list) else v for name, v in values.items()})
 
 
-@dataclass(frozen=True, kw_only=True)
-class OverwriteOption(VerbRequest):
-    """Request that can replace outputs."""
-
-    overwrite: bool = switch(help="replace outputs that exist")
-
-
-@dataclass(frozen=True, kw_only=True)
-class MaxDiffOption(VerbRequest):
-    """Request that associates estimates and truth."""
-
-    max_diff: float = option(
-        type=float, default=MAX_DIFF, metavar="S",
-        help=f"largest difference of stamps that belong together (default: {MAX_DIFF:g} s)",
-    )  # fmt: skip
-
-
-@dataclass(frozen=True, kw_only=True)
-class RosOption(VerbRequest):
-    """Request with an option after which all words are ROS's."""
-
-    ros_args: Sequence[str] = option(
-        nargs=argparse.REMAINDER, default=[], metavar="...", help="all words after this go to ROS"
-    )
-
-
-@dataclass(frozen=True, kw_only=True)
-class SourceOptions(VerbRequest):
-    """Request that reads images of any source."""
-
-    source: str = positional(
-        metavar="SOURCE",
-        help="recording, video file, folder of images, index of a camera, or URL of a stream",
-    )  # fmt: skip
-    topic: str | None = option(help="the image topic, if a recording has several")
-    fps: float | None = option(
-        type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states"
-    )
-
-
-@dataclass(frozen=True, kw_only=True)
-class TruthOptions(VerbRequest):
-    """Request that reads the truth of videos and folders."""
-
-    truth: Path | None = option(
-        type=Path, metavar="FILE",
-        help="truth of a video or a folder (default: what lies beside a folder's images); "
-        "docs/evaluation.md lists the formats",
-    )  # fmt: skip
-    identity: int | None = option(
-        "--id", type=int, metavar="N", help="number of the target, where the truth has several"
-    )
-
-
 def positive(text: str) -> int:
     """Read an integer >= 1."""
     return _at_least(1, text)
@@ -199,6 +159,83 @@ def number(text: str) -> float:
     if not math.isfinite(value):
         raise InputError(f"{text!r} is not a number")
     return value
+
+
+@dataclass(frozen=True, kw_only=True)
+class OverwriteOption(VerbRequest):
+    """Request that can replace outputs."""
+
+    overwrite: bool = switch(help="replace outputs that exist")
+
+
+@dataclass(frozen=True, kw_only=True)
+class MaxDiffOption(VerbRequest):
+    """Request that associates estimates and truth."""
+
+    max_diff: float = option(
+        type=float, default=MAX_DIFF, metavar="S",
+        help=f"largest time between an image and its truth (default: {MAX_DIFF:g} s)",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class RosOptions(VerbRequest):
+    """Request that talks to nodes."""
+
+    ros_args: Sequence[str] = option(
+        nargs=argparse.REMAINDER, default=[], metavar="...", help="all words after this go to ROS"
+    )
+    timeout: float = option(
+        type=positive_number, default=10.0, metavar="S",
+        help="longest wait for a node in seconds (default: 10)",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class TopicOption(VerbRequest):
+    """Request that reads recordings."""
+
+    topic: str | None = option(help="topic of the images, where a recording has several")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SourceOptions(TopicOption):
+    """Request that reads images of any source."""
+
+    source: str = positional(
+        metavar="SOURCE",
+        help="recording, video file, folder of images, number of a camera (0, 1), or URL of a "
+        "stream",
+    )  # fmt: skip
+    fps: float | None = option(
+        type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states"
+    )
+
+    def open_source(self, **truth: Any) -> Recording | Footage:
+        """Open the source, with the settings of its truth."""
+        from vehicle_pf_tracker.recordings.source import open_source
+
+        return open_source(self.source, topic=self.topic, fps=self.fps, **truth)
+
+
+@dataclass(frozen=True, kw_only=True)
+class IdOption(VerbRequest):
+    """Request that reads truth of several targets."""
+
+    id: int | None = option(
+        type=int, metavar="N", help="number of the vehicle, where the truth has several"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class TruthOptions(IdOption):
+    """Request that reads the truth of videos and folders."""
+
+    truth: Path | None = option(
+        type=Path, metavar="FILE",
+        help="truth of a video or a folder (default: what lies beside a folder's images); "
+        "docs/evaluation.md lists the formats",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)

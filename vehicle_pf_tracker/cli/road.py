@@ -23,17 +23,24 @@ from pathlib import Path
 import numpy as np
 
 from vehicle_pf_tracker.cli import pick
-from vehicle_pf_tracker.cli.console import UsageError, counting
-from vehicle_pf_tracker.cli.requests import OverwriteOption, option, positional, positive
+from vehicle_pf_tracker.cli.console import counting
+from vehicle_pf_tracker.cli.requests import (
+    OverwriteOption,
+    SourceOptions,
+    VerbRequest,
+    option,
+    positional,
+    positive,
+)
+from vehicle_pf_tracker.cli.tracking_options import read_list
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.offline.drawing import draw_road_grid
 from vehicle_pf_tracker.offline.output_files import write_picture, write_text
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.files import to_yaml
-from vehicle_pf_tracker.parameters.road import RoadParameters
+from vehicle_pf_tracker.parameters.road import RoadParameters, format_pairs, parse_pairs
 from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
-from vehicle_pf_tracker.recordings.source import Source, frame_at, open_source
-from vehicle_pf_tracker.road.calibration import format_pairs, parse_pairs
+from vehicle_pf_tracker.recordings.source import Source, frame_at
 from vehicle_pf_tracker.road.camera import MODELS
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
 
@@ -41,16 +48,17 @@ _TITLE = "Road. Written by `vehicle-pf-tracker road calibrate`."
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(OverwriteOption):
-    """Request of `road calibrate`."""
+class _Action(VerbRequest):
+    """Request with a word before its source."""
 
     action: str = positional(choices=("calibrate",), help="fit the mapping from pixels to metres")
-    source: str = positional(
-        metavar="SOURCE",
-        help="recording, video, folder of images, camera or stream that shows the road",
-    )  # fmt: skip
-    topic: str | None = option(help="the image topic, if a recording has several")
-    frame: int = option(type=positive, default=1, metavar="N", help="image to use (default: 1)")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request(SourceOptions, OverwriteOption, _Action):
+    """Request of `road calibrate`."""
+
+    frame: int = option(type=positive, default=1, metavar="N", help="frame to use (default: 1)")
     pairs: Sequence[str] = option(
         "--pair", action="append", default=[], metavar="U,V=X,Y",
         help="a pixel and the point of the road that it shows, px and m; repeatable; without pairs "
@@ -59,10 +67,17 @@ class Request(OverwriteOption):
     file: Path | None = option(
         "--pairs", type=Path, metavar="FILE", help=f"YAML file with pairs: [{pick.PAIR_FORM}]"
     )
-    intrinsics: str = option(default="", metavar="FX,FY,CX,CY", help="as in CameraInfo")
-    distortion_model: str = option(default="none", choices=MODELS)
-    distortion: str = option(default="", metavar="K1,K2,…", help="as in CameraInfo")
-    frame_id: str = option(default="road", help="frame of the road (default: road)")
+    intrinsics: str = option(
+        default="", metavar="FX,FY,CX,CY",
+        help="focal lengths and principal point of the camera, px, as in CameraInfo",
+    )  # fmt: skip
+    distortion_model: str = option(
+        default="none", choices=MODELS, help="how the lens bends straight lines (default: none)"
+    )
+    distortion: str = option(default="", metavar="K1,K2,…", help="numbers of that model")
+    frame_id: str = option(
+        default="road", metavar="NAME", help="the road's frame in ROS (default: road)"
+    )
     grid: Path | None = option(
         type=Path, metavar="PNG",
         help="picture with the road's lines; `pick --grid` writes one with pixel coordinates",
@@ -74,11 +89,10 @@ class Request(OverwriteOption):
 
 def run(request: Request) -> int:
     """Fit, print the residuals, and write parameters and picture."""
-    pairs = (
-        *parse_pairs(";".join(request.pairs)),
-        *(pick.read_pairs(request.file) if request.file else ()),
-    )
-    source = open_source(request.source, topic=request.topic)
+    pairs = parse_pairs(";".join(request.pairs))
+    if request.file:
+        pairs += tuple(read_list(request.file, pick.PAIRS, pick.PAIR_FORM, pick.pair_of))
+    source = request.open_source()
     inputs = (request.source, request.file)
     with claimed((request.grid, request.output), inputs, overwrite=request.overwrite):
         return _calibrate(request, source, pairs)
@@ -87,9 +101,9 @@ def run(request: Request) -> int:
 def _calibrate(request: Request, source: Source, pairs: tuple[Pair, ...]) -> int:
     with counting("read") as progress:
         frame = frame_at(source, request.frame, progress)
-    pairs = pairs or tuple(pick.ask(source, pick.POINTS, request.frame))
     if not pairs:
-        raise UsageError("nothing was picked")
+        drawn = pick.ask(source, [pick.PAIRS], request.frame)
+        pairs = tuple(map(pick.pair_of, drawn[pick.PAIRS]))
     road = _road(request, pairs)
     plane = road.plane(road.lens, None)
     print(_table(plane, pairs), end="")

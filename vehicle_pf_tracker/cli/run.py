@@ -16,16 +16,15 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import UsageError, counting, print_rows, tell_notices
-from vehicle_pf_tracker.cli.requests import MaxDiffOption, TruthOptions, option, switch
+from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, counting, print_rows, tell_notices
+from vehicle_pf_tracker.cli.requests import MaxDiffOption, Names, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
-from vehicle_pf_tracker.cli.stopping import stopping
+from vehicle_pf_tracker.cli.stopping import Stop, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -44,7 +43,7 @@ from vehicle_pf_tracker.offline.run_folder import (
     RunInfo,
     describe_run,
 )
-from vehicle_pf_tracker.recordings.source import Source, open_source
+from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 SHEET = "summary.png"
@@ -57,7 +56,10 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
     """Request of `run`."""
 
     variant: str = option(
-        default="fusion", metavar="NAME", help=f"one of: {', '.join(VARIANTS)} (default: fusion)"
+        default="fusion",
+        choices=Names(VARIANTS),
+        metavar="NAME",
+        help=f"one of: {', '.join(VARIANTS)} (default: fusion)",
     )
     output: Path | None = option(
         "-o", type=Path, metavar="DIR",
@@ -75,19 +77,20 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
 def run(request: Request) -> int:
     """Track, write the results, and print a summary of each target."""
     variant = find_variant(request.variant)
-    source = open_source(
-        request.source, topic=request.topic, fps=request.fps, truth=request.truth,
-        identity=request.identity,
-    )  # fmt: skip
+    source = request.open_source(truth=request.truth, identity=request.id)
     path = request.output or Path("results", Path(request.source).stem or "run")
     outputs = (Products(path, PRODUCTS), request.video, request.recording)
+    stop = Stop()
     with claimed(outputs, (*request.inputs, request.truth), overwrite=request.overwrite):
-        return _track(request, variant, source, RunFolder(path))
+        status = _track(request, variant, source, RunFolder(path), stop)
+    return stop.ended(status)
 
 
-def _track(request: Request, variant: Variant, source: Source, folder: RunFolder) -> int:
+def _track(
+    request: Request, variant: Variant, source: Source, folder: RunFolder, stop: Stop
+) -> int:
     pictures = Pictures(request.video, particles=request.particles)
-    with stopping() as stop, counting("tracked") as progress:
+    with stopping(stop), counting("tracked") as progress:
         (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
         trackers = _trackers(request, variant, source, first, found.stamp_ns)
         recording: AbstractContextManager[OnFrame | None] = nullcontext()
@@ -97,7 +100,11 @@ def _track(request: Request, variant: Variant, source: Source, folder: RunFolder
         with recording as on_frame:
             rows = follow(trackers, frames, pictures, on_frame)
     ended = cut_short(stop, source, max(map(len, rows.values())))
-    of_trackers = itertools.chain.from_iterable(one.notices for one in trackers.values())
+    of_trackers = [
+        f"{name}: {sentence}" if len(trackers) > 1 else sentence
+        for name, tracker in trackers.items()
+        for sentence in tracker.notices
+    ]
     notices = [*source.notices, *of_trackers, *pictures.notices, *ended]
     tell_notices(notices)
     _write(folder, request, source, trackers, rows, notices)
@@ -105,11 +112,11 @@ def _track(request: Request, variant: Variant, source: Source, folder: RunFolder
     for name, of_target in rows.items():
         print(f"{name + ': ' if len(rows) > 1 else ''}{summary(of_target)}")
     print(f"results are in {folder.path}; {SHEET} shows the key frames")
-    if request.video:
+    if request.video and not pictures.problem:
         print(f"the video is {request.video}")
     if request.recording:
         print(f"the recording is {request.recording}, for Foxglove and `ros2 bag play`")
-    return stop.status if ended else 0
+    return stop.status if ended else int(bool(pictures.problem))
 
 
 def _trackers(
@@ -126,8 +133,8 @@ def _trackers(
         if truth is None:
             tell_notices(source.notices)  # they say which truth was seen and not read
             raise UsageError(
-                f"{request.source} has no truth to start on; give the vehicle's box in the first "
-                "image with --target x,y,w,h"
+                f"{request.source} has no truth to start on; draw a box around the vehicle with "
+                f"`{PROGRAM} pick {request.source}`, or give it with --target x,y,w,h"
             )
     return {
         name: OfflineTracker(

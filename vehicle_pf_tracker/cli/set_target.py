@@ -19,13 +19,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.requests import RosOption, option, positional, positive_number
+from vehicle_pf_tracker.cli.requests import RosOptions, positional
 from vehicle_pf_tracker.cli.tracking_options import parse_box
 from vehicle_pf_tracker.core.box import Box
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(RosOption):
+class Request(RosOptions):
     """Request of `set-target`."""
 
     node: str = positional(
@@ -34,10 +34,6 @@ class Request(RosOption):
     box: Box = positional(
         type=parse_box, metavar="X,Y,W,H",
         help="box of the vehicle in px of the image, top-left corner and size",
-    )  # fmt: skip
-    timeout: float = option(
-        type=positive_number, default=10.0, metavar="S",
-        help="longest wait for the node in seconds (default: 10)",
     )  # fmt: skip
 
 

@@ -19,9 +19,11 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 
-from vehicle_pf_tracker.cli.stopping import Stop
+from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.driver import Numbered
 from vehicle_pf_tracker.offline.processes import OnProgress
@@ -95,7 +97,10 @@ def _numbered(
 ) -> Iterator[tuple[int, StampedFrame]]:
     first_ns: int | None = None
     number, is_empty = 0, True
-    for number, found in enumerate(stop.until(source.frames()), start=1):
+    frames = source.frames()
+    if source.frame_count is None:  # it may stall
+        frames = _leavable(frames, stop)
+    for number, found in enumerate(stop.until(frames), start=1):
         first_ns = found.stamp_ns if first_ns is None else first_ns
         elapsed = (found.stamp_ns - first_ns) * 1e-9
         if start is not None and start.after(number, elapsed) > 0:
@@ -109,6 +114,13 @@ def _numbered(
         raise InputError(
             f"no frame lies between --start and --end; {number} frames were read from the source"
         )
+
+
+def _leavable(frames: Iterator[StampedFrame], stop: Stop) -> Iterator[StampedFrame]:
+    """Yield frames until one does not come after a signal."""
+    with suppress(StillAtWork):
+        while (found := stop.leaving(partial(next, frames, None))) is not None:
+            yield found
 
 
 def cut_short(stop: Stop, source: Source, done: int) -> list[str]:

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, wait
@@ -97,6 +98,13 @@ class Stop:
     def status(self) -> int:
         """Exit status that tells of the signal; 0 if none has come."""
         return 0 if self.number is None else SIGNALS_STATUS + self.number
+
+    def ended(self, status: int) -> int:
+        """Return the exit status, or end the process with it where a computation was left."""
+        if self.has_left:
+            sys.stdout.flush()
+            os._exit(status)
+        return status
 
     def until(self, items: Iterable[T]) -> Iterator[T]:
         """Yield items until then."""

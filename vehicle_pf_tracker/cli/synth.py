@@ -22,14 +22,15 @@ from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notice
-from vehicle_pf_tracker.cli.requests import OverwriteOption, option, positional, switch
+from vehicle_pf_tracker.cli.requests import Names, OverwriteOption, option, positional, switch
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
-from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.image.compressed_image import jpeg
+from vehicle_pf_tracker.offline.output_files import replacing
 from vehicle_pf_tracker.offline.pictures import NO_ENCODER, SUFFIX, has_encoder, video_writer
 from vehicle_pf_tracker.parameters.table import specs
-from vehicle_pf_tracker.recordings.importing import FORMATS, jpeg
+from vehicle_pf_tracker.recordings.importing import FORMATS
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.scenes.catalogue import (
     SCENES,
@@ -47,8 +48,9 @@ class Request(OverwriteOption):
     """Request of `synth`."""
 
     scene: str | None = positional(
-        nargs="?", metavar="SCENE", help=f"one of: {', '.join((*SCENES, *TRAFFIC_SCENES))}"
-    )
+        nargs="?", choices=Names((*SCENES, *TRAFFIC_SCENES)), metavar="SCENE",
+        help=f"one of: {', '.join((*SCENES, *TRAFFIC_SCENES))}",
+    )  # fmt: skip
     out: Path | None = positional(
         nargs="?", type=Path, metavar="OUT",
         help="rosbag2 folder to write; or a video, NAME.mp4, with its truth in NAME.csv; the "
@@ -61,7 +63,7 @@ class Request(OverwriteOption):
         help="set a setting of the scene; repeatable",
     )  # fmt: skip
     format: str | None = option(
-        choices=FORMATS, help="pixels, or JPEG files, in a recording (default: raw)"
+        choices=FORMATS, help="how a recording stores images: JPEG, or pixels (default: raw)"
     )
 
 
@@ -139,6 +141,7 @@ def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
     size = scene.width, scene.height
     with (
         claimed([out, table], [], overwrite=overwrite),
+        replacing(table) as partial,
         video_writer(out, size, scene.frame_rate) as write,
         counting("rendered") as progress,
     ):
@@ -149,7 +152,7 @@ def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
             cells = (f"{value:.3f}" for value in (box.x, box.y, box.width, box.height))
             lines.append(f"{number},{','.join(cells)},{rendered.truth.occlusion.value}")
             progress(number, scene.frame_count)
-        write_text(table, "\n".join(lines) + "\n")
+        partial.write_text("\n".join([*lines, ""]), encoding="utf-8", newline="\n")
     return table, boxes[0]
 
 

@@ -157,7 +157,7 @@ class EvaluationRequest(WorkersOption):
 
     sources: Sequence[str] = positional(
         nargs="+", metavar="REC",
-        help="rosbag2 folder or MCAP file with truth, or a folder of such",
+        help="recording or folder of images, with truth, or a folder of such",
     )  # fmt: skip
     output: Path = option(
         "-o", type=Path, required=True, metavar="DIR",
@@ -165,8 +165,8 @@ class EvaluationRequest(WorkersOption):
     )  # fmt: skip
     seeds: int | None = option(
         type=positive, metavar="N",
-        help=f"seeds of each stochastic system (default: {SEEDS}, or {FEW_SEEDS} where the "
-        "cases vary more than seeds do)",
+        help=f"runs of each variant that draws random numbers (default: {SEEDS}, or {FEW_SEEDS} "
+        "with --traffic)",
     )  # fmt: skip
     first_seed: int = option(type=natural, default=0, metavar="S", help="the first of the seeds")
     variants: str = option(
@@ -177,14 +177,15 @@ class EvaluationRequest(WorkersOption):
     )  # fmt: skip
     params: Sequence[str] = option(
         action="append", default=[], metavar="[VARIANT@]LABEL=FILE",
-        help="run a parameter file too, under this label; for all variants that it fits, or one",
+        help="run with this file of parameters too, named LABEL in the results; for all variants "
+        "that it fits, or one",
     )  # fmt: skip
     assignments: Sequence[str] = option(
         "--set", action="append", default=[],
         metavar="[[VARIANT@]LABEL:]NAME=VALUE",
         help="set a parameter: everywhere, or to make or complete the parameter set LABEL",
     )  # fmt: skip
-    without_defaults: bool = switch(help="run the parameter sets alone, where a variant has any")
+    without_defaults: bool = switch(help="leave out the defaults where there is a parameter set")
     baselines_python: Path | None = option(
         type=Path, metavar="FILE",
         help="interpreter of the baselines (default: .venv-baselines/bin/python, else the one "

@@ -18,18 +18,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
-
-import yaml
 
 from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, VerbRequest, option
 from vehicle_pf_tracker.cli.source_part import Moment
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.files import read_yaml
+from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
 
@@ -43,16 +41,22 @@ _OF_ROS_PREFIX = "qos_overrides."
 
 
 @dataclass(frozen=True, kw_only=True)
-class ParameterOptions(VerbRequest):
-    """Options that choose parameters."""
+class StartOptions(VerbRequest):
+    """Options that choose parameters to start from."""
 
     params: Path | None = option(
-        type=Path, metavar="FILE", help="ROS parameter file, as `params` prints it"
+        type=Path, metavar="FILE", help="file of parameters, as the verb params prints it"
     )
     assignments: Sequence[str] = option(
         "--set", action="append", default=[], metavar="NAME=VALUE",
         help="set a parameter, over the file; repeatable",
     )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class ParameterOptions(StartOptions):
+    """Options that choose parameters."""
+
     seed: int | None = option(
         type=int, help="seed of the random numbers; -1 draws one and run.json keeps it"
     )
@@ -118,6 +122,7 @@ def _variants_with(names: Iterable[str], kind: type[Configuration]) -> list[str]
     return [one.name for one in VARIANTS.values() if set(names) <= set(kind.of(one).specs())]
 
 
+TARGET_FORM = "{name: van, frame: 1, box: [310, 202, 40, 30]}"
 _WORDS = re.compile(r"(?:(?P<name>[A-Za-z0-9_-]*)(?:@(?P<frame>[0-9]{1,9}))?:)?(?P<box>[^:@]*)")
 
 
@@ -153,35 +158,41 @@ def parse_target(text: str) -> TargetOption:
     return TargetOption(parse_box(found["box"]), found["name"] or "", frame)
 
 
-def read_targets(path: Path) -> list[TargetOption]:
-    """Read a file of targets, as `pick` writes it.
+def target_of(entry: Mapping[str, Any]) -> TargetOption:
+    """Read a target of a file, as `TARGET_FORM` shows one."""
+    numbers, name = entry["box"], str(entry.get("name", ""))
+    if not isinstance(numbers, list):
+        raise TypeError(numbers)
+    return parse_target(f"{name}@{entry.get('frame', 1)}:{','.join(map(str, numbers))}")
+
+
+def read_list(path: Path, key: str, example: str, read: Callable[[Any], EntryT]) -> list[EntryT]:
+    """Read the list that a YAML file has under `key`.
 
     Raises
     ------
     InputError
-        If it cannot be read, or an entry is not a target.
+        If the file cannot be read, or an entry is not as `list_in` expects it.
     """
-    return read_list(path, "targets", "{name: van, frame: 1, box: [310, 202, 40, 30]}", _entry)
+    return list_in(read_yaml_file(path, key), str(path), key, example, read)
 
 
-def read_list(
-    path: Path, key: str, example: str, read: Callable[[dict[str, Any]], EntryT]
+def list_in(
+    document: Any, where: str, key: str, example: str, read: Callable[[Any], EntryT]
 ) -> list[EntryT]:
-    """Read the list that a YAML file has under `key`, with `example` for a user to follow.
+    """Read the list that `document` has under `key`, with `example` for a user to follow.
 
     Raises
     ------
     InputError
-        If the file cannot be read, or `read` does not take an entry.
+        If there is none, or `read` does not take an entry.
     """
     try:
-        return [read(entry) for entry in yaml.safe_load(path.read_text(encoding="utf-8"))[key]]
-    except OSError as error:
-        raise InputError(f"cannot read the {key} {path}: {error.strerror}") from error
+        return [read(entry) for entry in document[key]]
     except InputError as error:
-        raise InputError(f"the {key} {path}: {error}") from error
-    except (ValueError, KeyError, TypeError, RecursionError, yaml.YAMLError):
-        raise InputError(f"{path} holds no {key}; it must read {key}: [{example}]") from None
+        raise InputError(f"{where}: {error}") from error
+    except (ValueError, KeyError, TypeError, AttributeError):
+        raise InputError(f"{where} holds no {key}; it must read {key}: [{example}]") from None
 
 
 def by_name(targets: Iterable[TargetOption], first: int) -> dict[str, dict[int, Box]]:
@@ -218,14 +229,6 @@ def by_name(targets: Iterable[TargetOption], first: int) -> dict[str, dict[int, 
     return groups
 
 
-def _entry(entry: dict[str, object]) -> TargetOption:
-    numbers = entry["box"]
-    if not isinstance(numbers, list):
-        raise TypeError(numbers)
-    frame, name = entry.get("frame", 1), str(entry.get("name", ""))
-    return parse_target(f"{name}@{frame}:{','.join(map(str, numbers))}")
-
-
 @dataclass(frozen=True, kw_only=True)
 class TrackingRequest(SourceOptions, ParameterOptions, OverwriteOption):
     """Request to track in a source, or in a part of it."""
@@ -253,4 +256,5 @@ class TrackingRequest(SourceOptions, ParameterOptions, OverwriteOption):
 
     def given_targets(self) -> list[TargetOption]:
         """Collect the targets of the command line and of the file."""
-        return [*self.target, *(read_targets(self.targets) if self.targets else [])]
+        of_file = read_list(self.targets, "targets", TARGET_FORM, target_of) if self.targets else []
+        return [*self.target, *of_file]

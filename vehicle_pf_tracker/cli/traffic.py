@@ -16,47 +16,47 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Sequence
-from contextlib import suppress
+from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass
-from functools import partial
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notices
+from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.requests import option, switch
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.offline.detectors import DetectionFile, detector_maker
-from vehicle_pf_tracker.offline.driver import is_road_given
+from vehicle_pf_tracker.offline.counted_vehicles import session_and_counter
+from vehicle_pf_tracker.offline.detectors import DetectionFile, call
+from vehicle_pf_tracker.offline.live_page import LivePage
+from vehicle_pf_tracker.offline.model_files import model_file
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import RUN, RunInfo, describe
 from vehicle_pf_tracker.offline.traffic_following import TrafficRun
 from vehicle_pf_tracker.offline.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
-from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
-from vehicle_pf_tracker.recordings.source import Source, open_source
+from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.association import check_library
-from vehicle_pf_tracker.trackers.traffic.counting import Counter
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, NONE, TOPIC
-from vehicle_pf_tracker.trackers.traffic.session import Detector, TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
 PICTURE = "summary.png"
-PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE)
+HEAT = "heat.png"
+_LAST_PORT = 65535
+PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE, HEAT)
+
+
+def _port(text: str) -> int:
+    """Read a port of a command line."""
+    if not text.isdecimal() or int(text) > _LAST_PORT:
+        raise InputError(f"{text!r} is not a port, 0 to {_LAST_PORT}")
+    return int(text)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +65,7 @@ class Request(TrackingRequest):
 
     output: Path | None = option(
         "-o", type=Path, metavar="DIR",
-        help="folder for tracks.csv, tracks.txt, counts.csv, run.json and summary.png "
+        help="folder for tracks.csv, tracks.txt, counts.csv, run.json, summary.png and heat.png "
         "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
     detections: Path | None = option(
@@ -77,12 +77,19 @@ class Request(TrackingRequest):
         help="find what moves before a standing camera (the default), use a network of yours, or "
         "follow only the vehicles given with --target",
     )  # fmt: skip
-    model: str | None = option(metavar="FILE", help="the network, .onnx: YOLOX, YOLOv8 or SSD")
+    model: str | None = option(
+        metavar="FILE", help="the network, .onnx, or its URL: YOLOX, YOLOv8 or SSD"
+    )
     lines: Path | None = option(
         type=Path,
         metavar="FILE",
         help="lines, zones and regions of interest, lines.yaml",
     )
+    serve: int | None = option(
+        type=_port, nargs="?", const=0, metavar="PORT",
+        help="show picture and counts meanwhile on a page for this machine's browsers; without "
+        "PORT at any free one",
+    )  # fmt: skip
     visible_only: bool = switch(
         help="leave vehicles that are occluded, and so predicted, out of tracks.txt"
     )
@@ -90,17 +97,17 @@ class Request(TrackingRequest):
 
 def run(request: Request) -> int:
     """Follow all vehicles, write the results, and print a summary."""
-    check_library()
     configuration = _configuration(request)
     detections = DetectionFile(request.detections) if request.detections else None
     stop = Stop()
     tracking = _tracking(request, configuration, detections, stop)
-    source = open_source(request.source, topic=request.topic, fps=request.fps)
+    source = request.open_source()
     folder = request.output or Path("results", f"{Path(request.source).stem or 'run'}_traffic")
     outputs = (Products(folder, PRODUCTS), request.video)
     inputs = (*request.inputs, request.detections, request.model, request.lines)
     with claimed(outputs, inputs, overwrite=request.overwrite):
-        status, notices = _follow(request, tracking, source, make_folder(folder), stop)
+        pictures = Pictures(request.video)
+        status, notices = _follow(request, tracking, source, make_folder(folder), stop, pictures)
         notices = [
             *source.notices,
             *(detections.notices if detections is not None else []),
@@ -108,81 +115,63 @@ def run(request: Request) -> int:
         ]
         tell_notices(notices)
         _write(request, configuration, tracking, source, notices, folder)
-    for sentence in tracking.summary.sentences(tracking.counter):
+    detector = str(request.detections or configuration.tracker.detector.kind)
+    for sentence in tracking.sentences(detector):
         print(sentence)
     print(f"results are in {folder}; {PICTURE} shows all paths")
-    if request.video:
+    if request.video and not pictures.problem:
         print(f"the video is {request.video}")
-    if stop.has_left:
-        sys.stdout.flush()
-        os._exit(status)
-    return status
+    return stop.ended(status)
 
 
 def _tracking(
     request: Request, configuration: Configuration, detections: DetectionFile | None, stop: Stop
 ) -> TrafficRun:
     """Make the run, and check all that the options name before the first frame is read."""
-    parameters, settings = configuration.tracker, configuration.session
+    parameters = configuration.tracker
     if parameters.detector.kind == NONE and not (request.detections or request.given_targets()):
         raise UsageError(
             "without a detector nothing is followed; give vehicles with --target x,y,w,h, or "
             "--detections FILE"
         )
-    road = settings.road
-    plane = road.plane(road.lens, road.pose) if is_road_given(road) else None
-    lines = request.lines or parameters.lines
-    plan = read_counting_plan(Path(lines)) if lines else CountingPlan()
-    make_detector = detector_maker(parameters.detector)
-    if make_detector is not None and parameters.detector.kind == MODEL:
-        detector = _LeavableDetector(make_detector(), stop)
-        make_detector = lambda: detector  # noqa: E731 - it keeps nothing between images
-    session = TrafficSession(
-        TrafficTracker(parameters, plane),
-        make_detector,
-        frame_rate=parameters.frame_rate,
-        reset_on_time_jump=settings.reset_on_time_jump,
-        every=parameters.detector.every,
-        regions=plan.regions,
-    )
-    counter = Counter(plan, plane) if plan.is_counting else None
-    return TrafficRun(
-        session, counter, detections_of=detections.of if detections is not None else None
-    )
-
-
-class _LeavableDetector:
-    """Detector whose network is left, with what was tracked, if it does not end after a signal."""
-
-    disturbed = is_blind = False
-
-    def __init__(self, detector: Detector, stop: Stop) -> None:
-        self._detector, self._stop = detector, stop
-
-    def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
-        """Find vehicles."""
-        return self._stop.leaving(partial(self._detector.detect, frame, tracks))
+    # A network that does not end after a signal is left, with what was tracked.
+    run_it = stop.leaving if parameters.detector.kind == MODEL else call
+    with shown_progress() as show:
+        parts = session_and_counter(configuration, run_it, show)
+    return TrafficRun(*parts, detections_of=detections.of if detections is not None else None)
 
 
 def _follow(
-    request: Request, tracking: TrafficRun, source: Source, folder: Path, stop: Stop
+    request: Request,
+    tracking: TrafficRun,
+    source: Source,
+    folder: Path,
+    stop: Stop,
+    pictures: Pictures,
 ) -> tuple[int, list[str]]:
     """Follow all vehicles to the end or to a signal; return the exit status, and notices."""
-    pictures = Pictures(request.video)
-    counts = tracking.counter is not None
+    counts, port = tracking.counter.plan.is_counting, tracking.session.tracker.parameters.page_port
     with (
         stopping(stop),
         counting("tracked") as progress,
+        closing(LivePage(port)) if port >= 0 else nullcontext() as page,
         track_files(folder, counting=counts, visible_only=request.visible_only) as files,
     ):
         first, frames = numbered_part(source, request.start, request.end, stop, progress)
         targets = by_name(request.given_targets(), first[0])
+        if page is not None:
+            print(f"open {page.url} in a browser on this machine", flush=True)
         with suppress(StillAtWork):
-            tracking.follow(frames, files, pictures, targets)
+            tracking.follow_all(frames, files, pictures, page, targets)
     ended = cut_short(stop, source, tracking.summary.frames)
-    if not tracking.paths.write(folder / PICTURE, tracking.counter):
-        (folder / PICTURE).unlink(missing_ok=True)
-    return stop.status if ended else 0, [*tracking.notices, *pictures.notices, *ended]
+    if tracking.paths.ground is None:
+        for name in (PICTURE, HEAT):
+            (folder / name).unlink(missing_ok=True)
+    else:
+        tracking.paths.write(folder / PICTURE, tracking.counter)
+        tracking.heat.write(folder / HEAT, tracking.paths.ground)
+    status = stop.status if ended else int(bool(pictures.problem))
+    return status, [*tracking.notices, *pictures.notices, *ended]
 
 
 def _write(
@@ -201,7 +190,9 @@ def _write(
     )
     if kind == MODEL:
         document["versions"]["onnxruntime"] = metadata.version("onnxruntime")
+        document["model_sha256"] = model_file(configuration.tracker.detector.model)[1]
     document["detector"] = str(request.detections or kind)
+    document["images_with_detections"] = tracking.session.found.images
     document["summary"] = tracking.summary.to_json(tracking.counter)
     write_json(folder / RUN, document)
 
@@ -215,12 +206,13 @@ def _configuration(request: Request) -> Configuration:
         raise UsageError("give either --detections, or --detector and --model")
     if request.model and request.detector not in {None, MODEL}:
         raise UsageError(f"--model is not used by --detector {request.detector}; leave one out")
-    if request.detections:
-        return configuration.updated({"detector.kind": NONE})
-    if request.model:
-        return configuration.updated({"detector.kind": MODEL, "detector.model": request.model})
-    if request.detector:
-        return configuration.updated({"detector.kind": request.detector})
+    kind = NONE if request.detections else MODEL if request.model else request.detector
+    given = {
+        "lines": str(request.lines) if request.lines else None, "page_port": request.serve,
+        "detector.kind": kind, "detector.model": request.model,
+    }  # fmt: skip
+    changes = {name: value for name, value in given.items() if value is not None}
+    configuration = configuration.updated(changes)
     if configuration.tracker.detector.kind == TOPIC:
         raise InputError("detector.kind topic is for nodes; offline, give --detections FILE")
     return configuration

@@ -24,12 +24,15 @@ from vehicle_pf_tracker.cli import system_options
 from vehicle_pf_tracker.cli.console import counting, print_rows, stages, tell_notice
 from vehicle_pf_tracker.cli.requests import (
     MaxDiffOption,
+    Names,
+    TopicOption,
     WorkersOption,
     natural,
     option,
     positional,
     positive,
 )
+from vehicle_pf_tracker.cli.tracking_options import StartOptions
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
@@ -64,13 +67,16 @@ Recordings = Sequence[tuple[Source, dict[int, Truth]]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(MaxDiffOption, WorkersOption):
+class Request(StartOptions, TopicOption, MaxDiffOption, WorkersOption):
     """Request of `tune`."""
 
     sources: Sequence[str] = positional(
         nargs="+", metavar="REC", help="recordings with truth to tune on, or a folder"
     )
-    variant: str = option(required=True, metavar="NAME", help=f"one of: {', '.join(VARIANTS)}")
+    variant: str = option(
+        required=True, choices=Names(VARIANTS), metavar="NAME",
+        help=f"one of: {', '.join(VARIANTS)}",
+    )  # fmt: skip
     output: Path = option(
         "-o", type=Path, required=True, metavar="DIR",
         help="folder for best.yaml and the other results; finished runs in it are kept, the rest "
@@ -102,12 +108,6 @@ class Request(MaxDiffOption, WorkersOption):
     sampler_seed: int = option(
         type=natural, default=0, metavar="S", help="seed of the search itself"
     )
-    params: Path | None = option(type=Path, metavar="FILE", help="parameter file to begin with")
-    assignments: Sequence[str] = option(
-        "--set", action="append", default=[], metavar="NAME=VALUE",
-        help="begin with this value, over the file; repeatable",
-    )  # fmt: skip
-    topic: str | None = option(help="the image topic, where recordings have several")
 
 
 def run(request: Request) -> int:

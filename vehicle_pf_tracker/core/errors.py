@@ -12,12 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Mistakes that a user can correct: their exception, and suggestions for names."""
+"""Mistakes that a user can correct: their exception, unreadable files, suggestions for names."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from difflib import get_close_matches
+from pathlib import Path
 
 
 class InputError(ValueError):
@@ -26,6 +27,24 @@ class InputError(ValueError):
     Raised by every room for bad files, targets, parameters and names. The command line prints the
     sentence on one line and ends with status 1; the node logs it and lives on.
     """
+
+
+def read_text(path: Path, what: str) -> str:
+    """Read a file of text; `what` names it in errors, as ``the truth``.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is not text.
+    """
+    if path.exists() and not path.is_file():
+        raise InputError(f"{what} {path} is not a regular file")
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise InputError(f"cannot read {what} {path}: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{what} {path} is not text: {error}") from error
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:

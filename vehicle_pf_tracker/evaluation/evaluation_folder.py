@@ -33,11 +33,10 @@ from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.tables import csv_text
 from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
-from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.offline.output_files import write_csv
 from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN, damage
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 
@@ -58,6 +57,8 @@ class Source:
         Number of images, and their size in px.
     digest : str
         SHA-256 of its content.
+    identity : int or None
+        Number of the target, where the truth has several.
     """
 
     name: str
@@ -67,7 +68,13 @@ class Source:
     width: int
     height: int
     digest: str
+    identity: int | None = None
 
+
+FORMAT = 2
+"""Format of the folder; folders of another format are refused."""
+PLAN, FAILED = "evaluation.json", "failed.json"
+TRUTH = "truth.csv"
 
 COLUMNS = ("frame", "stamp_ns", "x", "y", "width", "height", "occlusion")
 
@@ -84,7 +91,7 @@ def write_truth(path: Path, truths: Mapping[int, Truth]) -> None:
         [frame, truth.stamp_ns, *astuple(truth.box), truth.occlusion.name.lower()]
         for frame, truth in sorted(truths.items())
     )
-    write_text(path, csv_text(COLUMNS, rows))
+    write_csv(path, COLUMNS, rows)
 
 
 def read_truth(path: Path) -> dict[int, Truth]:
@@ -95,10 +102,7 @@ def read_truth(path: Path) -> dict[int, Truth]:
     InputError
         If there is no such file, or a line of it is not as `write_truth` writes it.
     """
-    try:
-        lines = list(csv.reader(path.read_text(encoding="utf-8").splitlines()))
-    except OSError as error:
-        raise InputError(f"cannot read the truth {path}: {error.strerror}") from error
+    lines = list(csv.reader(read_text(path, "the truth").splitlines()))
     if lines[:1] != [list(COLUMNS)]:
         raise InputError(f"the truth {path} must begin with the line {','.join(COLUMNS)}")
     return dict(_row(path, number, line) for number, line in enumerate(lines[1:], start=2))
@@ -113,12 +117,6 @@ def _row(path: Path, number: int, line: Sequence[str]) -> tuple[int, Truth]:
         return int(frame), Truth(int(stamp_ns), box, Occlusion[occlusion.upper()])
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"line {number} of the truth {path} is broken: {error}") from error
-
-
-FORMAT = 2
-"""Format of the folder; folders of another format are refused."""
-PLAN, FAILED = "evaluation.json", "failed.json"
-TRUTH = "truth.csv"
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,10 +244,9 @@ def read_document(path: Path) -> dict[str, Any]:
     InputError
         If it cannot be read, or is not a JSON object.
     """
+    text = read_text(path, "the file")
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}") from error
+        document = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path} is not JSON: {error}") from error
     if not isinstance(document, dict):
@@ -260,7 +257,7 @@ def read_document(path: Path) -> dict[str, Any]:
 def _source(entry: Mapping[str, Any]) -> Source:
     name, path, topic, digest = (str(entry[key]) for key in ("name", "path", "topic", "digest"))
     frames, width, height = (int(entry[key]) for key in ("frames", "width", "height"))
-    return Source(name, path, topic, frames, width, height, digest)
+    return Source(name, path, topic, frames, width, height, digest, entry.get("identity"))
 
 
 def _system(entry: Mapping[str, Any], seeds: Sequence[int]) -> SystemEntry:

@@ -31,15 +31,21 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.evaluation.occlusions import (
+from vehicle_pf_tracker.evaluation.scores import (
     CLOSE_PX,
+    FrameScore,
     OcclusionScore,
+    Scores,
     count_failures,
     score_occlusions,
 )
-from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING
 from vehicle_pf_tracker.trackers.estimate import Mode
+
+PRECISION_PX = 20.0
+"""Threshold of the precision that the OTB benchmark ranks by."""
+NORMALISED_PRECISION = 0.2
+"""Threshold of the normalised precision that the LaSOT benchmark ranks by."""
 
 PRECISION_THRESHOLDS: Array = np.arange(51, dtype=np.float64)
 """Errors of the centre in px: 0, 1, ... 50."""
@@ -72,46 +78,28 @@ class Curve:
         return float(self.shares[np.argmin(np.abs(self.thresholds - threshold))])
 
 
-def precision_curve(frames: Sequence[FrameScore]) -> Curve | None:
-    """Share of frames with an error of at most each threshold; None without frames.
+def curves(frames: Sequence[FrameScore]) -> dict[str, Curve]:
+    """Return the curves of scored frames by name; none without frames.
 
-    Source: Wu, Lim, Yang 2013, section 4 (OTB).
-    """
-    return _at_most([frame.error for frame in frames], PRECISION_THRESHOLDS)
-
-
-def normalised_precision_curve(frames: Sequence[FrameScore]) -> Curve | None:
-    """Share of frames with a normalised error of at most each threshold; None without frames.
-
-    Source: Mueller et al. 2018, section 4 (TrackingNet); Fan et al. 2019 (LaSOT).
-    """
-    return _at_most([frame.normalised_error for frame in frames], NORMALISED_THRESHOLDS)
-
-
-def success_curve(frames: Sequence[FrameScore]) -> Curve | None:
-    """Share of frames with an overlap above each threshold; None without frames.
-
-    As in OTB's own code an overlap equal to the threshold does not pass, so that the area of a
-    perfect track is 20/21.
+    ``precision``: share of frames with an error of at most each threshold (Wu, Lim, Yang 2013,
+    section 4: OTB). ``normalised``: with a normalised error of at most each (Mueller et al. 2018,
+    section 4: TrackingNet; Fan et al. 2019: LaSOT). ``success``: with an overlap above each; as in
+    OTB's own code one equal to the threshold does not pass, so that a perfect track has 20/21.
     """
     if not frames:
-        return None
+        return {}
+    errors = np.array([[f.error, f.normalised_error] for f in frames], dtype=np.float64)
+    errors[np.isnan(errors)] = np.inf  # of None
     overlaps = np.array([frame.overlap or 0.0 for frame in frames])
-    shares = (overlaps[:, None] > SUCCESS_THRESHOLDS).mean(axis=0)
-    return Curve(SUCCESS_THRESHOLDS, shares)
-
-
-def _at_most(errors: Sequence[float | None], thresholds: Array) -> Curve | None:
-    if not errors:
-        return None
-    known = np.array([np.inf if error is None else error for error in errors])
-    return Curve(thresholds, (known[:, None] <= thresholds).mean(axis=0))
-
-
-PRECISION_PX = 20.0
-"""Threshold of the precision that the OTB benchmark ranks by."""
-NORMALISED_PRECISION = 0.2
-"""Threshold of the normalised precision that the LaSOT benchmark ranks by."""
+    passed = {
+        "precision": (PRECISION_THRESHOLDS, errors[:, :1] <= PRECISION_THRESHOLDS),
+        "success": (SUCCESS_THRESHOLDS, overlaps[:, np.newaxis] > SUCCESS_THRESHOLDS),
+        "normalised": (NORMALISED_THRESHOLDS, errors[:, 1:] <= NORMALISED_THRESHOLDS),
+    }
+    return {
+        name: Curve(thresholds, passes.mean(axis=0))
+        for name, (thresholds, passes) in passed.items()
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,12 +242,13 @@ def _errors_of(counted: Sequence[FrameScore]) -> dict[str, Any]:
 
 
 def _curves_of(counted: Sequence[FrameScore]) -> dict[str, Any]:
-    precision, normalised = precision_curve(counted), normalised_precision_curve(counted)
+    found = curves(counted)
+    precision, success, normalised = map(found.get, ("precision", "success", "normalised"))
     return {
         "precision_20px": precision.at(PRECISION_PX) if precision else None,
-        "precision_auc": _auc(precision),
-        "success_auc": _auc(success_curve(counted)),
-        "normalised_precision_auc": _auc(normalised),
+        "precision_auc": precision.auc if precision else None,
+        "success_auc": success.auc if success else None,
+        "normalised_precision_auc": normalised.auc if normalised else None,
         "normalised_precision_20": normalised.at(NORMALISED_PRECISION) if normalised else None,
     }
 
@@ -283,10 +272,6 @@ def _is_occluded(frame: FrameScore) -> bool:
 
 def _errors(frames: Sequence[FrameScore]) -> list[float]:
     return [frame.error for frame in frames if frame.error is not None]
-
-
-def _auc(curve: Curve | None) -> float | None:
-    return curve.auc if curve else None
 
 
 def _by_mode(frames: Sequence[FrameScore]) -> dict[str, int]:

@@ -19,10 +19,10 @@ The cache key of a result is a digest of everything that determines it, its code
 
 from __future__ import annotations
 
-import ast
 import contextlib
 import functools
 import hashlib
+import importlib.util
 import json
 import os
 import platform
@@ -104,72 +104,32 @@ def variant_modules(variant: Variant) -> set[str]:
     return {variant.tracker.__module__, variant.parameters.__module__}
 
 
-def scoring_digest() -> str:
-    """Digest the code that makes metrics of estimates."""
-    return source_digest(frozenset({"vehicle_pf_tracker.evaluation.metrics"}))
-
-
-_ROOT = Path(__file__).parents[2]
-_PACKAGE = Path(__file__).parents[1].name
-_TABLES = frozenset({f"{_PACKAGE}.trackers.registry"})
-"""Modules that only list others: what is used of them has to be named as a start."""
+_PACKAGE = Path(__file__).parents[1]
+_SHARED = (
+    "core", "road", "parameters", "filtering", "image", "image/kernels", "trackers", "recordings",
+    "scenes", "offline", "evaluation", "evaluation/grid",
+)  # fmt: skip
+"""Folders whose code counts for every result."""
 
 
 @functools.cache
-def source_digest(modules: frozenset[str], root: Path = _ROOT, package: str = _PACKAGE) -> str:
-    """Digest the sources of modules, and of all that they import from the package or their own.
+def source_digest(modules: frozenset[str]) -> str:
+    """Digest the sources of the `_SHARED` folders and of those that `modules` are in.
 
     Parameters
     ----------
     modules : frozenset of str
-        Full names, such as ``vehicle_pf_tracker.trackers.papers.apf``. The registry of variants
-        does not count, so that a variant that comes or changes leaves the others' digests.
-    root : Path
-        The folder that holds the packages' folders.
-    package : str
-        The package's name.
+        Full names, such as ``vehicle_pf_tracker.trackers.papers.apf``: of the trackers, only those
+        beside the modules count. Of a module without a package only its own file counts.
     """
-    seen: set[str] = set()
-    waiting = set(modules)
-    packages = frozenset({package, *(name.split(".")[0] for name in waiting)})
-    while waiting:
-        name = waiting.pop()
-        if name.startswith(f"{package}.") and _path(name, root) is None:
+    paths = {path for name in _SHARED for path in (_PACKAGE / name).glob("*.py")}
+    for name in modules:
+        found = importlib.util.find_spec(name)
+        if found is None or found.origin is None:
             raise ModuleNotFoundError(f"{name} is to count for a cache key, and is not there")
-        seen.add(name)
-        waiting |= imported_modules(name, root, packages) - seen - _TABLES
+        own = Path(found.origin)
+        paths |= set(own.parent.glob("*.py")) if "." in name else {own}
     digest = hashlib.sha256()
-    for name in sorted(seen):
-        digest.update(name.encode() + b"\0" + _source(name, root) + b"\0")
+    for path in sorted(paths):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()
-
-
-def _source(name: str, root: Path) -> bytes:
-    path = _path(name, root)
-    return path.read_bytes() if path else b""
-
-
-@functools.cache
-def imported_modules(name: str, root: Path, packages: frozenset[str]) -> frozenset[str]:
-    """Find the modules of `packages` that the module `name` imports, early or late."""
-    tree = ast.parse(_source(name, root))
-    wanted = (target for node in ast.walk(tree) for target in _targets(node))
-    return frozenset(
-        target for target in wanted if target.split(".")[0] in packages and _path(target, root)
-    )
-
-
-def _targets(node: ast.AST) -> Iterator[str]:
-    if isinstance(node, ast.Import):
-        yield from (alias.name for alias in node.names)
-    elif isinstance(node, ast.ImportFrom) and node.module:
-        yield node.module
-        yield from (f"{node.module}.{alias.name}" for alias in node.names)
-
-
-def _path(name: str, root: Path) -> Path | None:
-    base = root.joinpath(*name.split("."))
-    for path in (base.with_suffix(".py"), base / "__init__.py"):
-        if path.is_file():
-            return path
-    return None

@@ -17,11 +17,18 @@
 One rule serves all systems. What a system estimates is scored as it stands, whatever mode it
 claims. Where it gives no estimate, its last one stands: silence neither helps nor hurts more than
 holding still does. Before its first estimate there is nothing to stand, and the frame is a miss.
+
+As in the VOT challenge, an estimate without overlap with the truth is a failure. In a total
+occlusion the vehicle cannot be seen: its frames do not fail.
+Source: Kristan et al. 2016, "A novel performance evaluation methodology for single-target
+trackers".
 """
 
 from __future__ import annotations
 
+import itertools
 import math
+import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -29,6 +36,15 @@ from vehicle_pf_tracker.core.clock import MAX_DIFF, associate
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.offline.estimates import WAITING, EstimateRow
+
+SETTLING_FRAMES = 15
+"""Frames after the last hidden one before a track is judged: half a second at 30 Hz, in which a
+tracker may re-detect the vehicle."""
+FEWEST_JUDGED = 5
+"""Fewest frames that a recovery is judged by: the mean of fewer says more of noise."""
+CLOSE_PX = 15.0
+"""Error in px that counts as on the vehicle, however small it is: the threshold of
+Scharcanski et al. 2011, section IV, P(error < 15 px)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,3 +184,111 @@ def _span(stamps: Sequence[int]) -> str:
     if not stamps:
         return "none"
     return f"{min(stamps) / 1e9:.3f} to {max(stamps) / 1e9:.3f} s"
+
+
+@dataclass(frozen=True, slots=True)
+class OcclusionScore:
+    """One total occlusion.
+
+    Attributes
+    ----------
+    first_frame, last_frame : int
+        Numbers of the first and the last hidden frame.
+    hidden_frames : int
+        Number of hidden frames with truth.
+    error_inside_px : float or None
+        Mean error over the hidden frames.
+    judged_frames : int
+        Frames from `SETTLING_FRAMES` after `last_frame` until the next total occlusion or the end.
+    error_after_px : float or None
+        Mean error over the judged frames.
+    threshold_px : float or None
+        Mean over them of the larger of `CLOSE_PX` and half the true box's diagonal.
+    recovered : bool or None
+        True if `error_after_px` is below `threshold_px`; None where there are fewer than
+        `FEWEST_JUDGED` frames to judge by.
+    error_at_exit_px : float or None
+        Error in the first frame after `last_frame`.
+    frames_to_recover : int or None
+        Frames from `last_frame` to the first of `FEWEST_JUDGED` scored frames in a row that are on
+        the vehicle (see `threshold`); None where there are none before the next total occlusion.
+    """
+
+    first_frame: int
+    last_frame: int
+    hidden_frames: int
+    error_inside_px: float | None
+    judged_frames: int
+    error_after_px: float | None
+    threshold_px: float | None
+    recovered: bool | None
+    error_at_exit_px: float | None
+    frames_to_recover: int | None
+
+
+def score_occlusions(counted: Sequence[FrameScore]) -> tuple[OcclusionScore, ...]:
+    """Judge every total occlusion in the scored frames of a recording, given in its order."""
+    stretches = list(_hidden_stretches(counted))
+    ends = [begin for begin, _ in stretches[1:]] + [len(counted)]
+    return tuple(
+        _judge(counted[begin:end], counted[end:until])
+        for (begin, end), until in zip(stretches, ends, strict=False)
+    )
+
+
+def threshold(frame: FrameScore) -> float:
+    """Error in px below which the estimate is on the vehicle."""
+    assert frame.truth is not None
+    return max(CLOSE_PX, frame.truth.box.diagonal / 2)
+
+
+def _hidden_stretches(counted: Sequence[FrameScore]) -> Iterator[tuple[int, int]]:
+    for hidden, group in itertools.groupby(enumerate(counted), lambda pair: pair[1].hidden):
+        if hidden:
+            indices = [index for index, _ in group]
+            yield indices[0], indices[-1] + 1
+
+
+def _judge(hidden: Sequence[FrameScore], seen: Sequence[FrameScore]) -> OcclusionScore:
+    last = hidden[-1].row.frame
+    judged = [f for f in seen if f.row.frame >= last + SETTLING_FRAMES and f.error is not None]
+    after, limit = _mean_error(judged), None
+    recovered: bool | None = None
+    if judged:
+        limit = statistics.fmean(map(threshold, judged))
+    if after is not None and limit is not None and len(judged) >= FEWEST_JUDGED:
+        recovered = after < limit
+    return OcclusionScore(
+        first_frame=hidden[0].row.frame,
+        last_frame=last,
+        hidden_frames=len(hidden),
+        error_inside_px=_mean_error(hidden),
+        judged_frames=len(judged),
+        error_after_px=after,
+        threshold_px=limit,
+        recovered=recovered,
+        error_at_exit_px=seen[0].error if seen else None,
+        frames_to_recover=_frames_to_recover(last, seen),
+    )
+
+
+def _frames_to_recover(last_hidden: int, seen: Sequence[FrameScore]) -> int | None:
+    on_vehicle = [frame.error is not None and frame.error < threshold(frame) for frame in seen]
+    for index, frame in enumerate(seen[: len(seen) - FEWEST_JUDGED + 1]):
+        if all(on_vehicle[index : index + FEWEST_JUDGED]):
+            return frame.row.frame - last_hidden
+    return None
+
+
+def _mean_error(frames: Sequence[FrameScore]) -> float | None:
+    errors = [frame.error for frame in frames if frame.error is not None]
+    return statistics.fmean(errors) if errors else None
+
+
+def count_failures(frames: Sequence[FrameScore]) -> int:
+    """Count the stretches of frames in which the estimate misses a visible vehicle.
+
+    Frames in which the vehicle is hidden or the truth is unknown do not end a stretch.
+    """
+    missed = (not frame.overlap for frame in frames if frame.counts and not frame.hidden)
+    return sum(failed for failed, _ in itertools.groupby(missed))

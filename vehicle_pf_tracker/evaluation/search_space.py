@@ -25,6 +25,10 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import Variant
 
+FACTOR = 4.0
+"""A positive parameter is searched from its default over this to its default times this."""
+_DIGITS = 4
+
 
 @dataclass(frozen=True, slots=True)
 class Objective:
@@ -46,11 +50,6 @@ OBJECTIVES: Mapping[str, Objective] = {
     )
 }
 """Objectives by the name of the metric."""
-
-
-FACTOR = 4.0
-"""A positive parameter is searched from its default over this to its default times this."""
-_DIGITS = 4
 
 
 @dataclass(frozen=True, slots=True)

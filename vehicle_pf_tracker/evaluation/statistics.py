@@ -33,6 +33,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+ALPHA = 0.05
+"""Level of the tests."""
+FEWEST_RECORDINGS = 6
+"""Fewest recordings that are tested: a clean sweep of 5 has p = 2 / 2^5, above `ALPHA`."""
 CONFIDENCE = 0.95
 RESAMPLES = 9999
 _GENERATOR = "rng" if "rng" in inspect.signature(stats.bootstrap).parameters else "random_state"
@@ -101,12 +105,6 @@ def mean_of_means(runs: Mapping[str, Sequence[float | None]]) -> float | None:
             return None
         means.append(statistics.fmean(known))
     return statistics.fmean(means) if means else None
-
-
-ALPHA = 0.05
-"""Level of the tests."""
-FEWEST_RECORDINGS = 6
-"""Fewest recordings that are tested: a clean sweep of 5 has p = 2 / 2^5, above `ALPHA`."""
 
 
 @dataclass(frozen=True, slots=True)

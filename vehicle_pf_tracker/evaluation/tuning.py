@@ -34,10 +34,11 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell, VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.grid.running import Runner
-from vehicle_pf_tracker.evaluation.result_store import ResultStore, scoring_digest
+from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.search_space import Dimension, Objective
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means
-from vehicle_pf_tracker.evaluation.tables import NOTHING, csv_text
+from vehicle_pf_tracker.evaluation.tables import NOTHING
+from vehicle_pf_tracker.offline.output_files import csv_text
 from vehicle_pf_tracker.offline.processes import OnProgress
 from vehicle_pf_tracker.parameters.table import Value
 
@@ -96,7 +97,7 @@ class SearchTask:
 
     def key(self, cell: GridCell) -> str:
         """Return the key of a run's score."""
-        return f"{self.objective.metric}-{scoring_digest()[:16]}-{cell.key()}"
+        return f"{self.objective.metric}-{cell.key()}"
 
 
 class Trial(NamedTuple):
@@ -163,10 +164,7 @@ def best_of(trials: Sequence[Trial], objective: Objective) -> Trial:
 
 
 def _run_missing(
-    what: SearchTask,
-    grids: Sequence[Sequence[GridCell] | None],
-    store: ResultStore,
-    runner: Runner,
+    what: SearchTask, grids: Sequence[Sequence[GridCell] | None], store: ResultStore, runner: Runner
 ) -> Iterator[int]:
     """Run what the store lacks, for all candidates; yield the number done after each."""
     cells = {what.key(cell): cell for grid in grids for cell in grid or ()}

@@ -42,6 +42,14 @@ DIRECTION_BINS = 64
 """Bins of the gradient's direction (P2, section III-C)."""
 
 
+def gradients_of(grey: Grey) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.int16]]:
+    """Gradient of equation 6 along x and y, the image mirrored at its border."""
+    gx, gy = (
+        np.asarray(cv2.Sobel(grey, cv2.CV_16S, dx, 1 - dx, ksize=3), np.int16) for dx in (1, 0)
+    )
+    return gx, gy
+
+
 def squared_strength(gx: npt.NDArray[Any], gy: npt.NDArray[Any]) -> Strengths:
     """Squared magnitude of equation 7, in grey levels squared."""
     gx, gy = gx.astype(np.float32), gy.astype(np.float32)
@@ -145,7 +153,5 @@ class GradientDirections(CountedFeature):
 
     def _directions(self, grey: Grey) -> tuple[Strengths, npt.NDArray[np.intp]]:
         """Squared strength and direction at each pixel, the image mirrored at its border."""
-        gx, gy = (
-            np.asarray(cv2.Sobel(grey, cv2.CV_16S, dx, 1 - dx, ksize=3), np.int16) for dx in (1, 0)
-        )
+        gx, gy = gradients_of(grey)
         return squared_strength(gx, gy), direction_bins(gx, gy, signed=self.signed)

@@ -30,7 +30,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.colour import Histogram, bin_count, bin_indices
-from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient
+from vehicle_pf_tracker.image.similarity import Reference, bhattacharyya_coefficient
 from vehicle_pf_tracker.image.window import Centres, Coefficients, Positions, Window, centres
 
 Indices = npt.NDArray[np.intp]
@@ -83,7 +83,7 @@ def kernel_histogram(
 
 
 def kernel_similarity(
-    frame: Frame, positions: Positions, window: Window, reference: Histogram, bits: int
+    frame: Frame, positions: Positions, window: Window, reference: Reference, bits: int
 ) -> Coefficients:
     """Bhattacharyya coefficient of each kernel-weighted histogram with `reference` (eq. 17).
 
@@ -95,7 +95,7 @@ def kernel_similarity(
         Kernel centres in px; kept inside the image.
     window : Window
         Box around the kernel's ellipse.
-    reference : (bin_count(bits),) array
+    reference : Reference
         Kernel-weighted histogram of the target.
     bits : int
         Bits a channel.
@@ -105,14 +105,13 @@ def kernel_similarity(
     (N,) array
         From 0 to 1.
     """
-    active = np.flatnonzero(reference)
-    cells = _cells(frame, _pixels(frame, positions), window, active, bits)
-    masses = _masses(cells, epanechnikov(window), len(active))
-    return bhattacharyya_coefficient(masses, reference[active])
+    cells = _cells(frame, _pixels(frame, positions), window, reference.active, bits)
+    masses = _masses(cells, epanechnikov(window), len(reference.active))
+    return bhattacharyya_coefficient(masses, reference.values)
 
 
 def mean_shift(
-    frame: Frame, positions: Positions, window: Window, reference: Histogram, bits: int
+    frame: Frame, positions: Positions, window: Window, reference: Reference, bits: int
 ) -> Positions:
     """Move every position one mean-shift step towards the reference's colours (eq. 25 and 26).
 
@@ -127,11 +126,10 @@ def mean_shift(
         Mean of the ellipse's pixels, each weighted by ``sqrt(q / p)`` of its colour; the position
         itself where the ellipse has no colour of the reference.
     """
-    kernel, active = epanechnikov(window), np.flatnonzero(reference)
-    pixel = _pixels(frame, positions)
-    cells = _cells(frame, pixel, window, active, bits)
-    masses = _masses(cells, kernel, len(active))
-    weights = _pixel_weights(masses, reference[active], cells)
+    kernel, pixel = epanechnikov(window), _pixels(frame, positions)
+    cells = _cells(frame, pixel, window, reference.active, bits)
+    masses = _masses(cells, kernel, len(reference.active))
+    weights = _pixel_weights(masses, reference.values, cells)
     total = weights.sum(axis=1)
     moved = total > 0
     step = (weights @ kernel.offsets)[moved] / total[moved, np.newaxis]

@@ -29,15 +29,14 @@ from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.image.target_pixels import doubts
+from vehicle_pf_tracker.image.target_pixels import Stillness, doubts
 from vehicle_pf_tracker.offline.drawing import Annotator, annotated
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame
 from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
-from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.estimate import START, Estimate
 from vehicle_pf_tracker.trackers.image_stream import StrayImageError
 from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS, Localisation
 from vehicle_pf_tracker.trackers.registry import Variant
@@ -101,6 +100,7 @@ class OfflineTracker:
         self._on_road: list[Mapping[str, float]] = []
         self._off_road: Counter[str] = Counter()
         self._targets = targets
+        self._stillness = Stillness()
         self.estimate: Estimate | None = None
 
     def rows(
@@ -191,6 +191,10 @@ class OfflineTracker:
             return EstimateRow.without(number, stamp_ns, WAITING)
         if self.start_frame is None:
             self.start_frame = number
+        if estimate.regime == START:
+            self._stillness.begin(estimate.box, stamp_ns)
+        said = self._stillness.look(frame, estimate.box, stamp_ns)
+        self._notices += [f"frame {number}: {sentence}" for sentence in said]
         self._locate(estimate, stamp_ns)
         return EstimateRow.from_scalars(number, stamp_ns, estimate.scalars())
 
@@ -212,23 +216,7 @@ class OfflineTracker:
 def _localisation(session: Session) -> Localisation | None:
     """Make the localisation where a road is set."""
     road = session.settings.road
-    return Localisation(session.variant.name, road) if is_road_given(road) else None
-
-
-def is_road_given(road: RoadParameters) -> bool:
-    """Return whether a road is set.
-
-    Raises
-    ------
-    InputError
-        If its lens or its pose are to come from topics, which only nodes have.
-    """
-    if road.is_set and (road.from_camera_info or road.from_tf):
-        raise InputError(
-            "road.from_camera_info and road.from_tf are for nodes; offline, give road.intrinsics, "
-            "road.distortion and road.camera_pose"
-        )
-    return road.is_set
+    return Localisation(session.variant.name, road) if road.fixed_plane() else None
 
 
 def with_target(settings: SessionParameters, box: Box) -> SessionParameters:

@@ -25,8 +25,8 @@ from pathlib import Path
 from types import MappingProxyType
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.core.errors import InputError, read_text
+from vehicle_pf_tracker.offline.output_files import write_csv
 from vehicle_pf_tracker.trackers.estimate import Mode
 
 WAITING = "WAITING"
@@ -124,7 +124,7 @@ def write_estimates(
     """
     found = zip(rows, *extra.values(), strict=True)
     cells = ((*astuple(row), *more) for row, *more in found)
-    _write_table(path, [*COLUMNS, *extra], cells)
+    write_csv(path, [*COLUMNS, *extra], cells)
 
 
 def write_tracks(path: Path, rows: Mapping[str, Sequence[EstimateRow]]) -> None:
@@ -142,17 +142,7 @@ def write_tracks(path: Path, rows: Mapping[str, Sequence[EstimateRow]]) -> None:
         for of_frame in zip(*rows.values(), strict=True)
         for name, row in zip(rows, of_frame, strict=True)
     )
-    _write_table(path, ["target", *COLUMNS], cells)
-
-
-def _write_table(
-    path: Path, header: Sequence[str], rows: Iterable[Sequence[float | str | None]]
-) -> None:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(rows)  # numbers with every digit, None as an empty cell
-    write_text(path, text.getvalue())
+    write_csv(path, ["target", *COLUMNS], cells)
 
 
 def read_estimates(path: Path) -> list[EstimateRow]:
@@ -163,11 +153,7 @@ def read_estimates(path: Path) -> list[EstimateRow]:
     InputError
         If there is no such file, or a line of it is not as `write_estimates` writes it.
     """
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not text"
-        raise InputError(f"cannot read the estimates {path}: {reason}") from error
+    text = read_text(Path(path), "the estimates")
     header, *lines = list(csv.reader(io.StringIO(text))) or [[]]
     if tuple(header[: len(COLUMNS)]) != COLUMNS:
         raise InputError(f"the estimates {path} must begin with the line {','.join(COLUMNS)}")

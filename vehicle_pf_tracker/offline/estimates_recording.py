@@ -27,6 +27,7 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.drawing import (
     COLOURS,
     NEUTRAL,
@@ -37,15 +38,15 @@ from vehicle_pf_tracker.offline.drawing import (
 )
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.cdr import IMAGE_ANNOTATIONS, message_class
-from vehicle_pf_tracker.recordings.importing import jpeg
-from vehicle_pf_tracker.recordings.messages import as_token
-from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.recordings.topics import (
+from vehicle_pf_tracker.recordings.messages import (
     DIAGNOSTIC_ARRAY,
+    IMAGE_ANNOTATIONS,
     POINT_STAMPED,
     POLYGON_STAMPED,
+    as_token,
+    message_class,
 )
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.estimate import Mode
 

@@ -93,12 +93,12 @@ class PageHandler(BaseHTTPRequestHandler):
         base = self.server.base
         return self.path[len(base) :] if self.path.startswith(base) else None
 
-    def answer(self, content: Content | None) -> None:
+    def answer(self, content: Content | None, status: HTTPStatus = HTTPStatus.OK) -> None:
         """Send content; None is not found."""
         if content is None:
             self.send_error(HTTPStatus.NOT_FOUND)
             return
-        self.send_response(HTTPStatus.OK)
+        self.send_response(status)
         self.send_header("Content-Type", content[0])
         self.send_header("Content-Length", str(len(content[1])))
         self.send_header("Cache-Control", "no-store")

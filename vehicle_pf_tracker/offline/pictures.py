@@ -219,21 +219,29 @@ class Pictures:
     ----------
     sheet : ContactSheet
         The key frames.
+    problem : str
+        Reason why there is no video though one was asked for, as a full disk; else empty.
     """
 
     def __init__(self, video: Path | None = None, *, particles: bool = False) -> None:
         self.video = video
         self.particles = particles
         self.sheet = ContactSheet()
+        self.problem = ""
 
     @property
     def notices(self) -> list[str]:
         """Shortcomings of the video, a sentence each."""
+        if self.problem:
+            return [f"{self.problem}; all else is written"]
         return [NO_ENCODER] if self.video and not has_encoder() else []
 
     @contextmanager
     def drawing(self, rate: float) -> Iterator[Take]:
-        """Give a function that takes each frame; `rate` is the usual number of them per second."""
+        """Give a function that takes each frame; `rate` is the usual number of them per second.
+
+        A video that breaks off is removed, and is the run's `problem`: it costs no estimate.
+        """
         with ExitStack() as stack:
             write: Write | None = None
             at, last_ns = 0.0, 0
@@ -241,7 +249,7 @@ class Pictures:
             def take(modes: tuple[str, ...], draw: Draw, frame: Frame, stamp_ns: int) -> None:
                 nonlocal write, at, last_ns
                 self.sheet.add(modes, draw)
-                if self.video is None:
+                if self.video is None or self.problem:
                     return
                 if write is None:
                     writing = video_writer(self.video, frame_size(frame), rate)
@@ -250,6 +258,21 @@ class Pictures:
                     gap = (stamp_ns - last_ns) / 1e9
                     at += gap if 0 < gap <= _LONGEST_GAP else 1 / rate
                 last_ns = stamp_ns
-                write(draw(), at)
+                picture = draw()
+                try:
+                    write(picture, at)
+                except OSError as error:
+                    with self._noting():
+                        stack.__exit__(type(error), error, None)
 
             yield take
+            with self._noting():
+                stack.pop_all().close()
+
+    @contextmanager
+    def _noting(self) -> Iterator[None]:
+        """Note why the video cannot be written."""
+        try:
+            yield
+        except InputError as error:
+            self.problem = str(error)

@@ -17,37 +17,41 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
 from types import MappingProxyType
 
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles
 from vehicle_pf_tracker.offline.driver import RATE_FRAMES, Numbered, frame_rate_of
 from vehicle_pf_tracker.offline.estimates import clock_words
+from vehicle_pf_tracker.offline.live_page import LivePage
 from vehicle_pf_tracker.offline.pictures import Pictures
-from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, annotated
-from vehicle_pf_tracker.offline.traffic_results import TrackFiles, TrafficSummary
+from vehicle_pf_tracker.offline.traffic_pictures import HeatPicture, PathPicture
+from vehicle_pf_tracker.offline.traffic_results import TrackFiles
+from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.session import TrackerError
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
+from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 _MOST_NOTICES = 20
 """Notices kept, what a screen holds: a camera without a clock gives one per frame, for hours."""
 
 
-class TrafficRun:
+class TrafficRun(CountedVehicles):
     """One pass over a source.
 
     Parameters
     ----------
     session : TrafficSession
         Drives the tracker.
-    counter : Counter or None
+    counter : Counter, optional
         Counts at lines and in zones.
     detections_of : callable or None
         Gives the detections of a frame by its number, from 1; None leaves them to the session.
@@ -58,6 +62,8 @@ class TrafficRun:
         Vehicles and occlusions.
     paths : PathPicture
         Picture of all paths.
+    heat : HeatPicture
+        Picture of where vehicles drove and stood.
     """
 
     def __init__(
@@ -67,17 +73,16 @@ class TrafficRun:
         *,
         detections_of: Callable[[int], Detections] | None = None,
     ) -> None:
-        self.session = session
-        self.counter = counter
+        super().__init__(session, counter)
         self.summary = TrafficSummary()
         self.paths = PathPicture()
+        self.heat = HeatPicture()
         self._notices: list[str] = []
         self._more_notices = 0
         self._last_events: list[str] = []
         self._detections_of = detections_of
         self._targets: Mapping[str, Mapping[int, Box]] = {}
         self._by_name: dict[str, int] = {}
-        self._restarts = 0
 
     @property
     def notices(self) -> list[str]:
@@ -91,11 +96,12 @@ class TrafficRun:
         else:
             self._more_notices += 1
 
-    def follow(
+    def follow_all(
         self,
         frames: Numbered,
         files: TrackFiles,
         pictures: Pictures | None = None,
+        page: LivePage | None = None,
         targets: Mapping[str, Mapping[int, Box]] = MappingProxyType({}),
     ) -> None:
         """Follow all vehicles through `frames`.
@@ -108,6 +114,8 @@ class TrafficRun:
             Files of the results.
         pictures : Pictures or None
             Pictures to make meanwhile.
+        page : LivePage or None
+            Page to show them on.
         targets : mapping of str to mapping of int to Box
             Vehicles given by hand, by name: boxes in px by the numbers of their frames.
 
@@ -124,23 +132,61 @@ class TrafficRun:
         start_ns = ahead[0][1].stamp_ns
         with pictures.drawing(frame_rate_of(ahead)) as take:
             for number, found in itertools.chain(ahead, frames):
-                estimates = self._step(number, found)
-                if found.frame is None or estimates is None:
+                crossings = self._step(number, found)
+                if found.frame is None or crossings is None:
                     continue
-                self._write(number, found.stamp_ns, estimates, files)
+                estimates = self.estimates
+                files.write(number, found.stamp_ns, estimates, crossings)
+                self.summary.add(estimates, self.counter.occupancy)
                 self.paths.add(found.frame, estimates)
-                words = _words(number, found.stamp_ns - start_ns, estimates)
-                draw = partial(annotated, found.frame, words, estimates, self.counter)
+                self.heat.add(found.frame, estimates, self.session.tracker.frame_period)
+                elapsed = clock_words(found.stamp_ns - start_ns)
+                draw = partial(self.drawn, found.frame, f"{elapsed}  frame {number}  ")
                 take((), draw, found.frame, found.stamp_ns)
+                if page is not None:
+                    page.show(draw, self.facts)
 
-    def _step(self, number: int, found: StampedFrame) -> tuple[TrackEstimate, ...] | None:
+    def sentences(self, detector: str) -> list[str]:
+        """Return the summary, a line for each fact, or why there is no vehicle.
+
+        Parameters
+        ----------
+        detector : str
+            Kind of the detector, or the file of detections.
+        """
+        if self.summary.vehicles:
+            return self.summary.sentences(self.counter)
+        frames, found = self.summary.frames, self.session.found
+        inside = found.boxes - found.outside
+        if found.disturbed and 2 * found.images < frames:
+            why = (
+                "the camera moves, and motion is detected before a standing one only; give "
+                "--detections or --model"
+            )
+        elif not found.images:
+            why = "they are too few to learn what stands, which takes a second; give a longer clip"
+        elif not found.boxes:
+            why = {
+                MOTION: "nothing moves in them",
+                MODEL: "the network finds no vehicle; try --set detector.min_score=0.1",
+            }.get(detector, f"{detector} has no box in them")
+        elif not inside:
+            why = f"all {found.boxes} detections are outside the regions of interest"
+        else:
+            why = (
+                f"detections ({inside}) repeat too rarely to be vehicles; give them with "
+                "--target, or a file of `pick` with --targets"
+            )
+        return [f"no vehicle was found in {frames} frames: {why}"]
+
+    def _step(self, number: int, found: StampedFrame) -> tuple[Crossing, ...] | None:
         """Take a frame; None where it is rejected, so that nothing is known of its time."""
         if found.frame is None:
             self._note(f"frame {number} was rejected: it cannot be read")
             return None
         detections = self._detections_of(number) if self._detections_of is not None else None
         try:
-            estimates = self.session.feed(found.frame, found.stamp_ns, detections)
+            crossings = super().follow(found.frame, found.stamp_ns, detections)
         except (InputError, TrackerError) as error:
             if isinstance(error, TrackerError) and error.persists:
                 raise
@@ -150,17 +196,13 @@ class TrafficRun:
             if event not in self._last_events:  # one that lasts is told once
                 self._note(f"frame {number}: {event}")
         self._last_events = list(self.session.events)
-        if self.session.restarts != self._restarts:
-            self._begin_anew()
         self._add_targets(found.frame, number)
-        return estimates
+        return crossings
 
     def _begin_anew(self) -> None:
-        """Note that the session has discarded all vehicles but those that it kept."""
-        self._restarts, kept = self.session.restarts, self.session.successors
+        super()._begin_anew()
+        kept = self.session.successors
         self._by_name = {name: kept[old] for name, old in self._by_name.items() if old in kept}
-        if self.counter is not None:
-            self.counter.forget_vehicles()
 
     def _add_targets(self, frame: Frame, number: int) -> None:
         """Follow the vehicles given for this frame; a name given again replaces the one before."""
@@ -174,19 +216,3 @@ class TrafficRun:
             if name in self._by_name:
                 self.session.remove(self._by_name[name])
             self._by_name[name] = self.session.add(box, "" if name.isdecimal() else name)
-
-    def _write(
-        self, number: int, stamp_ns: int, estimates: Sequence[TrackEstimate], files: TrackFiles
-    ) -> None:
-        crossings = self.counter.update(estimates, stamp_ns) if self.counter is not None else ()
-        files.write(number, stamp_ns, estimates, crossings)
-        occupancy = self.counter.occupancy if self.counter is not None else {}
-        self.summary.add(estimates, occupancy)
-
-
-def _words(number: int, elapsed_ns: int, estimates: Sequence[TrackEstimate]) -> str:
-    """Return the line of words over a frame."""
-    confirmed = sum(one.mode in CONFIRMED for one in estimates)
-    hidden = sum(one.mode is TrackMode.OCCLUDED for one in estimates)
-    occluded = f", {hidden} occluded" if hidden else ""
-    return f"{clock_words(elapsed_ns)}  frame {number}  {confirmed} vehicles{occluded}"

@@ -12,25 +12,24 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Results of a run over many vehicles: its files, written row by row, and its summary."""
+"""Files of a run over many vehicles, written row by row."""
 
 from __future__ import annotations
 
 import csv
 import math
-from collections import Counter as Tally
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, replace
 from pathlib import Path
 from typing import Any, TextIO
 
 from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.offline.output_files import replacing
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.watches import ENTRY, EXIT
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 TRACKS, MOT_TRACKS, COUNTS = "tracks.csv", "tracks.txt", "counts.csv"
 
@@ -42,6 +41,7 @@ TRACK_COLUMNS = (
 per nominal frame period, which is also the unit of age."""
 COUNT_COLUMNS = (
     "frame", "stamp_ns", "place", "direction", "id", "label", "mode", "speed_px_s", "speed_kmh",
+    "doubt",
 )  # fmt: skip
 """Columns of `counts.csv`: the stamp is that of the crossing, the frame the one it counted in."""
 
@@ -52,6 +52,7 @@ threshold of a half leaves no predicted box."""
 
 IN_TRACKS = frozenset({TrackMode.TENTATIVE, *CONFIRMED})
 """Modes of numbered vehicles that `tracks.txt` has."""
+_SEEN = frozenset({TrackMode.TENTATIVE, TrackMode.TRACKING})
 _HELD_FRAMES = 90
 """Frames that are held back at most until their tentative vehicles are known: 3 s at 30 Hz."""
 FrameEstimates = tuple[int, int, Sequence[TrackEstimate]]
@@ -62,7 +63,8 @@ Frames = Iterator[FrameEstimates]
 class Backdating:
     """Holds frames back until it is known which of their tentative vehicles are confirmed.
 
-    These get their numbers from their first detection on; the others are left out.
+    These get their numbers from their first detection on; the others are left out. A hidden vehicle
+    that was found again has the boxes of the track that it turned out to be, not its prediction.
     """
 
     def __init__(self) -> None:
@@ -72,7 +74,9 @@ class Backdating:
     def add(self, frame: int, stamp_ns: int, estimates: Sequence[TrackEstimate]) -> Frames:
         """Take the next frame, and return those that are known, in order."""
         self._held.append((frame, stamp_ns, estimates))
-        self._numbers.update({one.serial: one.identity for one in estimates if one.identity})
+        known = [one for one in estimates if one.identity]
+        self._numbers.update({one.serial: one.identity for one in known})
+        self._numbers.update({one.joined: one.identity for one in known if one.joined})
         open_ones = {one.serial for one in estimates if not one.identity}
         while self._held and (
             len(self._held) > _HELD_FRAMES
@@ -88,11 +92,13 @@ class Backdating:
     def _known(
         self, frame: int, stamp_ns: int, estimates: Sequence[TrackEstimate]
     ) -> FrameEstimates:
-        numbered = [
-            one if one.identity else replace(one, identity=self._numbers.get(one.serial, 0))
-            for one in estimates
-        ]
-        return frame, stamp_ns, [one for one in numbered if one.identity]
+        by_number: dict[int, TrackEstimate] = {}
+        for one in estimates:
+            number = self._numbers.get(one.serial, 0)
+            other = by_number.get(number)
+            if number and (other is None or other.mode not in _SEEN):
+                by_number[number] = one if one.identity == number else replace(one, identity=number)
+        return frame, stamp_ns, list(by_number.values())
 
 
 class TrackFiles:
@@ -188,11 +194,14 @@ def _track_row(frame: int, stamp_ns: int, one: TrackEstimate) -> list[Any]:
     ]  # fmt: skip
 
 
-def _mot_row(frame: int, one: TrackEstimate) -> str:
+def mot_numbers(frame: int, one: TrackEstimate) -> list[float]:
     """Return the MOTChallenge row of a tracked or occluded vehicle."""
     share = _HIDDEN_CONFIDENCE if one.mode is TrackMode.OCCLUDED else 1.0
-    numbers = ",".join(f"{value:.2f}" for value in astuple(one.box))
-    return f"{frame},{one.identity},{numbers},{share * one.confidence:.4f},-1,-1,-1\n"
+    return [frame, one.identity, *astuple(one.box), share * one.confidence, -1, -1, -1]
+
+
+def _mot_row(frame: int, one: TrackEstimate) -> str:
+    return "{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.4f},{},{},{}\n".format(*mot_numbers(frame, one))
 
 
 def _count_row(frame: int, crossing: Crossing) -> list[Any]:
@@ -201,160 +210,10 @@ def _count_row(frame: int, crossing: Crossing) -> list[Any]:
     return [
         frame, crossing.stamp_ns, crossing.place, crossing.direction, crossing.identity,
         crossing.label, crossing.mode.value,
-        *("" if speed is None else f"{speed:.2f}" for speed in speeds),
+        *("" if speed is None else f"{speed:.2f}" for speed in speeds), crossing.doubt,
     ]  # fmt: skip
 
 
 def _exact(value: float) -> str:
     """Return a number with all its digits; "" for one that is not known."""
     return "" if math.isnan(value) else repr(float(value))
-
-
-@dataclass(slots=True)
-class VehicleLog:
-    """Life of one vehicle in a run.
-
-    Attributes
-    ----------
-    label : str
-        Class; "" where it is unknown.
-    survived : int
-        Occlusions after which it was visible under the same number.
-    is_hidden : bool
-        True from the beginning of an occlusion until it is visible again.
-    """
-
-    label: str = ""
-    survived: int = 0
-    is_hidden: bool = False
-
-
-class TrafficSummary:
-    """Counts vehicles and occlusions, frame by frame.
-
-    Attributes
-    ----------
-    frames : int
-        Frames so far.
-    most_at_once : int
-        Largest number of confirmed vehicles in a frame.
-    vehicles : dict of int to VehicleLog
-        Every vehicle that was visible and confirmed, by its number.
-    """
-
-    def __init__(self) -> None:
-        self.frames = 0
-        self.most_at_once = 0
-        self.vehicles: dict[int, VehicleLog] = {}
-        self._occupancy: Tally[str] = Tally()
-        self._most_in_zone: dict[str, int] = {}
-
-    def add(self, estimates: Iterable[TrackEstimate], occupancy: Mapping[str, int]) -> None:
-        """Take the next frame, and the number of vehicles in each zone."""
-        self.frames += 1
-        confirmed = [one for one in estimates if one.mode in (*CONFIRMED, TrackMode.LOST)]
-        for one in confirmed:
-            self._follow(one)
-        present = sum(one.mode is not TrackMode.LOST for one in confirmed)
-        self.most_at_once = max(self.most_at_once, present)
-        for zone, count in occupancy.items():
-            self._occupancy[zone] += count
-            self._most_in_zone[zone] = max(count, self._most_in_zone.get(zone, 0))
-
-    def _follow(self, one: TrackEstimate) -> None:
-        is_visible = one.mode is TrackMode.TRACKING
-        vehicle = self.vehicles.get(one.identity)
-        if vehicle is None:
-            if is_visible:
-                self.vehicles[one.identity] = VehicleLog(one.label)
-            return
-        if is_visible:
-            vehicle.survived += vehicle.is_hidden
-            vehicle.label = one.label or vehicle.label
-        vehicle.is_hidden = not is_visible
-
-    @property
-    def survived(self) -> int:
-        """Occlusions after which a vehicle was visible under the same number."""
-        return sum(one.survived for one in self.vehicles.values())
-
-    @property
-    def ended_hidden(self) -> int:
-        """Vehicles that stayed invisible after their last occlusion."""
-        return sum(one.is_hidden for one in self.vehicles.values())
-
-    def sentences(self, counter: Counter | None = None) -> list[str]:
-        """Return the summary, a line for each fact."""
-        if not self.vehicles:
-            return [f"no vehicle was found in {self.frames} frames"]
-        found = [
-            f"{_number(len(self.vehicles), 'vehicle')} in {self.frames} frames, at most "
-            f"{self.most_at_once} at once{self._classes()}",
-            f"{_number(self.survived, 'occlusion')} survived under the same number; "
-            f"{_number(self.ended_hidden, 'vehicle')} not seen again after an occlusion",
-        ]
-        return found + (self._counts(counter) if counter is not None else [])
-
-    def to_json(self, counter: Counter | None = None) -> dict[str, Any]:
-        """Return the summary for `run.json`."""
-        document: dict[str, Any] = {
-            "frames": self.frames,
-            "vehicles": len(self.vehicles),
-            "most_at_once": self.most_at_once,
-            "occlusions_survived": self.survived,
-            "ended_occluded": self.ended_hidden,
-        }
-        if counter is not None:
-            document["counts"] = [
-                {"place": place, "direction": direction, "class": label, "count": count}
-                for (place, direction, label), count in sorted(counter.totals.items())
-            ]
-            document["occupancy"] = {
-                zone.name: {
-                    "mean": self._mean_in(zone.name),
-                    "most": self._most_in_zone.get(zone.name, 0),
-                }
-                for zone in counter.plan.zones
-            }
-        return document
-
-    def _classes(self) -> str:
-        classes = Tally(one.label for one in self.vehicles.values() if one.label)
-        return f" ({_listed(classes)})" if classes else ""
-
-    def _counts(self, counter: Counter) -> list[str]:
-        lines = [
-            f"line {line.name}: "
-            + ", ".join(_direction(counter, line.name, to) for to in line.directions)
-            for line in counter.plan.lines
-        ]
-        zones = [
-            f"zone {zone.name}: {counter.count(zone.name, ENTRY)} entered, "
-            f"{counter.count(zone.name, EXIT)} left, {self._mean_in(zone.name):.1f} there on "
-            f"average, at most {self._most_in_zone.get(zone.name, 0)}"
-            for zone in counter.plan.zones
-        ]
-        return lines + zones
-
-    def _mean_in(self, zone: str) -> float:
-        return self._occupancy[zone] / max(self.frames, 1)
-
-
-def _direction(counter: Counter, place: str, direction: str) -> str:
-    classes = Tally(
-        {
-            label: count
-            for (at, to, label), count in counter.totals.items()
-            if (at, to) == (place, direction) and label
-        }
-    )
-    known = f" ({_listed(classes)})" if classes else ""
-    return f"{counter.count(place, direction)} {direction}{known}"
-
-
-def _listed(classes: Tally[str]) -> str:
-    return ", ".join(f"{count} {label}" for label, count in classes.most_common())
-
-
-def _number(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"

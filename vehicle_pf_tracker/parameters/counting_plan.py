@@ -34,6 +34,8 @@ _MOST_CORNERS = 100
 _LONGEST_NAME = 80
 """Letters of a name, which is written into pictures and tables."""
 
+_SECTIONS = ("lines", "zones", "roi", "targets", "pairs")
+"""Sections of a file of `pick`; the last two are for others."""
 _LINE_KEYS = ("from", "to", "directions")
 _REGION_KEYS = ("inside", "outside")
 _DEFAULT_DIRECTIONS = ("in", "out")
@@ -139,12 +141,14 @@ def read_counting_plan(path: Path) -> CountingPlan:
 def parse_counting_plan(document: Any) -> CountingPlan:
     """Make the plan of a document: ``lines``, ``zones`` and ``roi``, each a mapping by name.
 
+    Other sections of a file of `pick` are left to their own readers.
+
     Raises
     ------
     InputError
         If a key is unknown, a point is not two numbers, or a line or polygon is degenerate.
     """
-    sections = _mapping(document, "the file", ("lines", "zones", "roi"))
+    sections = _mapping(document, "the file", _SECTIONS)
     lines = _named(sections.get("lines"), "lines")
     zones = _named(sections.get("zones"), "zones")
     for name in lines:

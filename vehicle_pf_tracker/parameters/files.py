@@ -23,7 +23,7 @@ from typing import Any
 
 import yaml
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec, Value
 
 _LARGEST_FILE = 2**20
@@ -79,17 +79,14 @@ def read_yaml_file(path: Path, what: str) -> Any:
 
 
 def _load(path: Path, what: str, get: Callable[[_Loader], Any]) -> Any:
-    if path.exists() and not path.is_file():
-        raise InputError(f"the {what} {path} is not a regular file")
-    if path.exists() and path.stat().st_size > _LARGEST_FILE:
+    if path.is_file() and path.stat().st_size > _LARGEST_FILE:
         raise InputError(f"the {what} {path} is larger than {_LARGEST_FILE // 2**20} MB")
+    text = read_text(path, f"the {what}")
     try:
-        return get(_Loader(path.read_text(encoding="utf-8")))
-    except OSError as error:
-        raise InputError(f"cannot read the {what} {path}: {error.strerror}") from None
+        return get(_Loader(text))
     except RecursionError:
         raise InputError(f"the {what} {path} is not valid YAML: it is nested too deeply") from None
-    # ValueError: bytes that are not text, numbers of thousands of digits, dates that are none.
+    # ValueError: characters that YAML forbids, numbers of thousands of digits, dates that are none.
     except (yaml.YAMLError, ValueError) as error:
         reason = " ".join(str(error).split())[:300]
         raise InputError(f"the {what} {path} is not valid YAML: {reason}") from None

@@ -12,17 +12,20 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Parameters of the mapping from pixels to the road."""
+"""Parameters of the mapping from pixels to the road, and their text: pairs, lens and pose."""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.road.calibration import parse_lens, parse_pairs, parse_pose
 from vehicle_pf_tracker.road.camera import MODELS, Lens, Pose
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
+
+_LARGEST = 1e7
+"""Bound of every number: no image is as wide, and map coordinates (UTM) are below it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +113,21 @@ class RoadParameters:
             raise InputError("the road of a camera needs both its lens and its pose")
         return RoadPlane.of_camera(lens, pose, coarsest=self.coarsest)
 
+    def fixed_plane(self) -> RoadPlane | None:
+        """Make the plane of the parameters alone; None where no road is set.
+
+        Raises
+        ------
+        InputError
+            If lens or pose are to come from topics.
+        """
+        if self.is_set and (self.from_camera_info or self.from_tf):
+            raise InputError(
+                "road.from_camera_info and road.from_tf are for nodes of one vehicle; here "
+                "give road.intrinsics, road.distortion and road.camera_pose"
+            )
+        return self.plane(self.lens, self.pose) if self.is_set else None
+
     def validate(self) -> None:
         """Refuse what makes no road, as far as it does not wait for CameraInfo or TF."""
         lens, pose = self.lens, self.pose
@@ -139,3 +157,88 @@ class RoadParameters:
             "road.frame_id must name the frame of the road": not self.frame_id,
         }
         return next((words for words, broken in rules.items() if broken), "")
+
+
+def parse_pairs(text: str) -> tuple[Pair, ...]:
+    """Read pairs ``u,v=x,y`` in px and m, apart by semicolons or spaces.
+
+    Raises
+    ------
+    InputError
+        If one is not of this form.
+    """
+    return tuple(_pair(word) for word in re.split(r"[;\s]+", text.strip()) if word)
+
+
+def _pair(word: str) -> Pair:
+    pixel, equals, road = word.partition("=")
+    if not equals:
+        raise InputError(f"the pair {word!r} of the road is not u,v=x,y (pixels = metres)")
+    return Pair(_point(pixel, word), _point(road, word))
+
+
+def _point(text: str, word: str) -> tuple[float, float]:
+    numbers = parse_numbers(text, f"the pair {word!r} of the road")
+    if len(numbers) != 2:
+        raise InputError(f"the pair {word!r} of the road is not u,v=x,y (pixels = metres)")
+    return numbers[0], numbers[1]
+
+
+def format_pairs(pairs: tuple[Pair, ...]) -> str:
+    """Write pairs so that `parse_pairs` reads them back to the last digit."""
+    return "; ".join(
+        ",".join(map(repr, pair.pixel)) + "=" + ",".join(map(repr, pair.road)) for pair in pairs
+    )
+
+
+def parse_numbers(text: str, name: str) -> tuple[float, ...]:
+    """Read numbers apart by commas; none of an empty text.
+
+    Raises
+    ------
+    InputError
+        If one is not a number of a sensible size.
+    """
+    try:
+        numbers = tuple(float(word) for word in text.split(",")) if text.strip() else ()
+    except ValueError:
+        raise InputError(f"{name} must be numbers apart by commas, got {text!r}") from None
+    if not all(abs(number) <= _LARGEST for number in numbers):
+        raise InputError(f"{name} has a number that is not finite or above {_LARGEST:g}: {text!r}")
+    return numbers
+
+
+def parse_lens(intrinsics: str, model: str, distortion: str) -> Lens | None:
+    """Make the lens of ``fx,fy,cx,cy``, a model's name and its coefficients; None without them.
+
+    Raises
+    ------
+    InputError
+        If the numbers do not make a lens.
+    """
+    numbers = parse_numbers(intrinsics, "road.intrinsics")
+    coefficients = parse_numbers(distortion, "road.distortion")
+    if not numbers:
+        if coefficients:
+            raise InputError("road.distortion needs road.intrinsics (fx,fy,cx,cy) beside it")
+        return None
+    if len(numbers) != 4:
+        raise InputError(f"road.intrinsics must be fx,fy,cx,cy in px, got {intrinsics!r}")
+    fx, fy, cx, cy = numbers
+    return Lens((fx, fy), (cx, cy), model, coefficients)
+
+
+def parse_pose(text: str) -> Pose | None:
+    """Make the pose of ``x,y,z,qx,qy,qz,qw``; None of an empty text.
+
+    Raises
+    ------
+    InputError
+        If the numbers do not make a pose.
+    """
+    numbers = parse_numbers(text, "road.camera_pose")
+    if not numbers:
+        return None
+    if len(numbers) != 7:
+        raise InputError(f"road.camera_pose must be x,y,z,qx,qy,qz,qw (m, unit), got {text!r}")
+    return Pose.of(numbers[:3], numbers[3:])

@@ -27,7 +27,7 @@ from typing import Any
 import yaml
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.cdr import type_hash
+from vehicle_pf_tracker.recordings.messages import type_hash
 
 
 def recording_files(path: Path) -> tuple[list[Path], list[str]]:

@@ -23,7 +23,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
@@ -176,12 +176,9 @@ def _frame_rate(folder: Path) -> float | None:
         path = folder / name
         if not path.exists():
             continue
-        if not path.is_file():
-            raise InputError(f"{path} is not a regular file")
+        text = read_text(path, "the file")
         try:
-            fps = read(path.read_text(encoding="utf-8"))
-        except OSError as error:
-            raise InputError(f"cannot read {path}: {error.strerror}") from error
+            fps = read(text)
         except (ValueError, KeyError, TypeError, RecursionError, configparser.Error):
             raise InputError(
                 f"{path} does not state the frame rate; it must hold {_EXAMPLES[name]}"

@@ -20,16 +20,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import cv2
-
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.core.frame import frame_size
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.recordings.footage import Picture
 from vehicle_pf_tracker.recordings.video import is_recording, open_footage
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 FORMATS = ("compressed", "raw")
-JPEG_QUALITY = 95
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,10 +137,3 @@ def _coded(picture: Picture, wanted: str | None) -> tuple[str, bytes] | None:
     if picture.coded_format:
         return picture.coded_format, picture.coded
     return "jpeg", jpeg(picture.frame)
-
-
-def jpeg(frame: Frame) -> bytes:
-    """Code an RGB frame as a JPEG file."""
-    image = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
-    _, coded = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
-    return coded.tobytes()

@@ -12,35 +12,131 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The few ROS messages that our recordings hold, made and read without ROS."""
+"""The few ROS messages that our recordings hold, and CDR bytes of any, without ROS.
+
+The definitions of the messages that Foxglove draws over images, the fields of ROS 2 Jazzy's
+foxglove_msgs, stand in ImageAnnotations.msg and in each recording, so that neither writing nor
+reading one needs that ROS package.
+"""
 
 from __future__ import annotations
 
 import math
+import struct
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from importlib import resources
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from rosbags.serde import SerdeError
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.recordings.cdr import message_class
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
-from vehicle_pf_tracker.recordings.topics import (
-    CAMERA_FRAME,
-    COMPRESSED_IMAGE,
-    DIAGNOSTIC_ARRAY,
-    IMAGE,
-    POINT_STAMPED,
-    POLYGON_STAMPED,
-    TRUTH_BOX_TOPIC,
-    TRUTH_MODE_TOPIC,
-    TRUTH_POSITION_TOPIC,
-)
+
+IMAGE_TOPIC = "/camera/image_raw"
+COMPRESSED_TOPIC = "/camera/image_raw/compressed"
+TRUTH_POSITION_TOPIC = "/ground_truth/position"
+TRUTH_BOX_TOPIC = "/ground_truth/box"
+TRUTH_MODE_TOPIC = "/ground_truth/mode"
+TRUTH_TOPICS = (TRUTH_POSITION_TOPIC, TRUTH_BOX_TOPIC, TRUTH_MODE_TOPIC)
+
+IMAGE = "sensor_msgs/msg/Image"
+COMPRESSED_IMAGE = "sensor_msgs/msg/CompressedImage"
+POINT_STAMPED = "geometry_msgs/msg/PointStamped"
+POLYGON_STAMPED = "geometry_msgs/msg/PolygonStamped"
+DIAGNOSTIC_ARRAY = "diagnostic_msgs/msg/DiagnosticArray"
+
+IMAGE_TYPES = (IMAGE, COMPRESSED_IMAGE)
+STAMPED_TYPES = (*IMAGE_TYPES, POINT_STAMPED, POLYGON_STAMPED, DIAGNOSTIC_ARRAY)
+"""Types that begin with a header, of those in our recordings."""
+
+CAMERA_FRAME = "camera"
+"""The `frame_id` of everything in our recordings."""
+
+
+IMAGE_ANNOTATIONS = "foxglove_msgs/msg/ImageAnnotations"
+
+# rosbags before 0.11 lets what a broken message causes through as it is.
+_BROKEN = (SerdeError, struct.error, ValueError, IndexError, AssertionError)
+
+
+@cache
+def _store() -> Typestore:
+    store = get_typestore(Stores.ROS2_JAZZY)
+    text = resources.files(__package__).joinpath("ImageAnnotations.msg").read_text()
+    store.register(get_types_from_msg(text, IMAGE_ANNOTATIONS))
+    return store
+
+
+def message_class(type_name: str) -> Any:
+    """Return the class of a type like ``geometry_msgs/msg/PointStamped``.
+
+    Raises
+    ------
+    InputError
+        If neither ROS 2 Jazzy's common interfaces nor `foxglove_types` have such a type.
+    """
+    try:
+        return _store().types[type_name]
+    except KeyError:
+        raise InputError(f"the message type {type_name!r} is unknown") from None
+
+
+def serialize(message: Any, type_name: str) -> memoryview:
+    """Serialize `message` to CDR, its encapsulation header included.
+
+    Raises
+    ------
+    InputError
+        If the type is unknown.
+    """
+    message_class(type_name)
+    return _store().serialize_cdr(message, type_name)
+
+
+def deserialize(data: memoryview, type_name: str) -> Any:
+    """Read a message from CDR; arrays in it are views of `data`.
+
+    Raises
+    ------
+    InputError
+        If the bytes are not a message of this type.
+    """
+    message_class(type_name)
+    try:
+        return _store().deserialize_cdr(data, type_name)
+    except _BROKEN as error:
+        raise InputError(f"a message is not a valid {type_name}: {error}") from error
+
+
+@cache
+def definition(type_name: str) -> str:
+    """Return the type's full definition, the types it is made of appended (`ros2msg`)."""
+    message_class(type_name)
+    return _store().generate_msgdef(type_name, ros_version=2)[0]
+
+
+@cache
+def type_hash(type_name: str) -> str:
+    """Return the type's hash as ROS 2 computes it (REP 2011, ``RIHS01_...``)."""
+    message_class(type_name)
+    return _store().hash_rihs01(type_name)
+
+
+def header_stamp_ns(data: memoryview) -> int | None:
+    """Read the stamp of a serialized message that begins with a header; None if it is too short."""
+    if len(data) < 12:
+        return None
+    seconds, nanoseconds = struct.unpack_from("<iI" if data[1] & 1 else ">iI", data, 4)
+    return int(seconds * 1_000_000_000 + nanoseconds)
 
 
 def as_token(name: str) -> str:

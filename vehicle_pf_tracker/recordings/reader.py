@@ -27,12 +27,11 @@ from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.image.encodings import frame_of_message
 from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings import topics as names
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
-from vehicle_pf_tracker.recordings.cdr import deserialize, header_stamp_ns
 from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.mcap_blocks import Message
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex, merged_messages, read_index
+from vehicle_pf_tracker.recordings.messages import deserialize, header_stamp_ns
 from vehicle_pf_tracker.recordings.topic_table import (
     ReadNotices,
     TopicInfo,
@@ -183,14 +182,14 @@ class Recording:
         """
         if not self._has_truth():
             return ()
-        return self._assemble(self._select(names.TRUTH_TOPICS, 0.0, None))
+        return self._assemble(self._select(messages.TRUTH_TOPICS, 0.0, None))
 
     def first_truth(self) -> Truth | None:
         """Read the earliest truth alone, without reading the whole recording."""
         if not self._has_truth():
             return None
         early: list[tuple[McapIndex, Message]] = []
-        for found in self._select(names.TRUTH_TOPICS, 0.0, None):
+        for found in self._select(messages.TRUTH_TOPICS, 0.0, None):
             # Topics of one stamp may be recorded some time apart.
             if early and found[1].log_time_ns > early[0][1].log_time_ns + 500_000_000:
                 break
@@ -217,7 +216,7 @@ class Recording:
         types = {info.name: info for info in self.topics}
         for index, message in self._select(topics, start_offset, duration):
             info = types[index.channels[message.channel_id].topic]
-            is_stamped = info.is_cdr and info.type_name in names.STAMPED_TYPES
+            is_stamped = info.is_cdr and info.type_name in messages.STAMPED_TYPES
             stamp = header_stamp_ns(message.data) if is_stamped else None
             yield RecordedMessage(
                 info.name, info.type_name, message.log_time_ns, stamp, bytes(message.data)
@@ -242,7 +241,7 @@ class Recording:
 
     def _has_truth(self) -> bool:
         """Return whether there is truth; raise if its topics are there but cannot hold any."""
-        found = [info for info in self.topics if info.name in names.TRUTH_TOPICS]
+        found = [info for info in self.topics if info.name in messages.TRUTH_TOPICS]
         for info in found:
             expected = messages.TRUTH_TYPES[info.name]
             if not info.is_cdr or info.type_name != expected:
@@ -276,7 +275,7 @@ class Recording:
 
 def _decode(type_name: str, data: memoryview) -> StampedFrame:
     message = deserialize(data, type_name)
-    if type_name == names.COMPRESSED_IMAGE:
+    if type_name == messages.COMPRESSED_IMAGE:
         frame = decode_compressed(message.format, message.data)
     else:
         frame = frame_of_message(message)

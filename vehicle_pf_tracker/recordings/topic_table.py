@@ -26,7 +26,7 @@ from mcap.well_known import MessageEncoding
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.mcap_blocks import Block, DamageError
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex
-from vehicle_pf_tracker.recordings.topics import IMAGE_TYPES
+from vehicle_pf_tracker.recordings.messages import IMAGE_TYPES
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 from vehicle_pf_tracker.recordings.truth_formats import (
@@ -33,7 +33,6 @@ from vehicle_pf_tracker.recordings.truth_formats import (
     Reader,
     UnreadTruthError,
     in_order,
-    read_text,
 )
 
 _IDS_SHOWN = 20
@@ -127,7 +126,7 @@ def read_truth(
     targets: dict[int, dict[int, TruthRow | None]] = {}
     notices = []
     for path in paths:
-        text = read_text(path)
+        text = read_text(path, "the truth")
         reader = _reader(path, text)
         labels = list(reader(path, text, images))
         if reader is in_order and len(labels) < len(images.names):
@@ -176,8 +175,7 @@ def _chosen(
     listed = ", ".join([*map(str, sorted(targets)[:_IDS_SHOWN]), "..."][: len(targets)])
     if identity is None and len(targets) > 1:
         raise UnreadTruthError(
-            f"{path} has the truth of {len(targets)} targets; `run` and `import` take one with "
-            f"--id: {listed}"
+            f"{path} has the truth of {len(targets)} vehicles; choose one with --id: {listed}"
         )
     if identity is not None and identity not in targets:
         raise InputError(f"the truth {path} has no target {identity}; it has {listed}")

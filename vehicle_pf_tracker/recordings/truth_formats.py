@@ -33,7 +33,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 from xml.etree import ElementTree
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Occlusion
 
 Sides: TypeAlias = tuple[float, float, float, float]
@@ -93,24 +93,6 @@ class Label:
     sides: Sides
     occlusion: Occlusion = Occlusion.NONE
     identity: float = 1
-
-
-def read_text(path: Path) -> str:
-    """Read a file of truth.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or is not text.
-    """
-    if path.exists() and not path.is_file():
-        raise InputError(f"the truth {path} is not a regular file")
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise InputError(f"cannot read the truth {path}: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"the truth {path} is not a text table: {error}") from error
 
 
 def _number(where: str, name: str, cell: str | None) -> float:
@@ -181,7 +163,9 @@ def _flags(folder: Path) -> list[Occlusion | None]:
     columns = []
     for path, meaning in ((folder / name, meaning) for name, meaning in _FLAGS.items()):
         if path.is_file():
-            flags = _numbers(f"the truth {path}", re.split(_GAP, read_text(path).strip(", \r\n")))
+            flags = _numbers(
+                f"the truth {path}", re.split(_GAP, read_text(path, "the truth").strip(", \r\n"))
+            )
             columns.append([meaning.get(flag, Occlusion.NONE) for flag in flags])
     states = (set(row) for row in zip_longest(*columns, fillvalue=Occlusion.NONE))
     return [None if None in state else max(state - {None}) for state in states]  # type: ignore[type-var]
@@ -199,7 +183,9 @@ def in_order(path: Path, text: str, images: Images) -> Iterator[Label]:
     first_px = 0 if (folder / "sequence").is_file() or any(folder.glob("*.tag")) else 1
     span = folder / path.name.replace("_gt.", "_frames.")
     if span != path and span.is_file():
-        first = _numbers(f"the truth {span}", re.split(_GAP, read_text(span).strip()))[0]
+        first = _numbers(f"the truth {span}", re.split(_GAP, read_text(span, "the truth").strip()))[
+            0
+        ]
         begin = images.numbers.index(int(first)) if first in images.numbers else 0
     ending = re.search(r"^groundtruth.*[._](\d+)$", path.stem)
     flags = _flags(folder)

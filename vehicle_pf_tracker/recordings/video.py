@@ -216,6 +216,7 @@ class Camera(Footage):
         self.fps = float(self._video.get(cv2.CAP_PROP_FPS))
         self.frame_count = None
         self._read = 0
+        self._notices: list[str] = []
 
     @property
     def is_endless(self) -> bool:
@@ -226,7 +227,7 @@ class Camera(Footage):
         """Yield frames until the source ends."""
         last = 0
         try:
-            while (frame := _next_frame(self._video)) is not None:
+            while (frame := self._next()) is not None:
                 self._read += 1
                 last = max(time.time_ns(), last + 1)
                 yield Picture(last, frame, f"frame {self._read} of {self._name}")
@@ -234,6 +235,16 @@ class Camera(Footage):
             self._video.release()
         if not self._read:
             raise InputError(f"{self._name} sends no images")
+        self._notices = [f"{self._name} sent no more images after {self._read}"]
+
+    def _next(self) -> Frame | None:
+        with quiet_opencv():  # it complains of a stream that stalls
+            return _next_frame(self._video)
+
+    @property
+    def notices(self) -> list[str]:
+        """Report a source that ended by itself."""
+        return self._notices
 
 
 def _next_frame(video: cv2.VideoCapture) -> Frame | None:

@@ -28,9 +28,9 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import BAG_INFORMATION, check_free, output_errors, whole_folder
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.recordings import messages, topics
+from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.bag_folder import RELIABLE_QOS, bag_information, to_yaml
-from vehicle_pf_tracker.recordings.cdr import definition, serialize, type_hash
+from vehicle_pf_tracker.recordings.messages import definition, serialize, type_hash
 
 
 def _check_replaceable(target: Path, overwrite: bool) -> None:
@@ -112,12 +112,12 @@ class RecordingWriter:
 
     def write_image(self, stamp_ns: int, frame: Frame) -> None:
         """Write an RGB frame as a raw image."""
-        self.write(topics.IMAGE_TOPIC, topics.IMAGE, stamp_ns, messages.image(stamp_ns, frame))
+        self.write(messages.IMAGE_TOPIC, messages.IMAGE, stamp_ns, messages.image(stamp_ns, frame))
 
     def write_compressed(self, stamp_ns: int, image_format: str, data: bytes) -> None:
         """Write the bytes of a ``jpeg`` or ``png`` file as a compressed image."""
         message = messages.compressed_image(stamp_ns, image_format, data)
-        self.write(topics.COMPRESSED_TOPIC, topics.COMPRESSED_IMAGE, stamp_ns, message)
+        self.write(messages.COMPRESSED_TOPIC, messages.COMPRESSED_IMAGE, stamp_ns, message)
 
     def write_truth(self, truth: Truth) -> None:
         """Write the truth of one frame, at the stamp of its image."""

@@ -12,19 +12,31 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The programs behind all nodes: ``<variant>_tracker`` runs the variant in its name."""
+"""The programs behind all nodes: ``<variant>_tracker`` runs the variant in its name.
+
+``vehicle_tracker --variant NAME`` runs any, a plug-in's for instance, and ``--cameras FILE`` one
+for each camera of a file, all in this process.
+"""
 
 from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.core.errors import InputError
 
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+    from vehicle_pf_tracker.trackers.registry import Variant
+
 _VIDEO = "video_source"
+_ANY = "vehicle"
+_USAGE = "usage: vehicle_tracker (--variant NAME | --cameras FILE) [--ros-args ...]"
 _NO_ROS = (
     "ROS 2 was not found (no module {}): source its setup.bash, or install this package with the "
     "extra [ros]"
@@ -39,14 +51,15 @@ def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     variant : str, optional
-        Name in the registry, or ``video_source``; that of the running executable if left out.
+        Name in the registry, ``video_source`` or ``vehicle``; that of the running executable if
+        left out.
     args : sequence of str, optional
         Command line without the program's name; that of the process if left out.
 
     Returns
     -------
     int
-        Exit status; see `vehicle_pf_tracker.ros.node.process.run_node`.
+        Exit status; see `vehicle_pf_tracker.ros.node.process.run_nodes`.
     """
     name = variant or Path(sys.argv[0]).stem.removesuffix("_tracker")
     program = name if name == _VIDEO else f"{name}_tracker"
@@ -75,15 +88,43 @@ def _run(name: str, words: Sequence[str]) -> int:
         from vehicle_pf_tracker.ros.video_source.source_node import run_video_source  # noqa: PLC0415
 
         return run_video_source(words)
-    from vehicle_pf_tracker.trackers.registry import TRAFFIC, find_node  # noqa: PLC0415
+    if name == _ANY and words[:1] != ["--variant"]:
+        return _run_cameras(words)
+    if name == _ANY:
+        name, words = words[1] if len(words) > 1 else "", words[2:]
+    from vehicle_pf_tracker.trackers.registry import find_node  # noqa: PLC0415
 
     found = find_node(name)
-    from vehicle_pf_tracker.ros.node.process import run_node  # noqa: PLC0415
+    from vehicle_pf_tracker.ros.node.process import node_usage, run_nodes  # noqa: PLC0415
+
+    usage = node_usage(found.executable)
+    return run_nodes(found.executable, [_maker(found)], words, usage)
+
+
+def _run_cameras(words: Sequence[str]) -> int:
+    from vehicle_pf_tracker.ros.process import answer_usage  # noqa: PLC0415
+
+    if words[:1] != ["--cameras"] or len(words) < 2:
+        return answer_usage(f"{_ANY}_tracker", words, _USAGE)
+    from vehicle_pf_tracker.ros.cameras import read_cameras  # noqa: PLC0415
+    from vehicle_pf_tracker.ros.node.process import run_nodes  # noqa: PLC0415
+    from vehicle_pf_tracker.trackers.registry import find_node  # noqa: PLC0415
+
+    makers = [
+        partial(_maker(find_node(one.variant)), namespace=one.name, cli_args=one.arguments())
+        for one in read_cameras(words[1])
+    ]
+    return run_nodes(f"{_ANY}_tracker", makers, words[2:], _USAGE)
+
+
+def _maker(found: Variant) -> Callable[..., Node]:
+    """Return what makes the node of a variant, from the options of `rclpy.node.Node`."""
+    from vehicle_pf_tracker.trackers.registry import TRAFFIC  # noqa: PLC0415
 
     if found is TRAFFIC:
         from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode  # noqa: PLC0415
 
-        return run_node(found.executable, TrafficNode, words)
+        return TrafficNode
     from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode  # noqa: PLC0415
 
-    return run_node(found.executable, partial(TrackerNode, found), words)
+    return partial(TrackerNode, found)

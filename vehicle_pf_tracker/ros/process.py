@@ -20,7 +20,8 @@ import itertools
 import os
 import signal
 import sys
-from collections.abc import Callable, Sequence
+import warnings
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import FrameType
 from typing import TypeVar
@@ -31,7 +32,7 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.files import check_yaml_file
+from vehicle_pf_tracker.parameters.files import check_yaml_file, read_yaml
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
 from vehicle_pf_tracker.ros.transport import image_transport
 
@@ -74,6 +75,8 @@ def run_process(name: str, arguments: Sequence[str], serve: Callable[[list[str]]
         Exit status: that of `serve`, or 1 for a user's mistake (printed on stderr).
     """
     interrupts = _Interrupts()
+    # rclpy's words where a signal comes while a node is made; the node is not missed.
+    warnings.filterwarnings("ignore", "Failed to fini rosout publisher", RuntimeWarning)
     try:
         _check_parameter_files(arguments)
         rclpy.init(args=list(arguments))
@@ -101,40 +104,44 @@ def answer_usage(name: str, words: Sequence[str], usage: str) -> int:
 NodeT = TypeVar("NodeT", bound=Node)
 
 
-def spin_node(
-    make_node: Callable[[], NodeT],
+def spin_nodes(
+    makers: Sequence[Callable[[], NodeT]],
     image_bytes: int,
     spin: Callable[[SingleThreadedExecutor, NodeT], int],
+    arguments: Sequence[str],
 ) -> int:
-    """Make a node, run `spin`, and destroy the node.
+    """Make nodes, run `spin`, and destroy the nodes.
 
     Parameters
     ----------
-    make_node : callable
-        Makes the node.
+    makers : sequence of callable
+        Each makes a node.
     image_bytes : int
         Size of the images of which shared memory should have room for some.
     spin : callable
-        Runs the node's callbacks; returns the exit status.
+        Runs the callbacks of all, and logs as the first; returns the exit status.
+    arguments : sequence of str
+        Command line without the program's name.
 
     Returns
     -------
     int
         That of `spin`; 0 where a signal took the ground from under a call.
     """
-    executor, node = SingleThreadedExecutor(), None
+    executor, nodes = SingleThreadedExecutor(), list[NodeT]()
     try:
         with image_transport(image_bytes, rclpy.get_rmw_implementation_identifier()) as notices:
-            node = make_node()
-        for notice in notices:
-            node.get_logger().warning(notice)
-        executor.add_node(node)
-        return spin(executor, node)
+            for make in makers:
+                nodes.append(make())
+                executor.add_node(nodes[-1])
+        for notice in [*notices, *_files_for_others(arguments, nodes)]:
+            nodes[0].get_logger().warning(notice)
+        return spin(executor, nodes[0])
     except Exception:
         if rclpy.ok():
             raise
     finally:
-        if node is not None:
+        for node in nodes:
             node.destroy_node()
         executor.shutdown()
     return 0
@@ -149,9 +156,27 @@ def end_at_once(status: int) -> None:
 
 def _check_parameter_files(arguments: Sequence[str]) -> None:
     """Refuse files in which a key is there twice, of which ROS would take the last."""
+    for path in _parameter_files(arguments):
+        check_yaml_file(path, "parameter file")
+
+
+def _parameter_files(arguments: Sequence[str]) -> Iterator[Path]:
     for option, value in itertools.pairwise(arguments):
         if option == "--params-file" and Path(value).is_file():  # of others, ROS says why
-            check_yaml_file(Path(value), "parameter file")
+            yield Path(value)
+
+
+def _files_for_others(arguments: Sequence[str], nodes: Sequence[Node]) -> Iterator[str]:
+    """Say which parameter files have nothing for these nodes: ROS passes over them."""
+    for path in _parameter_files(arguments):
+        refusals = []
+        for node in nodes:
+            try:
+                read_yaml(path, node.get_name())
+            except InputError as error:  # noqa: PERF203 - of a node or two
+                refusals.append(str(error))
+        if len(refusals) == len(nodes):
+            yield refusals[0]
 
 
 def _fail(name: str, sentence: str) -> int:

@@ -59,6 +59,8 @@ from vehicle_pf_tracker.scenes.scene import (
     Camera,
     OutdoorCamera,
     Scene,
+    noise_parameter,
+    stamps_parameter,
 )
 from vehicle_pf_tracker.scenes.scenery import bridge
 from vehicle_pf_tracker.scenes.solids import ELEVATION, Face
@@ -104,10 +106,7 @@ class DriveParameters:
     disturbance: str = parameter(
         "clean", "rough shakes the camera, flickers and adds noise", choices=DISTURBANCES
     )
-    frame_rate: float = parameter(
-        15.0, "changes the stamps only: speed is per frame",
-        bounds=(1.0, 240.0), unit="frames/s", source="Scharcanski 2011, section IV",
-    )  # fmt: skip
+    frame_rate: float = stamps_parameter(15.0, "speed is", "Scharcanski 2011, section IV")
 
 
 class Drive:
@@ -222,12 +221,7 @@ class Drive:
         side_road(picture, (middle, -1.0), (middle, self.road.top + 4.0), 2 * SIDE_ROAD, rng)
         return picture
 
-    def scene(
-        self,
-        front: Iterable[Actor] = (),
-        *,
-        behind: Iterable[Actor] | None = None,
-    ) -> Scene:
+    def scene(self, front: Iterable[Actor] = (), *, behind: Iterable[Actor] | None = None) -> Scene:
         """Make the scene: the target between what is `behind` it and what is in `front` of it.
 
         The traffic of the far lane is behind if nothing is said, and that of the other carriageway
@@ -280,14 +274,8 @@ LOAD_MIDDLE = 0.39
 class HighwayParameters:
     """Parameters of the highway."""
 
-    noise: float = parameter(
-        3.0, "more makes histograms differ from frame to frame",
-        bounds=(0.0, 60.0), unit="levels of 255",
-    )  # fmt: skip
-    frame_rate: float = parameter(
-        30.0, "changes the stamps only: speeds are per frame",
-        bounds=(1.0, 240.0), unit="frames/s",
-    )  # fmt: skip
+    noise: float = noise_parameter(3.0)
+    frame_rate: float = stamps_parameter(30.0, "speeds are")
 
 
 def highway(parameters: HighwayParameters, seed: int) -> Scene:

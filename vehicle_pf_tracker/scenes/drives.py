@@ -24,7 +24,7 @@ from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.compositing import Image, Sprite, stream
 from vehicle_pf_tracker.scenes.drive import LANE, RADIUS, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.models import Pace, moving, standing
-from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene
+from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene, noise_parameter, stamps_parameter
 from vehicle_pf_tracker.scenes.scenery import bridge as make_bridge
 from vehicle_pf_tracker.scenes.scenery import house, pillar, plain, post, sign, tree
 from vehicle_pf_tracker.scenes.solids import ELEVATION, draw
@@ -56,14 +56,8 @@ class BarParameters:
     vehicle_height: float = parameter(
         30.0, "taller vehicles fill more of the image", bounds=(8.0, 100.0), unit="px"
     )
-    noise: float = parameter(
-        2.0, "more makes histograms differ from frame to frame",
-        bounds=(0.0, 60.0), unit="levels of 255",
-    )  # fmt: skip
-    frame_rate: float = parameter(
-        15.0, "changes the stamps only: speed is per frame",
-        bounds=(1.0, 240.0), unit="frames/s", source=_SOURCE,
-    )  # fmt: skip
+    noise: float = noise_parameter(2.0)
+    frame_rate: float = stamps_parameter(15.0, "speed is", _SOURCE)
 
 
 def bar(parameters: BarParameters, seed: int) -> Scene:

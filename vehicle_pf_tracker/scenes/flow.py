@@ -26,6 +26,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.scenes.scene import noise_parameter
 
 _ACCELERATION, _BRAKING = 1.5, 2.0
 """Comfortable acceleration and braking, m/s²: Treiber's intelligent driver model in towns."""
@@ -247,10 +248,7 @@ class TrafficSceneParameters:
     )  # fmt: skip
     changing: bool = parameter(False, "drivers overtake slower ones")
     frames: int = parameter(400, "a longer scene", bounds=(2, 5000), unit="frames")
-    noise: float = parameter(
-        2.0, "more makes histograms differ from frame to frame",
-        bounds=(0.0, 60.0), unit="levels of 255",
-    )  # fmt: skip
+    noise: float = noise_parameter(2.0)
     frame_rate: float = parameter(
         30.0, "more frames on the same way", bounds=(5.0, 240.0), unit="frames/s"
     )

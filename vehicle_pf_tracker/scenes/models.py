@@ -28,14 +28,7 @@ from typing import TypeAlias, TypeVar
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
 from vehicle_pf_tracker.scenes.scene import Actor, Path
-from vehicle_pf_tracker.scenes.solids import (
-    ELEVATION,
-    Face,
-    draw,
-    extent,
-    normal_of,
-    shadow,
-)
+from vehicle_pf_tracker.scenes.solids import ELEVATION, Face, draw, extent, normal_of, shadow
 from vehicle_pf_tracker.scenes.vehicles import HEAD_LAMP, SILL, TAIL_LAMP
 
 

@@ -23,13 +23,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import whole_folder
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, VehicleTruth
 
@@ -39,6 +38,13 @@ _CONCENTRATION = 12.0
 """Concentration of the beta distribution of scores: a standard deviation of about 0.13."""
 _FALSE_SCORE = 0.35
 """Mean score of false alarms: some are as high as those of vehicles."""
+
+
+LEAST_SIDE = 8.0
+"""Sides of a box inside the image, px, below which a vehicle has no truth but is ignored."""
+
+
+OCCLUDERS_HEADER = "frame,id,depth,hidden_by,share"
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,13 +184,6 @@ def false_alarm(size: tuple[int, int], rng: np.random.Generator) -> tuple[Array,
     return np.array([left, top, width, height]), float(score)
 
 
-OCCLUDERS_HEADER = "frame,id,depth,hidden_by,share"
-JPEG_QUALITY = 95
-"""Quality of the images: OpenCV's default, at which edges of vehicles stay sharp."""
-LEAST_SIDE = 8.0
-"""Sides of a box inside the image, px, below which a vehicle has no truth but is ignored."""
-
-
 def write_mot_folder(
     scene: TrafficScene,
     folder: Path,
@@ -222,20 +221,13 @@ def write_mot_folder(
                 (partial / name).mkdir()
             truths = []
             for number, (frame, truth) in enumerate(scene.frames(), start=1):
-                _write_image(partial / "img1" / f"{number:06d}.jpg", frame)
+                (partial / "img1" / f"{number:06d}.jpg").write_bytes(jpeg(frame))
                 truths.append(truth)
                 progress(number, scene.frame_count)
             (partial / "seqinfo.ini").write_text(_information(scene, folder.resolve().name))
             _write_tables(scene, truths, partial, seed, detectors)
     except OSError as error:
         raise InputError(f"cannot write {folder}: {error.strerror}") from error
-
-
-def _write_image(path: Path, frame: Frame) -> None:
-    bgr = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
-    done, data = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
-    assert done
-    path.write_bytes(data.tobytes())
 
 
 def _information(scene: TrafficScene, name: str) -> str:

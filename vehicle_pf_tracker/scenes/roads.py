@@ -33,16 +33,13 @@ from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, cells_i
 from vehicle_pf_tracker.scenes.models import SHADOW_OPACITY, moving
 from vehicle_pf_tracker.scenes.scene import Actor, Path
 from vehicle_pf_tracker.scenes.scenery import PAINT, asphalt, concrete, foliage, grass, value_noise
-from vehicle_pf_tracker.scenes.solids import (
-    ELEVATION,
-    Face,
-    draw,
-    extent,
-    mirrored,
-    shadow,
-)
+from vehicle_pf_tracker.scenes.solids import ELEVATION, Face, draw, extent, mirrored, shadow
 from vehicle_pf_tracker.scenes.vehicles import car, saloon, tinted, van
 
+LANE_WIDTH = 3.25
+"""Metres."""
+SHOULDER = 8
+"""Distance from the kerb to the first lane, px."""
 STEEL: Colour = (176, 180, 182)
 
 
@@ -133,12 +130,6 @@ def guard_rail(picture: Image, top: int) -> None:
         picture[top : top + 10, left : left + 2] = 0.6 * np.asarray(STEEL)
     for row, light in enumerate((1.1, 1.0, 0.8, 0.95, 0.75)):
         picture[top + row] = light * np.asarray(STEEL)
-
-
-LANE_WIDTH = 3.25
-"""Metres."""
-SHOULDER = 8
-"""Distance from the kerb to the first lane, px."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from statistics import NormalDist
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -32,6 +32,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.compositing import (
     Colour,
     Image,
@@ -45,10 +46,29 @@ from vehicle_pf_tracker.scenes.compositing import (
 FIRST_STAMP_NS = 1_000_000_000
 """Stamp of frame 0: a stamp of zero means "unknown" to many tools."""
 
+MARGIN = 12
+"""Stage around the image, px on each side: room for the camera to shake."""
+
 Path: TypeAlias = Callable[[float], Box]
 """Gives the box (px) a sprite fills at a frame number, counted from 0."""
 Look: TypeAlias = Callable[[float], Sprite]
 """Sprite by frame number, of an actor whose appearance changes (by turning)."""
+
+
+def noise_parameter(default: float) -> Any:
+    """Make the parameter of a camera's noise."""
+    return parameter(
+        default, "more makes histograms differ from frame to frame", bounds=(0.0, 60.0),
+        unit="levels of 255",
+    )  # fmt: skip
+
+
+def stamps_parameter(default: float, stays: str, source: str = "") -> Any:
+    """Make the parameter of a frame rate that moves nothing; `stays` says what does not change."""
+    return parameter(
+        default, f"changes the stamps only: {stays} per frame", bounds=(1.0, 240.0),
+        unit="frames/s", source=source,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,10 +216,6 @@ def _quantised(picture: Image) -> Frame:
     np.rint(picture, out=picture)
     np.clip(picture, 0, 255, out=picture)
     return picture.astype(np.uint8)
-
-
-MARGIN = 12
-"""Stage around the image, px on each side: room for the camera to shake."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,8 +31,15 @@ from vehicle_pf_tracker.scenes.scene import Actor, Camera, OutdoorCamera, Path
 from vehicle_pf_tracker.scenes.scenery import bridge
 from vehicle_pf_tracker.scenes.vehicles import lorry
 
+SCALE = 7.0
+"""px per metre: a car is about 30 px long, a lorry 80."""
+_TOP = 66
+"""First row of asphalt, px."""
+_MEDIAN = 34
+"""Rows between the two carriageways, px."""
 SCENERY = "scene"
 """Stands for whatever hides a vehicle and is none."""
+WIDTH, HEIGHT = 640, 360
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,15 +176,6 @@ class TrafficScene:
         if most is None or shares[most] <= 0:
             return visible, None, 0.0
         return visible, most, min(round(shares[most], 9), 1.0)
-
-
-WIDTH, HEIGHT = 640, 360
-SCALE = 7.0
-"""px per metre: a car is about 30 px long, a lorry 80."""
-_TOP = 66
-"""First row of asphalt, px."""
-_MEDIAN = 34
-"""Rows between the two carriageways, px."""
 
 
 def traffic(parameters: TrafficSceneParameters, seed: int) -> TrafficScene:

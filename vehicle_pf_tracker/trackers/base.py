@@ -35,7 +35,7 @@ from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
 from vehicle_pf_tracker.image.colour import Histogram, joint_histogram
-from vehicle_pf_tracker.image.kernels.choice import load_kernels
+from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.image.window import Window, is_outside, keep_inside
 from vehicle_pf_tracker.parameters.table import specs, to_mapping
 from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode, read_only

@@ -16,32 +16,19 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.image.kernels.choice import CHOICES, load_kernels
-from vehicle_pf_tracker.parameters.table import Effect, group, parameter
+from vehicle_pf_tracker.image.kernels.interface import CHOICES, load_kernels
+from vehicle_pf_tracker.parameters.table import group, parameter
 
-
-def share(
-    default: float,
-    doc: str,
-    *,
-    unit: str = "",
-    source: str = "",
-    effect: Effect = "keeps",
-    tuned: bool | tuple[float, float] = False,
-) -> Any:
-    """Make a parameter from 0 to 1."""
-    return parameter(
-        default, doc, bounds=(0.0, 1.0), unit=unit, source=source, effect=effect, tuned=tuned
-    )
-
-
-def particles_parameter(default: int, doc: str, *, source: str = "") -> Any:
-    """Make the number of particles."""
-    return parameter(default, doc, bounds=(1, 100_000), source=source)
+share = functools.partial(parameter, bounds=(0.0, 1.0))
+"""Make a parameter from 0 to 1."""
+particles_parameter = functools.partial(parameter, bounds=(1, 100_000))
+"""Make the number of particles."""
+_side = functools.partial(parameter, 0.0, bounds=(0.0, 4096.0), unit="px", effect="relearns")
 
 
 def frame_rate_parameter() -> Any:
@@ -54,19 +41,14 @@ def frame_rate_parameter() -> Any:
     )  # fmt: skip
 
 
-def side_parameter(doc: str) -> Any:
-    """Make a side of the window, in px."""
-    return parameter(0.0, doc, bounds=(0.0, 4096.0), unit="px", effect="relearns")
-
-
 @dataclass(frozen=True, slots=True)
 class WindowParameters:
     """Size of the window that features are taken from."""
 
-    width: float = side_parameter(
+    width: float = _side(
         "Wider: more of the surroundings count as the target; 0 takes the target box's width."
     )
-    height: float = side_parameter(
+    height: float = _side(
         "Higher: more of the surroundings count as the target; 0 takes the target box's height."
     )
 
@@ -85,8 +67,7 @@ class EvidenceParameters:
         unit="share of the clear level",
     )
     minimum: float = share(
-        0.3,
-        "Similarity below which there is no evidence, whatever the clear level is.",
+        0.3, "Similarity below which there is no evidence, whatever the clear level is."
     )
     level_rate: float = share(
         0.05, "Higher: the clear level follows the similarity faster.", unit="per frame",
@@ -146,6 +127,5 @@ class ParticleParameters(CommonParameters):
     """Parameters of every particle filter."""
 
     num_particles: int = particles_parameter(
-        200,
-        "More: steadier estimates, at more time per frame.",
+        200, "More: steadier estimates, at more time per frame."
     )

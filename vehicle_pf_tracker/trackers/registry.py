@@ -17,13 +17,15 @@
 Executables (through setup.py), parameter files, SROS 2 enclaves and the tables in the documentation
 are derived from these entries by `make config`. A tracker is imported when its class is first asked
 for, so that a node loads its own variant only; setup.py reads this file where neither numpy nor
-OpenCV is installed.
+OpenCV is installed. Other distributions add variants as entry points, see `plug_ins`.
 """
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
@@ -45,8 +47,8 @@ class Variant:
     name : str
         Name that users type.
     classes : str
-        ``module:Prefix``: the module below `trackers` that contains ``PrefixTracker`` and
-        ``PrefixParameters``.
+        ``module:Prefix``: the module that contains ``PrefixTracker`` and ``PrefixParameters``; with
+        a leading dot it lies below `trackers`.
     summary : str
         Method and source, in one line.
     suits : str
@@ -64,6 +66,11 @@ class Variant:
         return f"{self.name}_tracker"
 
     @property
+    def is_plug_in(self) -> bool:
+        """True if another distribution has it."""
+        return not self.classes.startswith(".")
+
+    @property
     def tracker(self) -> type[BaseTracker[Any]]:
         """Tracker class, imported now."""
         return cast("type[BaseTracker[Any]]", self._load("Tracker"))
@@ -75,64 +82,69 @@ class Variant:
 
     def _load(self, role: str) -> object:
         module, _, prefix = self.classes.partition(":")
-        return getattr(import_module(f"{_PACKAGE}.{module}"), prefix + role)
+        try:
+            return getattr(import_module(module, _PACKAGE), prefix + role)
+        except Exception as error:
+            if not self.is_plug_in:
+                raise
+            raise InputError(f"{self.name}, a {self.summary}, cannot be loaded: {error}") from error
 
 
 _ENTRIES = (
     Variant(
-        "apf", "papers.apf:Apf", "adaptive particle filter, two regimes (Scharcanski et al. 2011)",
+        "apf", ".papers.apf:Apf", "adaptive particle filter, two regimes (Scharcanski et al. 2011)",
         "short occlusions on a straight road, where the vehicle's colours are distinctive",
     ),
     Variant(
-        "pf", "papers.pf:Pf", "colour particle filter (Perez et al. 2002)",
+        "pf", ".papers.pf:Pf", "colour particle filter (Perez et al. 2002)",
         "a vehicle in plain view whose colours differ from the road's",
     ),
     Variant(
-        "sapf", "papers.sapf:Sapf", "annealed particle filter (Deutscher et al. 2000)",
+        "sapf", ".papers.sapf:Sapf", "annealed particle filter (Deutscher et al. 2000)",
         "as `pf`, where the vehicle moves far between two frames",
     ),
     Variant(
-        "hpfms", "papers.hpfms:Hpfms",
+        "hpfms", ".papers.hpfms:Hpfms",
         "few particles refined by mean shift (Maggio and Cavallaro 2005)",
         "as `pf`, where there is little time per frame",
     ),
     Variant(
-        "pfcl", "papers.pfcl:Pfcl", "colour and straight lines (Xiong and Debrunner 2004)",
+        "pfcl", ".papers.pfcl:Pfcl", "colour and straight lines (Xiong and Debrunner 2004)",
         "a vehicle with straight edges among others of its colours",
     ),
     Variant(
-        "ms", "papers.ms:Ms", "mean shift, without particles (Comaniciu et al. 2003)",
+        "ms", ".papers.ms:Ms", "mean shift, without particles (Comaniciu et al. 2003)",
         "a fixed camera, no occlusions, and the least time per frame",
     ),
     Variant(
-        "mfpf", "papers.mfpf:Mfpf",
+        "mfpf", ".papers.mfpf:Mfpf",
         "colour, edges and texture with adaptive weights (Abdulla et al. 2022)",
         "a vehicle whose edges or texture are more distinctive than its colours",
     ),
     Variant(
-        "sfpf_color", "papers.sfpf:SfpfColor", "colour alone (Abdulla et al. 2022)",
+        "sfpf_color", ".papers.sfpf:SfpfColor", "colour alone (Abdulla et al. 2022)",
         "comparison with `mfpf`",
     ),
     Variant(
-        "sfpf_edge", "papers.sfpf:SfpfEdge", "edge directions alone (Abdulla et al. 2022)",
+        "sfpf_edge", ".papers.sfpf:SfpfEdge", "edge directions alone (Abdulla et al. 2022)",
         "comparison with `mfpf`; grey video",
     ),
     Variant(
-        "sfpf_texture", "papers.sfpf:SfpfTexture", "texture alone (Abdulla et al. 2022)",
+        "sfpf_texture", ".papers.sfpf:SfpfTexture", "texture alone (Abdulla et al. 2022)",
         "comparison with `mfpf`, which it comes closest to; grey video",
     ),
     Variant(
-        "conventional", "papers.repeated_resampling:Conventional",
+        "conventional", ".papers.repeated_resampling:Conventional",
         "colour, all particles resampled until enough count (Khong et al.)",
         "comparison with `adaptive`, or of resampling schemes",
     ),
     Variant(
-        "adaptive", "papers.repeated_resampling:Adaptive",
+        "adaptive", ".papers.repeated_resampling:Adaptive",
         "colour, only low weights resampled until enough count (Khong et al.)",
         "as `conventional`, with fewer measurements per frame",
     ),
     Variant(
-        "fusion", "fusion.tracker:Fusion",
+        "fusion", ".fusion.tracker:Fusion",
         "correlation particle filter with a posterior over visibility (this package)",
         "real video: changing size, a moving camera, total occlusions",
     ),
@@ -143,7 +155,7 @@ VARIANTS: Mapping[str, Variant] = MappingProxyType({entry.name: entry for entry 
 
 TRAFFIC = Variant(
     "traffic",
-    "traffic.tracker:Traffic",
+    ".traffic.tracker:Traffic",
     "every vehicle in view, with identities (this package)",
     "many vehicles at once, counts at lines and in zones",
 )
@@ -176,7 +188,32 @@ def find_node(name: str) -> Variant:
     return _find(name, NODES)
 
 
-def _find(name: str, known: Mapping[str, Variant]) -> Variant:
+PLUG_INS = "vehicle_pf_tracker.variants"
+"""Group of the entry points; the value of one is ``module:PrefixTracker``."""
+
+
+@cache
+def plug_ins() -> Mapping[str, Variant]:
+    """Find the variants of other distributions; none is imported.
+
+    One whose name is taken, or cannot be that of a node, is left out with a warning.
+    """
+    from importlib.metadata import entry_points  # noqa: PLC0415 - 30 ms
+
+    found: dict[str, Variant] = {}
+    for point in entry_points(group=PLUG_INS):
+        owner = f"plug-in of {point.dist.name} {point.dist.version}" if point.dist else "plug-in"
+        if point.name in NODES or point.name in found or not point.name.isidentifier():
+            words = "%r, a %s, is left out: its name is taken, or is not of letters, digits and _"
+            logging.getLogger(__name__).warning(words, point.name, owner)
+            continue
+        classes = point.value.removesuffix("Tracker")
+        found[point.name] = Variant(point.name, classes, owner, "")
+    return found
+
+
+def _find(name: str, own: Mapping[str, Variant]) -> Variant:
+    known = {**own, **plug_ins()}
     if name not in known:
         hint = suggestion(name.removesuffix("_tracker"), known)
         raise InputError(f"there is no variant {name!r}{hint}; choose one of {', '.join(known)}")

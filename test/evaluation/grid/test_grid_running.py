@@ -31,9 +31,8 @@ from evaluation_samples import (
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.grid import sources
-from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem
+from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
-from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
 from vehicle_pf_tracker.recordings.reader import Recording
 
 

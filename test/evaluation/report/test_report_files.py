@@ -26,7 +26,7 @@ from evaluation_samples import FRAMES, HIDDEN, SEEDS, VARIANTS
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
-from vehicle_pf_tracker.evaluation.report.toolkits import write_toolkits
+from vehicle_pf_tracker.evaluation.report.writing import write_toolkits
 
 FIGURES = {"intervals", "success", "precision", "normalised", *(f"errors_{n}" for n in HIDDEN)}
 WORDS = ["--no-images", "--figures", "svg,png,pdf,svg", "--write", "otb,vot,mot"]

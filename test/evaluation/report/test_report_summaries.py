@@ -23,18 +23,21 @@ import evaluation_samples as samples
 import pytest
 from evaluation_samples import ALONE, HIDDEN, SEEDS, VARIANTS
 
+from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     EvaluationFolder,
     cell_folder,
     read_document,
 )
+from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete
-from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
 from vehicle_pf_tracker.evaluation.report import writing
 from vehicle_pf_tracker.evaluation.report.aggregates import COLUMNS, aggregate
 from vehicle_pf_tracker.evaluation.report.page import make_page
 from vehicle_pf_tracker.evaluation.report.page_tables import overall_table, starts_table
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
+from vehicle_pf_tracker.offline.output_files import write_json
+from vehicle_pf_tracker.offline.run_folder import seal
 
 
 @pytest.fixture(scope="module")
@@ -140,6 +143,18 @@ def test_shifted_first_boxes_are_compared_with_the_true_one(shifted):
     assert 'id="starts"' in page and "free: seed 0 left" in page
 
 
+def test_results_of_different_versions_are_told(evaluation_copy, capsys):
+    folder = cell_folder(evaluation_copy, "free", "pf", 1)
+    run = read_document(folder / "run.json")
+    write_json(folder / "run.json", {**run, "versions": {**run["versions"], "opencv": "0.9.0"}})
+    (folder / "digests.json").unlink()
+    seal(folder)
+    assert main(["report", str(evaluation_copy), "--no-images"]) == 0
+    said = f"different versions are compared: opencv 0.9.0 and {run['versions']['opencv']}; "
+    assert capsys.readouterr().err.count(said) == 1
+    assert said in (evaluation_copy / "report.html").read_text()
+
+
 def test_json_is_json_and_has_everything(evaluation, aggregates):
     document = writing.summary_json(evaluation, aggregates)
     document = json.loads(json.dumps(document, allow_nan=False))
@@ -148,6 +163,7 @@ def test_json_is_json_and_has_everything(evaluation, aggregates):
     assert document["rankings"]["rmse_px"]["recordings"] == len(HIDDEN)
     assert len(document["failed"]) == len(HIDDEN)
     assert document["shifted"] is None
+    assert not any("versions" in sentence for sentence in document["findings"])
 
 
 def test_markdown_has_a_table_for_each_recording_and_every_failed_cell(evaluation, aggregates):

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from scored_scenes import scene
 
-from vehicle_pf_tracker.evaluation.traffic.identities import matches, overlaps, scorable
+from vehicle_pf_tracker.evaluation.traffic.scoring import matches, overlaps, scorable
 
 
 def sequence(truth, hidden, ignored=()):

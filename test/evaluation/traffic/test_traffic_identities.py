@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from scored_scenes import scene
 
-from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
+from vehicle_pf_tracker.evaluation.traffic.scoring import counts, kept_identities
 
 FRAMES = 100
 

@@ -153,7 +153,7 @@ def test_a_step_that_takes_too_long_is_reported_with_where_it_was(bench, monkeyp
     monkeypatch.setattr(BaseTracker, "step", slow(BaseTracker.step))
     rig.play(frames[2:], 2)
     said = capfd.readouterr().err
-    assert "more than ten periods" in said
+    assert "an image takes longer than 0.5 s; it is at" in said
     assert "in slow_step" in said
 
 

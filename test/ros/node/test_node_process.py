@@ -136,6 +136,32 @@ def test_a_parameter_file_with_a_key_twice_is_refused(start_node, tmp_path):
     assert len(node.output.splitlines()) == 1
 
 
+def test_a_parameter_file_for_another_node_is_named_with_the_nodes_it_is_for(start_node, tmp_path):
+    """ROS passes over it without a word."""
+    path = tmp_path / "front.yaml"
+    path.write_text("/front/apf_tracker:\n  ros__parameters:\n    num_particles: 100\n")
+    node = start_node("apf", "--params-file", str(path), "-r", "__node:=rear")
+    node.wait_for_output("ready")
+    assert "has nothing for rear, only for /front/apf_tracker; use /** as" in node.output
+
+
+def test_a_signal_while_the_node_is_made_leaves_no_words(start_process):
+    code = (
+        "import os, signal, sys\n"
+        "import rclpy.node\n"
+        "from vehicle_pf_tracker.ros.executables import main\n"
+        "make = rclpy.node._rclpy.Node\n"
+        "def interrupted(*words):\n"
+        "    os.kill(os.getpid(), signal.SIGINT)\n"
+        "    return make(*words)\n"
+        "rclpy.node._rclpy.Node = interrupted\n"
+        "sys.exit(main('apf'))"
+    )
+    process = start_process("-c", code)
+    assert process.wait() == 0
+    assert process.output == ""
+
+
 def test_other_arguments_are_a_usage_error(start_process):
     code = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('apf'))"
     process = start_process("-c", code, "--target", "1,2,3,4")

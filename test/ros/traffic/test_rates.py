@@ -19,9 +19,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.ros.traffic.rates import Rates, TimedDetector
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.ros.traffic.rates import Rates
 
 
 class Clock:
@@ -72,16 +70,3 @@ def test_what_stays_becomes_usual(clock):
     watch(rates, clock, 300, lambda: 8)
     assert any(watch(rates, clock, 60, lambda: 20))
     assert not any(watch(rates, clock, 3600, lambda: 20)[-600:])
-
-
-def test_a_detector_is_timed_and_says_whether_it_looked():
-    class Blind:
-        disturbed, is_blind = True, True
-
-        def detect(self, frame: Frame, tracks=()):
-            return Detections.make([[1, 2, 30, 40]])
-
-    timed = TimedDetector(Blind())
-    assert len(timed.detect(np.zeros((9, 9, 3), np.uint8))) == timed.found == 1
-    assert timed.seconds > 0
-    assert (timed.disturbed, timed.is_blind) == (True, True)

@@ -19,8 +19,9 @@ import pytest
 from fusion_samples import texture
 
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.kernels.choice import load_kernels
+from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
+from vehicle_pf_tracker.trackers.fusion.parameters import FilterParameters
 
 KERNELS = load_kernels("opencv")
 SIZE = np.array([48.0, 30.0])
@@ -40,8 +41,8 @@ def frame(x=PLACE[0], y=PLACE[1], vehicle=VEHICLE):
     return picture
 
 
-def learnt(*, colour=True, penalty=0.1):
-    appearance = Appearance(KERNELS, SIZE, penalty, colour=colour)
+def learnt(*, penalty=0.1):
+    appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters(penalty=penalty))
     appearance.learn_first(appearance.patch(frame(), PLACE, SIZE))
     return appearance
 
@@ -69,7 +70,7 @@ def test_the_target_has_its_canonical_size_in_the_patch():
 @pytest.mark.parametrize("size", [(1.0, 1.0), (3.0, 2.0), (4.0, 300.0), (900.0, 600.0)])
 def test_any_size_leaves_background_in_the_patch(size):
     size = np.array(size)
-    patch = Appearance(KERNELS, size, 0.1, colour=True).patch(frame(), PLACE, size)
+    patch = Appearance(KERNELS, size, size, FilterParameters()).patch(frame(), PLACE, size)
     assert (size * patch.zoom).max() <= 0.6 * patch.side + 1e-9
     assert patch.zoom.max() <= 8
 
@@ -82,10 +83,9 @@ def test_the_first_view_sets_what_is_usual():
     assert view_at(appearance, frame(), PLACE).response.max() == pytest.approx(1 / 1.05, rel=1e-4)
 
 
-@pytest.mark.parametrize("colour", [True, False])
 @pytest.mark.parametrize("offset", [(0, 0), (5, -3), (-12, 4), (15, 10)])
-def test_the_peak_is_where_the_target_is(colour, offset):
-    appearance = learnt(colour=colour)
+def test_the_peak_is_where_the_target_is(offset):
+    appearance = learnt()
     view = view_at(appearance, frame(), PLACE - offset)
     found, height = view.peak_near(PLACE, 6)
     assert found == pytest.approx(PLACE, abs=0.8)
@@ -180,10 +180,9 @@ def test_the_peak_is_sought_within_reach_only_and_inside_the_patch():
 
 
 @pytest.mark.parametrize("level", [0, 119, 255])
-@pytest.mark.parametrize("colour", [True, False])
-def test_an_image_without_any_contrast_gives_finite_responses(level, colour):
+def test_an_image_without_any_contrast_gives_finite_responses(level):
     blank = np.full((120, 160, 3), level, np.uint8)
-    appearance = Appearance(KERNELS, SIZE, 0.1, colour=colour)
+    appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters())
     appearance.learn_first(appearance.patch(blank, np.array([80.0, 60.0]), SIZE))
     view = view_at(appearance, blank, (80, 60))
     assert np.isfinite(view.response).all()
@@ -195,7 +194,7 @@ def test_an_image_without_any_contrast_gives_finite_responses(level, colour):
 def turned_into_another():
     """A filter that remembers `VEHICLE`, and has learnt `OTHER` since."""
     appearance = usual()
-    appearance.remember(3)
+    appearance.remember(3, 0)
     for _ in range(12):
         view = view_at(appearance, frame(vehicle=OTHER), PLACE)
         appearance.learn(frame(vehicle=OTHER), view, PLACE, SIZE, 0.0)
@@ -217,5 +216,5 @@ def test_the_first_and_the_latest_filters_are_kept(count, kept):
     appearance = learnt()
     for number in range(7):
         appearance.usual_response = 1.0 + number
-        appearance.remember(count)
+        appearance.remember(count, 40 * number)
     assert [each.usual_response - 1 for each in appearance.dated] == kept

@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.visibility import Wholeness, points_evidence
+from vehicle_pf_tracker.trackers.fusion.visibility import points_evidence, wholeness
 
 
 def visibility(**values):
@@ -31,7 +31,7 @@ def visibility(**values):
 
 
 ROUND = visibility(
-    points_slope=4.0, points_middle=0.5, hiding_rate=0.02, return_rate=0.05, partial_slope=8.0,
+    points_slope=4.0, hiding_rate=0.02, return_rate=0.05, partial_slope=8.0,
     partial_middle=0.7,
 )  # fmt: skip
 
@@ -46,37 +46,24 @@ def test_the_surface_s_share_speaks_for_a_visible_vehicle_above_the_middle():
 def test_a_share_at_the_middle_leaves_the_chain_to_itself():
     """Rates of 0.02 and 0.05: 0.5 * 0.98 + 0.5 * 0.05."""
     for elapsed in (1.0, 2.0):
-        seen = Wholeness(0.5)
-        seen.judge(0.7, elapsed, ROUND)
         expected = 0.5 * 0.98**elapsed + 0.5 * (1 - 0.95**elapsed)
-        assert seen.probability == pytest.approx(expected)
+        assert wholeness(0.5, 0.7, elapsed, ROUND) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(("share", "ratio"), [(0.5, -1.6), (0.0, -3.0)])
 def test_the_share_changes_the_odds_by_its_ratio_up_to_twenty_to_one(share, ratio):
     """Slope 8: 0.2 below the middle is a ratio of -1.6, and no share at all would be -5.6."""
-    seen = Wholeness(0.5)
-    seen.judge(share, 1.0, ROUND)
-    odds = seen.probability / (1 - seen.probability)
+    whole = wholeness(0.5, share, 1.0, ROUND)
+    odds = whole / (1 - whole)
     assert odds == pytest.approx(0.515 / 0.485 * math.exp(ratio))
 
 
 def test_half_a_vehicle_is_partial_within_three_frames_and_whole_again_as_fast():
-    seen = Wholeness()
-    assert seen.is_likely
-    for _ in range(3):
-        seen.judge(0.4, 1.0, ROUND)
-    assert not seen.is_likely
-    for _ in range(3):
-        seen.judge(1.0, 1.0, ROUND)
-    assert seen.is_likely
-
-
-def test_nothing_is_partial_without_a_slope():
-    seen, off = Wholeness(), visibility(partial_slope=0.0, hiding_rate=0.5, return_rate=1e-6)
-    for _ in range(50):
-        seen.judge(0.0, 1.0, off)
-    assert seen.is_likely
+    whole = 0.99
+    for share, likely in ((0.4, False), (1.0, True)):
+        for _ in range(3):
+            whole = wholeness(whole, share, 1.0, ROUND)
+        assert (whole > 0.5) == likely
 
 
 @given(
@@ -84,9 +71,9 @@ def test_nothing_is_partial_without_a_slope():
     st.floats(0, 1), st.floats(1e-6, 0.5), st.floats(1e-6, 0.5),
 )  # fmt: skip
 def test_the_probability_stays_one(frames, slope, middle, hiding, returning):
-    seen, options = Wholeness(), visibility(
+    whole, options = 0.99, visibility(
         partial_slope=slope, partial_middle=middle, hiding_rate=hiding, return_rate=returning
     )  # fmt: skip
     for share, elapsed in frames:
-        seen.judge(share, elapsed, options)
-        assert 0 <= seen.probability <= 1
+        whole = wholeness(whole, share, elapsed, options)
+        assert 0 <= whole <= 1

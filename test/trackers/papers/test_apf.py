@@ -22,8 +22,11 @@ from street import Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.papers.apf import ApfParameters, ApfTracker
-from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters, log_likelihood
-from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.papers.shared import (
+    LikelihoodParameters,
+    MeanVelocity,
+    log_likelihood,
+)
 
 
 def make(**values):

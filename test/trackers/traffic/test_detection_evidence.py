@@ -23,16 +23,21 @@ SIZE = (320, 240)
 ROAD, TREE = np.array([100.0, 100, 140, 130]), np.array([10.0, 10, 20, 20])
 
 
+def sample(edges, score):
+    return DetectionEvidence().samples(edges[np.newaxis], np.array([score]), SIZE)[0]
+
+
 def taught(transform=lambda score: score):
     evidence = DetectionEvidence()
     rng = np.random.default_rng(3)
     for score in rng.uniform(0.1, 0.9, 600).tolist():
-        evidence.learn(evidence.sample(ROAD, transform(score), SIZE), bool(score > 0.5))
+        evidence.learn(sample(ROAD, transform(score)), bool(score > 0.5))
     return evidence
 
 
 def odds(evidence, edges, *scores):
-    return evidence.log_odds([evidence.sample(edges, score, SIZE) for score in scores])
+    evidence.look()
+    return evidence.log_odds([sample(edges, score) for score in scores])
 
 
 def test_nothing_is_known_at_first():
@@ -57,9 +62,9 @@ def test_a_place_of_false_alarms_speaks_against_a_detection_and_never_for_one():
     evidence = taught()
     before = odds(evidence, ROAD, 0.8)
     for _ in range(50):
-        evidence.learn(evidence.sample(TREE, 0.8, SIZE), False)
+        evidence.learn(sample(TREE, 0.8), False)
     for _ in range(200):
-        evidence.learn(evidence.sample(ROAD, 0.8, SIZE), True)
+        evidence.learn(sample(ROAD, 0.8), True)
     assert odds(evidence, TREE, 0.8) < odds(evidence, ROAD, 0.8) - 2
     assert odds(evidence, ROAD, 0.8) < before + 2
 

@@ -16,14 +16,14 @@
 
 import numpy as np
 import pytest
-from traffic_samples import track
+from traffic_samples import DRIVE, track
 
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections, fits
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
 from vehicle_pf_tracker.trackers.traffic.detections import DetectionEvidence, Detections
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import ColourBins
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge
+from vehicle_pf_tracker.trackers.traffic.track import predict
 
 SIZE = (320, 240)
 SCORE = 0.8
@@ -44,10 +44,9 @@ def ended_unconfirmed(places):
     for _ in range(10):
         one = track(1, *places[0])
         for frame, place in enumerate(places):
-            one.predict(1.0 if frame else 0.0)
+            predict([one], -1000.0, 1.0 if frame else 0.0, DRIVE)
             detections = found(evidence, (*place, 40, 30))
-            for edge in Edge:
-                one.state.measure(edge, detections.edges[0, edge], 1.0)
+            one.state.measure(detections.edges[0], np.ones(4))
             assert not existence.detected(one, detections, 0, 0.0)
         one.undetected = 100.0
         assert existence.survivors([one], SIZE, 1 / 30) == []
@@ -70,11 +69,11 @@ def test_what_was_seen_a_few_times_speaks_against_its_scores():
 def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_alarm():
     evidence = DetectionEvidence()
     one = track(1, 100.0)
-    one.predict(1.0)
+    predict([one], -1000.0, 1.0, DRIVE)
     here, aside = fits([one], found(evidence, (103, 100, 40, 30), (280, 20, 9, 9)), [0, 1], 0.05)[0]
     assert here > 2
     assert aside < -10
-    sample = evidence.sample(np.array([103.0, 100, 143, 130]), SCORE, SIZE)
+    sample = found(evidence, (103, 100, 40, 30)).samples[0]
     for _ in range(30):  # of a place where false alarms are common, less so
         evidence.look()
         evidence.learn(sample, False)

@@ -17,7 +17,8 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.measuring import first_state, is_cut, measure
+from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure
+from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
 from vehicle_pf_tracker.trackers.traffic.track import Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
@@ -34,8 +35,10 @@ def track():
     return one
 
 
-def measured(track, detection):
-    return measure(track, np.array(detection, float), 0.05, 2.5, SIZE)
+def measured(track, detection, *others):
+    edges = np.array([detection], float)
+    (whole,) = measure([track], edges, DetectionParameters(), SIZE, np.vstack([edges, *others]))
+    return whole
 
 
 def test_a_whole_detection_measures_every_edge(track):
@@ -58,7 +61,7 @@ def test_a_vehicle_that_brakes_is_followed(track):
 def test_an_edge_cut_by_the_border_is_not_measured():
     below = np.array([100.0, 215, 140, 250])
     one = Track(1, VehicleState(below, np.full(4, 0.3), -1e4, DRIVE), matches=20)
-    measure(one, np.array([100.0, 215, 140, 240]), 0.05, 2.5, SIZE)
+    measured(one, np.array([100.0, 215, 140, 240]))
     assert one.state.edges[Edge.BOTTOM] == pytest.approx(250, abs=0.2)
 
 
@@ -80,11 +83,6 @@ def test_a_thin_first_box_may_grow():
     assert thin.edge_covariance[1, 1] > 10 * whole.edge_covariance[1, 1]
 
 
-def test_cut_boxes_are_told():
-    assert not is_cut(BOX, SIZE)
-    assert is_cut(BOX - (100, 0, 100, 0), SIZE)
-
-
 @pytest.mark.parametrize(
     ("other", "is_several"),
     [
@@ -96,12 +94,12 @@ def test_cut_boxes_are_told():
 def test_a_box_that_was_several_vehicles_becomes_the_nearest_one(track, other, is_several):
     own = np.array([100.0, 114, 118, 130])
     for _ in range(3):
-        measure(track, own, 0.05, 2.5, SIZE, np.array([other]))
+        measured(track, own, other)
     assert (track.state.edges == pytest.approx(own, abs=1)) is is_several
 
 
 def test_a_part_without_another_detection_is_not_taken_for_several(track):
     own = np.array([100.0, 114, 118, 130])
     for _ in range(3):
-        measure(track, own, 0.05, 2.5, SIZE)
+        measured(track, own)
     assert track.state.edges[Edge.RIGHT] == pytest.approx(140, abs=1)

@@ -72,6 +72,8 @@ def test_the_box_is_given_in_pixels_of_the_image():
     ("network", "said"),
     [
         (RedSquare(shape=(1, 1, SIDE, SIDE)), "the network made up takes no images"),
+        (RedSquare(shape=(4, 3, SIDE, SIDE)), "made up takes 4 images at once; export it with a"),
+        (RedSquare(shape=(1, 3, 20_000, SIDE)), "made up takes images of 64x20000 px; export it"),
         (RedSquare(failure="out of\nmemory"), "made up cannot be run: out of memory"),
     ],
 )

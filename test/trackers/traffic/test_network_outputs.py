@@ -98,11 +98,20 @@ def test_boxes_of_ssd_may_be_shares_or_pixels(scale):
     assert found.boxes[0] == pytest.approx([32, 64, 64, 128])
 
 
-def test_numbers_without_meaning_are_passed_on_as_such():
-    output = zeros(1, 6, 84)
-    output[0, :, 3] = np.nan
-    found = decode("YOLOv8", {"output": output}, 64, 64)
-    assert np.isnan(found.scores[3])
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_a_box_with_a_number_without_meaning_scores_nothing_and_spoils_no_other(bad):
+    yolov8, yolox = zeros(1, 6, 84), zeros(1, 84, 7)
+    yolov8[0], yolox[0] = 40.0, 40.0  # in px; one cell's would be below 32
+    yolov8[0, 0, 3] = yolox[0, 3, 0] = bad
+    boxes, scores, labels = np.full((84, 4), [10.0, 20, 30, 60]), np.ones(84), np.ones(84)
+    boxes[3], labels[4] = bad, bad
+    ssd = {"boxes": boxes, "scores": scores, "labels": labels}
+    for form, outputs in {"YOLOv8": {"o": yolov8}, "YOLOX": {"o": yolox}, "SSD": ssd}.items():
+        found = decode(form, outputs, 64, 64)
+        assert found.scores[3] == 0
+        assert np.isfinite(found.boxes).all()
+        assert (found.boxes[5] == ([10, 20, 20, 40] if form == "SSD" else [20, 20, 40, 40])).all()
 
 
 def test_coco_from_one_has_its_gaps():

@@ -25,8 +25,8 @@ from vehicle_pf_tracker.road.camera import Lens, Pose
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.horizon import calibrated_row
+from vehicle_pf_tracker.trackers.traffic.occlusion import nearest_first
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import nearest_first
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 SIZE = (640, 480)

@@ -23,7 +23,6 @@ from vehicle_pf_tracker.trackers.image_stream import StrayImageError
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 PERIOD_NS = 40_000_000
 FRAME = np.zeros((48, 64, 3), np.uint8)
@@ -165,20 +164,6 @@ def test_time_that_goes_back_and_stays_there_begins_anew(resets, expected):
     session.feed(FRAME, PERIOD_NS)
     assert session.tracker.resets == expected
     assert "time jumped back" in session.events
-
-
-def test_a_detector_of_every_third_image_is_not_asked_in_between():
-    asked = []
-
-    class Counting(MotionDetector):
-        def detect(self, frame, tracks=()):
-            asked.append(len(asked))
-            return super().detect(frame, tracks)
-
-    session = TrafficSession(TrafficTracker(), Counting, frame_rate=25.0, every=3)
-    for index in range(10):
-        session.feed(np.zeros((48, 64, 3), np.uint8), index * 40_000_000)
-    assert len(asked) == 4
 
 
 def test_detections_count_in_inner_regions_and_in_no_outer_one():

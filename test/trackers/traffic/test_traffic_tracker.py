@@ -140,10 +140,9 @@ def test_a_vehicle_of_a_bad_state_is_dropped_counted_and_the_others_go_on(monkey
         tracker.add(Box(*box))
     predict = VehicleState.predict
 
-    def spoil(state, elapsed):
-        predict(state, elapsed)
-        if state.box.centre[0] < 100:
-            state.covariance[1] = value
+    def spoil(state, elapsed, drive):
+        predict(state, elapsed, drive)
+        state.covariance[state.edges[:, 0] < 100, 1] = value
 
     monkeypatch.setattr(VehicleState, "predict", spoil)
     kept, new = tracker.step(scene(*boxes), Detections.make(boxes))

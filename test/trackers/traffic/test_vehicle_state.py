@@ -51,7 +51,7 @@ def test_the_first_box_is_the_detection(state):
 
 def test_a_nearer_vehicle_is_larger_by_the_rule_of_perspective(state):
     state.mean[ALONG] = -0.1 / 100
-    state.predict(1.0)
+    state.predict(1.0, STILL)
     # 1 / v falls from 0.01 to 0.009.
     assert state.mean[V] == pytest.approx(1 / 0.009)
     assert state.box.width == pytest.approx(40 / 0.9)
@@ -83,7 +83,7 @@ def test_the_jacobian_is_that_of_the_prediction():
     def predicted(mean):
         one = box_state()
         one.mean = mean.copy()
-        one.predict(2.0)
+        one.predict(2.0, STILL)
         return one.mean
 
     steps = 1e-6 * np.maximum(np.abs(start.mean), 1e-3)
@@ -96,7 +96,7 @@ def test_the_jacobian_is_that_of_the_prediction():
     expected = jacobian @ start.covariance @ jacobian.T
     w, h = predicted(start.mean)[2:4]
     start_width, start_height = start.mean[2:4]
-    start.predict(2.0)
+    start.predict(2.0, STILL)
     noise = start.covariance - expected
     assert noise[2, 2] / start_width**2 == pytest.approx(noise[3, 3] / start_height**2, rel=1e-3)
     noise[2, 2] = noise[3, 3] = 0
@@ -106,7 +106,7 @@ def test_the_jacobian_is_that_of_the_prediction():
 
 
 def test_an_edge_moves_the_box_by_the_kalman_gain(state):
-    state.measure(Edge.BOTTOM, 152.0, 1.0)
+    state.measure(np.full(4, 152.0), np.where(np.arange(4) == Edge.BOTTOM, 1.0, np.inf))
     # Variance 1 of the edge and 1 of its measurement: half way.
     assert state.edges[Edge.BOTTOM] == pytest.approx(151)
     assert state.edge_covariance[Edge.BOTTOM, Edge.BOTTOM] == pytest.approx(0.5)
@@ -116,9 +116,8 @@ def test_an_edge_moves_the_box_by_the_kalman_gain(state):
 def test_measured_places_give_the_speed():
     state = VehicleState(np.array([0.0, 20.0, 40.0, 50.0]), np.ones(4), -1e4, STILL)
     for index in range(1, 30):
-        state.predict(1.0)
-        for edge, value in zip(Edge, (3.0 * index, 20.0, 40 + 3.0 * index, 50.0), strict=True):
-            state.measure(edge, value, 1.0)
+        state.predict(1.0, STILL)
+        state.measure(np.array([3.0 * index, 20.0, 40 + 3.0 * index, 50.0]), np.ones(4))
     assert state.velocity == pytest.approx((3.0, 0.0), abs=0.1)
 
 
@@ -126,7 +125,7 @@ def test_measured_places_give_the_speed():
 def test_no_speed_makes_a_box_infinite(state, along):
     state.mean[ALONG] = along
     for _ in range(5):
-        state.predict(1.0)
+        state.predict(1.0, STILL)
     assert np.isfinite(state.edges).all()
     assert state.box.width >= 1
 
@@ -147,7 +146,7 @@ def test_a_horizon_that_leaps_casts_doubt_on_size_and_speed():
 def test_where_the_growth_is_bounded_it_depends_on_nothing(state, along):
     state.mean[ALONG] = along  # far beyond a growth of 1.3 in a period
     before = state.covariance.copy()
-    state.predict(1.0)
+    state.predict(1.0, STILL)
     growth = 1.3 ** -np.sign(along)
     assert state.mean[V] == pytest.approx(100 * growth)
     assert state.covariance[V, V] == pytest.approx(before[V, V] * growth**2)
@@ -157,7 +156,7 @@ def test_a_hidden_vehicle_that_drives_away_stays_as_uncertain_as_it_is():
     state = VehicleState(np.array([80.0, 60.0, 120.0, 90.0]), np.ones(4), 50.0, MOVING)
     state.mean[ALONG] = 0.1
     for _ in range(1000):
-        state.predict(1.0)
+        state.predict(1.0, MOVING)
     assert state.is_sound
 
 
@@ -181,11 +180,11 @@ def test_no_times_and_measurements_end_a_covariance(steps, velocity, box):
     state.mean[ACROSS:] = velocity
     for power, measurements, horizon in steps:
         state.move_horizon(horizon)
-        state.predict(10.0**power)
+        state.predict(10.0**power, MOVING)
         assert_sound(state)
         assert np.abs(state.mean).max() <= 1e5
         for edge, value, deviation in measurements:
-            state.measure(edge, value, deviation)
+            state.measure(np.full(4, value), np.where(np.arange(4) == edge, deviation, np.inf))
         assert_sound(state)
 
 
@@ -197,3 +196,23 @@ def assert_sound(state):
     correlations = state.covariance / np.outer(deviations, deviations)
     assert np.abs(correlations - correlations.T).max() < 1e-6
     assert np.linalg.eigvalsh(correlations).min() > -1e-6
+
+
+def test_states_that_are_stacked_go_on_as_each_alone_would():
+    boxes = np.array([[80.0, 120, 120, 150], [10, 60, 30, 75], [200, 150, 290, 230]])
+    alone, together = ([VehicleState(b, np.ones(4), 50.0, MOVING) for b in boxes] for _ in "ab")
+    stack = VehicleState.stacked(together)
+    edges, deviations = boxes + 3, np.array([[1, np.inf, 2, 1], [1, 1, 1, 1], [np.inf] * 4])
+    for one, measured, spread in zip(
+        [stack, *alone], [edges, *edges], [deviations, *deviations], strict=True
+    ):
+        one.move_horizon(20.0)
+        one.predict(1.5, MOVING)
+        one.measure(measured, spread)
+    stack.give_back(together)
+    for one, other in zip(alone, together, strict=True):
+        assert other.mean == pytest.approx(one.mean)
+        assert other.covariance == pytest.approx(one.covariance)
+        assert other.box == one.box
+        assert (other.velocity, other.horizon) == (pytest.approx(one.velocity), 20.0)
+    assert VehicleState.stacked([]).is_sound.all()

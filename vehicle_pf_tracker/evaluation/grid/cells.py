@@ -22,6 +22,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
@@ -34,7 +35,6 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     safe_name,
     write_truth,
 )
-from vehicle_pf_tracker.evaluation.grid.starts import TRUE_START, Start
 from vehicle_pf_tracker.evaluation.result_store import result_key, variant_modules
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.run_folder import versions
@@ -45,6 +45,42 @@ from vehicle_pf_tracker.trackers.registry import Variant, find_variant
 
 BASELINE = "baseline:"
 Settings = tuple[tuple[str, Value], ...]
+
+
+_SHIFT = 0.1
+"""Shift of OTB's spatial robustness (Wu, Lim and Yang 2013), in widths and heights of the box."""
+_SCALES = (0.8, 0.9, 1.1, 1.2)
+_SIDES = {
+    "left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1),
+    "left_up": (-1, -1), "right_up": (1, -1), "left_down": (-1, 1), "right_down": (1, 1),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Displacement of the first box, in its widths and heights, and the factor of its sides."""
+
+    name: str = ""
+    shift: tuple[float, float] = (0.0, 0.0)
+    scale: float = 1.0
+
+    def box(self, true: Box) -> Box:
+        """Return the box to start on."""
+        if self == TRUE_START:
+            return true
+        x, y = true.centre
+        centre = x + self.shift[0] * true.width, y + self.shift[1] * true.height
+        return Box.around(centre, true.width * self.scale, true.height * self.scale)
+
+
+TRUE_START = Start()
+"""The true box."""
+
+
+def shifted_starts() -> list[Start]:
+    """Return the twelve starts of OTB: eight shifts by a tenth of the box, and four scales."""
+    shifts = [Start(name, (_SHIFT * x, _SHIFT * y)) for name, (x, y) in _SIDES.items()]
+    return shifts + [Start(f"scale_{scale:g}", scale=scale) for scale in _SCALES]
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,12 +224,6 @@ def seeds_of(system: System, seeds: Sequence[int]) -> Sequence[int]:
     return seeds[:1] if system.is_deterministic else seeds
 
 
-_PACKAGE = "vehicle_pf_tracker"
-_SHARED = frozenset({f"{_PACKAGE}.recordings.reader", f"{_PACKAGE}.evaluation.grid.starts"})
-_OURS = frozenset({f"{_PACKAGE}.offline.driver"})
-_BASELINES = frozenset(f"{_PACKAGE}.evaluation.{name}" for name in ("baselines", "baseline_worker"))
-
-
 @dataclass(frozen=True, slots=True)
 class GridCell:
     """One run: a system on a recording with a seed, from a start.
@@ -233,17 +263,14 @@ class GridCell:
             "start": asdict(self.start),
             **self.system.facts(self.seed),
         }
-        return result_key(facts, self._modules())
+        if isinstance(self.system, BaselineSystem):
+            return result_key(facts, ())
+        return result_key(facts, variant_modules(find_variant(self.system.variant)))
 
     def folder(self, evaluation: Path) -> Path:
         """Return its folder in the folder of the evaluation."""
         cell = self.source.name, self.system.label, self.seed, self.start.name
         return cell_folder(evaluation, *cell)
-
-    def _modules(self) -> frozenset[str]:
-        if isinstance(self.system, VariantSystem):
-            return _SHARED | _OURS | variant_modules(find_variant(self.system.variant))
-        return _SHARED | _BASELINES
 
 
 @dataclass(frozen=True, slots=True)
@@ -298,13 +325,7 @@ class Plan:
         ]
 
     def write(self, folder: Path) -> None:
-        """Write `evaluation.json` and the truth of every recording.
-
-        Raises
-        ------
-        InputError
-            If it cannot be written.
-        """
+        """Write `evaluation.json` and the truth of every recording."""
         for source, truths in self.recordings.items():
             write_truth(make_folder(folder / "recordings" / source.name) / TRUTH, truths)
         write_json(folder / PLAN, self.to_json())

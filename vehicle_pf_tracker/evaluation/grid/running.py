@@ -34,7 +34,6 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_documen
 from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, GridCell, Plan, VariantSystem
 from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
-from vehicle_pf_tracker.evaluation.result_store import scoring_digest
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.offline.driver import OfflineTracker
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
@@ -148,12 +147,7 @@ def on_this_machine(workers: int) -> Runner:
     return functools.partial(run_in_processes, run_cell, workers=workers)
 
 
-def complete(
-    plan: Plan,
-    folder: Path,
-    runner: Runner,
-    on_progress: OnProgress,
-) -> int:
+def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) -> int:
     """Run the cells of `plan` that `folder` does not have, and return how many those were.
 
     Parameters
@@ -188,8 +182,7 @@ def _is_stored(cell: GridCell, folder: Path) -> bool:
     """Return whether the folder has a valid result of the cell; one that failed is tried again."""
     if damage(folder):
         return False
-    run = read_document(folder / RUN)
-    return run.get("key") == cell.key() and run.get("scored_by") == scoring_digest()
+    return read_document(folder / RUN).get("key") == cell.key()
 
 
 def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]) -> None:
@@ -198,7 +191,7 @@ def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]
         if outcome.metrics is None:
             write_json(partial / FAILED, {"reason": outcome.reason})
         else:
-            keys = {"command": command, "key": cell.key(), "scored_by": scoring_digest()}
+            keys = {"command": command, "key": cell.key()}
             results = RunFolder(partial)
             results.write_run(outcome.rows, {**outcome.run, **keys})
             results.write_metrics(outcome.metrics.to_json())

@@ -89,7 +89,7 @@ class Footage:
 
     def __init__(self, source: Source) -> None:
         path = Path(source.path)
-        self._recording = open_source(path, topic=source.topic or None)
+        self._recording = open_source(path, topic=source.topic or None, identity=source.identity)
         if _digest(self._recording, path) != source.digest:
             raise InputError(f"the recording {source.path} has changed since it was planned")
         self.truth = tuple(self._recording.truth())
@@ -132,10 +132,11 @@ def describe(
     topic: str | None,
     max_diff: float,
     on_stage: Callable[[str], object] = lambda _: None,
+    identity: int | None = None,
 ) -> list[tuple[Source, dict[int, Truth]]]:
     """Describe recordings, and read their truth by the number of its frame.
 
-    `on_stage` takes a few words before each.
+    `on_stage` takes a few words before each; `identity` is the target's number in truth of several.
 
     Raises
     ------
@@ -146,22 +147,20 @@ def describe(
     described = []
     for location in locations:
         on_stage(f"reading {location}")
-        described.append(_describe(location, names[location], topic, max_diff))
+        described.append(_describe(location, names[location], topic, max_diff, identity))
     return described
 
 
 def _describe(
-    location: str, name: str, topic: str | None, max_diff: float
+    location: str, name: str, topic: str | None, max_diff: float, identity: int | None
 ) -> tuple[Source, dict[int, Truth]]:
     path = Path(location)
-    recording = open_source(path, topic=topic)
+    recording = open_source(path, topic=topic, identity=identity)
     truth = recording.truth()
     if not truth:
-        raise InputError(
-            f"the recording {location} has no truth to compare with; "
-            "import it with truth, or track it with `vehicle-pf-tracker run`"
-            + "".join(f" ({notice})" for notice in recording.notices)
-        )
+        hint = "; import it with truth, or track it with `vehicle-pf-tracker run`"
+        why = ": " + "; ".join(recording.notices) if recording.notices else hint
+        raise InputError(f"the recording {location} has no truth to compare with{why}")
     stamps = _stamps(recording)
     pairs = associate(stamps, [one.stamp_ns for one in truth], max_diff)
     if not pairs:
@@ -172,8 +171,9 @@ def _describe(
     width, height = _size(recording, location)
     digest = _digest(recording, path)
     source = Source(
-        name, str(path.absolute()), recording.image_topic, len(stamps), width, height, digest
-    )
+        name, str(path.absolute()), recording.image_topic, len(stamps), width, height, digest,
+        identity,
+    )  # fmt: skip
     return source, {index + 1: truth[place] for index, place in pairs.items()}
 
 

@@ -21,10 +21,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
-from vehicle_pf_tracker.evaluation.report.scored_runs import (
-    ScoredEvaluation,
-    ScoredRun,
-)
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.statistics import (
     FEWEST_RECORDINGS,
     Ranking,
@@ -285,7 +282,7 @@ def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
     result = f"All {cells} of the grid have a result."
     if failed:
         result = f"{failed} of {cells} have no result; see Failed cells."
-    return [*_leader(aggregates), *filter(None, best), result]
+    return [*_leader(aggregates), *filter(None, best), result, *evaluation.mixed_versions]
 
 
 def _leader(aggregates: Aggregates) -> list[str]:

@@ -30,10 +30,10 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
 from vehicle_pf_tracker.evaluation.metrics import Curve
-from vehicle_pf_tracker.evaluation.occlusions import CLOSE_PX
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.aggregates import RANKED, Aggregates
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
+from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 from vehicle_pf_tracker.offline.output_files import make_folder, replacing
 
 COLOURS: Mapping[str, str] = {
@@ -158,10 +158,7 @@ def write_figures(
 
 
 def _curves(
-    evaluation: ScoredEvaluation,
-    order: Sequence[str],
-    slots: Mapping[str, int],
-    name: str,
+    evaluation: ScoredEvaluation, order: Sequence[str], slots: Mapping[str, int], name: str
 ) -> Drawn | None:
     """Draw a curve of `CURVES`: means over the seeds of a recording, then over recordings.
 

@@ -32,9 +32,10 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.occlusions import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
+from vehicle_pf_tracker.evaluation.scores import SETTLING_FRAMES
+from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.drawing import draw_box, write_words
 from vehicle_pf_tracker.recordings.source import open_source
 
@@ -203,6 +204,4 @@ def _moments(truths: Mapping[int, Truth], stretch: tuple[int, int]) -> dict[int,
 
 
 def _address(image: Frame) -> str:
-    quality = [cv2.IMWRITE_JPEG_QUALITY, _QUALITY]
-    _, coded = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR), quality)
-    return f"data:image/jpeg;base64,{base64.b64encode(coded.tobytes()).decode('ascii')}"
+    return f"data:image/jpeg;base64,{base64.b64encode(jpeg(image, _QUALITY)).decode('ascii')}"

@@ -163,10 +163,7 @@ def _rank_notes(aggregates: Aggregates) -> Iterator[str]:
 
 
 def _section(
-    evaluation: ScoredEvaluation,
-    aggregates: Aggregates,
-    entry: Source,
-    images: bool,
+    evaluation: ScoredEvaluation, aggregates: Aggregates, entry: Source, images: bool
 ) -> dict[str, Any]:
     """Return the values of a recording's section of the template."""
     truths = evaluation.truths[entry.name]

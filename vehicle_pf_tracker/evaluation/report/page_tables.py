@@ -20,7 +20,6 @@ import itertools
 import statistics
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
-from vehicle_pf_tracker.evaluation.occlusions import OcclusionScore
 from vehicle_pf_tracker.evaluation.report.aggregates import (
     COLUMNS,
     NO_VALUE,
@@ -36,6 +35,7 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     mean_text,
 )
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
+from vehicle_pf_tracker.evaluation.scores import OcclusionScore
 from vehicle_pf_tracker.evaluation.statistics import Summary
 from vehicle_pf_tracker.evaluation.tables import Header, Table, TableCell
 

@@ -27,21 +27,13 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import (
-    EvaluationFolder,
-    Source,
-    SystemEntry,
-)
-from vehicle_pf_tracker.evaluation.metrics import (
-    Curve,
-    Metrics,
-    measure,
-    normalised_precision_curve,
-    precision_curve,
-    success_curve,
-)
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, SystemEntry
+from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 from vehicle_pf_tracker.offline.estimates import EstimateRow
+
+_DECIDING = ("vehicle_pf_tracker", "opencv", "numpy")
+"""Programs whose version moves estimates."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +54,8 @@ class ScoredRun:
         Estimates by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
+    versions : mapping of str to str or None
+        Versions of what it was made with, by program.
     """
 
     recording: str
@@ -73,6 +67,7 @@ class ScoredRun:
     boxes: Sequence[Box | None]
     rows: Sequence[EstimateRow]
     curves: Mapping[str, Curve]
+    versions: Mapping[str, str | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +128,16 @@ class ScoredEvaluation:
             if recording in {None, run.recording} and system in {None, run.system}
         ]
 
+    @property
+    def mixed_versions(self) -> list[str]:
+        """A sentence where runs were made with different versions; baselines have their own."""
+        ours = {one.label for one in self.systems if not one.kind.startswith("baseline:")}
+        runs = [run for run in (*self.runs, *self.shifted) if run.system in ours]
+        found = {key: {str(run.versions.get(key)) for run in runs} for key in _DECIDING}
+        mixed = [f"{key} {' and '.join(sorted(v))}" for key, v in found.items() if len(v) > 1]
+        words = "Results of different versions are compared"
+        return [f"{words}: {'; '.join(mixed)}; evaluate again to have all of one."] if mixed else []
+
     def by_system(self, recording: str, order: Sequence[str]) -> dict[str, list[ScoredRun]]:
         """Return the runs on a recording by their systems, of those in `order` that have any."""
         return {label: runs for label in order if (runs := self.of(recording, label))}
@@ -176,11 +181,6 @@ def _result(
     except InputError as error:
         return FailedCell(*key, str(error))
     counted, frames = scores.counted, scores.frames
-    curves = {
-        "precision": precision_curve(counted),
-        "success": success_curve(counted),
-        "normalised": normalised_precision_curve(counted),
-    }
     errors = [frame.error if frame.counts else None for frame in frames]
     return ScoredRun(
         *key,
@@ -188,7 +188,8 @@ def _result(
         errors=np.array(errors, dtype=np.float64),  # None is NaN
         boxes=[_box(frame) for frame in frames],
         rows=cell.rows,
-        curves={name: curve for name, curve in curves.items() if curve is not None},
+        curves=curves(counted),
+        versions=cell.run.get("versions", {}),
     )
 
 

@@ -31,18 +31,15 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.report.page import render
-from vehicle_pf_tracker.evaluation.tables import (
-    NOTHING,
-    Header,
-    Table,
-    TableCell,
-    csv_text,
-    markdown,
+from vehicle_pf_tracker.evaluation.tables import NOTHING, Header, Table, TableCell, markdown
+from vehicle_pf_tracker.evaluation.traffic.scoring import (
+    TRAFFIC_BASELINES,
+    TrafficWorker,
+    counts,
+    kept_identities,
 )
-from vehicle_pf_tracker.evaluation.traffic.baselines import TRAFFIC_BASELINES, TrafficWorker
-from vehicle_pf_tracker.evaluation.traffic.identities import counts, kept_identities
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
-from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.offline.output_files import csv_text, make_folder, write_json, write_text
 from vehicle_pf_tracker.offline.run_folder import versions
 from vehicle_pf_tracker.offline.traffic_results import IN_TRACKS, Backdating, Frames
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
@@ -164,25 +161,18 @@ def judge(
 
 
 class _Recorder(MotionDetector):
-    """Keeps what it finds as rows."""
+    """Keeps frame, left, top, width, height and score of all that moved."""
 
     def __init__(self) -> None:
         super().__init__()
-        self._found: list[Detections] = []
+        self.rows: list[Array] = []
 
     def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
         """Find what moves."""
-        self._found.append(super().detect(frame, tracks))
-        return self._found[-1]
-
-    def rows(self) -> Array:
-        """Return frame, left, top, width, height and score of all that moved."""
-        return np.vstack(
-            [
-                np.column_stack([np.full(len(found.scores), number), found.boxes, found.scores])
-                for number, found in enumerate(self._found, start=1)
-            ]
-        )
+        found = super().detect(frame, tracks)
+        numbers = np.full(len(found.scores), len(self.rows) + 1)
+        self.rows.append(np.column_stack([numbers, found.boxes, found.scores]))
+        return found
 
 
 def follow(
@@ -221,7 +211,8 @@ def follow(
         tracks += _rows(backdating.add(number, 0, estimates))
     tracks += _rows(backdating.rest())
     rows = np.array(tracks, dtype=np.float64).reshape(-1, 6)
-    return rows, recorder.rows() if given is None else given, seconds / sequence.frame_count
+    detected = np.vstack(recorder.rows) if given is None else given
+    return rows, detected, seconds / sequence.frame_count
 
 
 def _rows(frames: Frames) -> list[list[float]]:
@@ -237,17 +228,10 @@ NAME = "traffic"
 """Name of the files without their suffix."""
 
 COLUMNS: Mapping[str, tuple[str, int]] = {
-    "HOTA": ("HOTA", 1),
-    "DetA": ("DetA", 1),
-    "AssA": ("AssA", 1),
-    "IDF1": ("IDF1", 1),
-    "MOTA": ("MOTA", 1),
-    "IDSW": ("switches", 1),
-    "Frag": ("fragm.", 1),
-    "kept": ("identity kept", 0),
-    "count_error": ("count error", 1),
-    "step_ms": ("ms", 1),
-}
+    **{name: (name, 1) for name in ("HOTA", "DetA", "AssA", "IDF1", "MOTA")},
+    "IDSW": ("switches", 1), "Frag": ("fragm.", 1), "kept": ("identity kept", 0),
+    "count_error": ("count error", 1), "step_ms": ("ms", 1),
+}  # fmt: skip
 """Measures, with their headings and decimals."""
 _LOWER_IS_BETTER = ("IDSW", "Frag", "step_ms")
 

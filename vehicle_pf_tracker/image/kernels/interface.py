@@ -12,26 +12,26 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Interface of the kernels that measure windows, and its implementation in OpenCV and numpy."""
+"""The kernels that measure windows: interface, implementation in OpenCV and numpy, and choice.
+
+numba's are compiled for the first time in a process of their own.
+"""
 
 from __future__ import annotations
 
+import functools
+import importlib
+import importlib.util
+import os
+import subprocess
+import sys
 from collections.abc import Sequence
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image import (
-    gradient_cells,
-    mean_shift,
-    spectra,
-)
-from vehicle_pf_tracker.image.colour import JointColour
+from vehicle_pf_tracker.image import gradient_cells, mean_shift, spectra
 from vehicle_pf_tracker.image.similarity import Reference
-from vehicle_pf_tracker.image.window import (
-    Coefficients,
-    Positions,
-    Window,
-    WindowFeature,
-)
+from vehicle_pf_tracker.image.window import Coefficients, Positions, Window, WindowFeature
 
 
 class Kernels:
@@ -56,6 +56,8 @@ class Kernels:
 
     gradient_cells = staticmethod(gradient_cells.gradient_cells)
     correlated = staticmethod(spectra.correlated)
+    kernel_similarity = staticmethod(mean_shift.kernel_similarity)
+    mean_shift = staticmethod(mean_shift.mean_shift)
 
     def __init__(self, notices: Sequence[str] = ()) -> None:
         self.notices = notices
@@ -90,25 +92,87 @@ class Kernels:
         """
         return feature.similarity(frame, positions, window, reference)
 
-    def kernel_similarity(
-        self,
-        feature: JointColour,
-        frame: Frame,
-        positions: Positions,
-        window: Window,
-        reference: Reference,
-    ) -> Coefficients:
-        """Compare kernel-weighted histograms with a reference; see `image.mean_shift`."""
-        histogram = reference.histogram
-        return mean_shift.kernel_similarity(frame, positions, window, histogram, feature.bits)
 
-    def mean_shift(
-        self,
-        feature: JointColour,
-        frame: Frame,
-        positions: Positions,
-        window: Window,
-        reference: Reference,
-    ) -> Positions:
-        """Move every position one mean-shift step; see `image.mean_shift`."""
-        return mean_shift.mean_shift(frame, positions, window, reference.histogram, feature.bits)
+CHOICES = ("auto", "opencv", "numba")
+
+_NUMBA = "vehicle_pf_tracker.image.kernels.numba_kernels"
+_JIT = "vehicle_pf_tracker.image.kernels.numba_jit"
+"""A small part that all other kernels need, which tells whether the cache is filled."""
+
+
+def load_kernels(choice: str) -> Kernels:
+    """Make kernels that are ready for use, with everything compiled or loaded.
+
+    Parameters
+    ----------
+    choice : {"auto", "opencv", "numba"}
+        `auto` selects numba's where numba can be imported, else OpenCV's.
+
+    Raises
+    ------
+    InputError
+        If numba's are asked for and numba cannot be imported.
+    """
+    if choice == "opencv":
+        return Kernels()
+    try:
+        return load_numba()
+    except ImportError as error:
+        if choice == "numba":
+            raise InputError(
+                f"kernels: numba needs numba, which cannot be imported ({error}); "
+                "install it, or set kernels to auto or opencv"
+            ) from error
+        return Kernels(_fallback_notices(error))
+
+
+def takes_long(choice: str) -> bool:
+    """Tell whether `load_kernels` would first import numba, and perhaps compile for a while."""
+    if choice == "opencv" or load_numba.cache_info().currsize:
+        return False
+    return importlib.util.find_spec("numba") is not None
+
+
+@functools.cache
+def load_numba() -> Kernels:
+    """Make numba's kernels, with everything compiled or loaded; once in a process."""
+    # Imported late: it takes half a second, and only here is it known to be needed.
+    jit = importlib.import_module(_JIT)
+    if jit.has_filled_cache():
+        compile_elsewhere(_NUMBA)
+    kernels: Kernels = importlib.import_module(_NUMBA).NumbaKernels()
+    return kernels
+
+
+def _fallback_notices(error: ImportError) -> list[str]:
+    """Return no notice where numba is not installed, and one where it fails to load."""
+    if isinstance(error, ModuleNotFoundError) and error.name == "numba":
+        return []
+    return [f"numba is installed but cannot be imported ({error}); the OpenCV kernels are used"]
+
+
+_COMPILING = "VEHICLE_PF_TRACKER_COMPILES"
+"""Variable that tells a process that it was started to compile, so that it starts no other one."""
+_END_WITH_PARENT = (
+    "import ctypes, signal, sys;"
+    "getattr(ctypes.CDLL(None), 'prctl', lambda *_: 0)(1, int(signal.SIGTERM))"
+)
+"""Code by which a process ends with the one that started it, where the system is Linux."""
+
+
+def compile_elsewhere(module: str) -> None:
+    """Import `module`, which compiles kernels, in a process that ends and leaves them on disk.
+
+    LLVM keeps what it has allocated: a process that compiles all kernels stays 150 MB larger.
+    """
+    if _COMPILING in os.environ:
+        return
+    code = f"{_END_WITH_PARENT}; sys.path[:] = {sys.path!r}; import {module}"
+    subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, _COMPILING: "1"},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        check=False,  # what it did not compile is compiled here
+    )

@@ -12,48 +12,40 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Edge points of many windows, each with a limit of its own, in numba.
-
-All is laid out over the field: the smallest rectangle that has every window whole. Where it reaches
-beyond the image there is no gradient, not even one of zero, so that no window has to be cut.
-Squared magnitudes are integers, and so are the limits that they are compared with.
-"""
+"""Edge points of many windows, each with a limit of its own, in numba."""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 from numba import types
 
-from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.gradients import DIRECTION_BINS, GradientDirections
-from vehicle_pf_tracker.image.kernels.numba_inputs import CellTable, Placement
-from vehicle_pf_tracker.image.kernels.numba_jit import RECTANGLES, TABLE, Table, compiled, inlined
-from vehicle_pf_tracker.image.kernels.numba_windows import PAIR, QUAD, Counts, Pixels
-from vehicle_pf_tracker.image.window import Grey, to_grey
+from vehicle_pf_tracker.image.gradients import DIRECTION_BINS
+from vehicle_pf_tracker.image.kernels.numba_jit import (
+    RECTANGLES,
+    TABLE,
+    Rectangles,
+    Table,
+    compiled,
+    inlined,
+)
+from vehicle_pf_tracker.image.kernels.numba_windows import PAIR, Counts
 
 Gradients: TypeAlias = npt.NDArray[np.int16]
 Strengths: TypeAlias = npt.NDArray[np.int32]
-Images: TypeAlias = tuple[Gradients, Gradients, Strengths]
 Points: TypeAlias = tuple[Strengths, Table, Strengths]
 Tangents: TypeAlias = npt.NDArray[np.float64]
 Numbers: TypeAlias = npt.NDArray[np.int64]
 
+_GRADIENTS = types.int16[:, ::1]
 _NUMBERS = types.int64[::1]
 _TANGENTS = types.Array(types.float64, 1, "C", readonly=True)
 
-_NOWHERE = -1
-"""Squared magnitude beyond the image."""
-
-_NEVER = 1 << 62
-"""Limit that nothing passes."""
-
-_RANGE = 4
-"""Ratio of limits above which windows are counted from lists of their own: a window of faint edges
-lets almost every pixel pass, most of which other windows would then skip one by one."""
+_NEVER = 1 << 31
+"""Limit that nothing passes: squared magnitudes are at most 2 * 1020²."""
 
 TANGENTS: Tangents = np.tan(np.arange(1, DIRECTION_BINS // 4) * (2 * np.pi / DIRECTION_BINS))
 """Tangents of the directions between the bins of a quarter turn."""
@@ -79,37 +71,10 @@ def direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
 
 
 @inlined
-def _mirrored(index: int, length: int) -> int:
-    """Index mirrored at the last pixel where it is beyond an end by one, as OpenCV does it."""
-    if index < 0:
-        return min(1, length - 1)
-    return index if index < length else max(length - 2, 0)
-
-
-@inlined
-def _sobel(grey: Grey, images: Images, x0: int, y0: int) -> None:
-    """Fill the gradients of the field from grey pixels whose first one is at x0, y0 in it."""
-    gx, gy, strengths = images
-    height, width = grey.shape
-    smooth, slope = np.empty(width + 2, np.int16), np.empty(width + 2, np.int16)
-    left, right = max(x0, 0), min(x0 + width, strengths.shape[1])
-    strengths[:] = _NOWHERE
-    for y in range(max(y0, 0), min(y0 + height, strengths.shape[0])):
-        above, below = _mirrored(y - y0 - 1, height), _mirrored(y - y0 + 1, height)
-        for x in range(width):
-            over, here, under = grey[above, x], grey[y - y0, x], grey[below, x]
-            smooth[x + 1] = np.int16(over) + np.int16(2) * np.int16(here) + np.int16(under)
-            slope[x + 1] = np.int16(under) - np.int16(over)
-        for row in (smooth, slope):
-            row[0], row[width + 1] = row[1 + min(1, width - 1)], row[1 + max(width - 2, 0)]
-        for x in range(right - left):
-            column = np.uint64(x + left - x0)
-            along = smooth[column + np.uint64(2)] - smooth[column]
-            down = slope[column] + 2 * slope[column + np.uint64(1)] + slope[column + np.uint64(2)]
-            gx[y, left + x], gy[y, left + x] = along, down
-            strengths[y, left + x] = np.int32(along) * np.int32(along) + np.int32(down) * np.int32(
-                down
-            )
+def _raise_to(numbers: Strengths, others: Strengths) -> None:
+    """Replace numbers by the larger ones of another array, as far as both go."""
+    for x in range(min(len(numbers), len(others))):
+        numbers[x] = max(numbers[x], others[x])
 
 
 @inlined
@@ -137,55 +102,32 @@ def _window_peaks(strengths: Strengths, width: int, height: int) -> Strengths:
 
 
 @inlined
-def _raise_to(numbers: Strengths, others: Strengths) -> None:
-    """Replace numbers by the larger ones of another array, as far as both go."""
-    for x in range(min(len(numbers), len(others))):
-        numbers[x] = max(numbers[x], others[x])
-
-
-@inlined
-def _limits_of(peaks: Strengths, firsts: Pixels, rule: tuple[float, float]) -> Numbers:
-    """Least squared magnitude that counts in each window; see `gradients.squared_limits`."""
-    share, least = rule
-    limits = np.empty(len(firsts), np.int64)
-    for i in range(len(firsts)):
-        peak = peaks[firsts[i, 1], firsts[i, 0]]
-        limits[i] = _NEVER
-        if peak > 0:
-            limits[i] = np.int64(math.ceil(max(share * np.float32(peak), least)))
-    return limits
-
-
-@inlined
 def _list_points(
-    images: Images,
+    gradients: tuple[Gradients, Gradients],
+    strengths: Strengths,
     limit: int,
-    area: tuple[int, int, int, int],
-    table: Table,
-    tangents: Tangents,
-    signed: bool,
+    directions: tuple[Table, Tangents, bool],
 ) -> Points:
-    """List the pixels of an area that pass a limit, row by row.
+    """List the pixels that pass a limit, row by row.
 
     Returns
     -------
     (H, W + 1), (M,), (M,) arrays
         Number of the first point that is not before a pixel; cells and strengths of the points.
     """
-    gx, gy, strengths = images
-    left, top, right, bottom = area
-    index = np.empty((strengths.shape[0], strengths.shape[1] + 1), np.int32)
-    size = (right - left) * (bottom - top)
-    cells, passed = np.empty(size, np.uint16), np.empty(size, np.int32)
-    found = np.empty(right - left, np.int32)
+    (gx, gy), (table, tangents, signed) = gradients, directions
+    height, width = strengths.shape
+    index = np.empty((height, width + 1), np.int32)
+    cells, passed = np.empty(strengths.size, np.uint16), np.empty(strengths.size, np.int32)
+    found = np.empty(width, np.int32)
     count = 0
-    for y in range(top, bottom):
+    for y in range(height):
         here = 0
-        for x in range(left, right):
+        for x in range(width):
             index[y, x] = count + here
             found[here] = x
             here += strengths[y, x] >= limit
-        index[y, right] = count + here
+        index[y, width] = count + here
         for i in range(here):
             x = found[i]
             number = direction_bin(np.int64(gx[y, x]), np.int64(gy[y, x]), tangents, signed)
@@ -212,20 +154,32 @@ def _count_window(
     return total
 
 
+@inlined
+def _limits_of(peaks: Strengths, middles: Rectangles, rule: tuple[float, float]) -> Numbers:
+    """Least squared magnitude that counts in each window; see `gradients.squared_limits`."""
+    share, least = rule
+    limits = np.full(len(middles), _NEVER, np.int64)
+    for i in range(len(middles)):
+        peak = peaks[middles[i, 1], middles[i, 0]]
+        if peak > 0:
+            limits[i] = np.int64(math.ceil(max(share * np.float32(peak), least)))
+    return limits
+
+
 @compiled(
     _NUMBERS(
-        types.uint8[:, ::1],
+        types.UniTuple(types.int16[:, ::1], 2),
+        RECTANGLES,
         PAIR,
-        types.Tuple((RECTANGLES, QUAD, PAIR)),
         types.UniTuple(types.float32, 2),
         types.Tuple((TABLE, _TANGENTS, types.boolean)),
         types.int32[:, ::1],
     )
 )
 def count_edges(
-    grey: Grey,
-    corner: tuple[int, int],
-    windows: tuple[Pixels, tuple[int, int, int, int], tuple[int, int]],
+    gradients: tuple[Gradients, Gradients],
+    middles: Rectangles,
+    half: tuple[int, int],
     rule: tuple[float, float],
     directions: tuple[Table, Tangents, bool],
     counts: Counts,
@@ -234,13 +188,12 @@ def count_edges(
 
     Parameters
     ----------
-    grey : (H, W) array
-        The part of the frame that has all windows in it, and one pixel more where there is one.
-    corner : (int, int)
-        x, y of its first pixel in the frame.
-    windows : (N, 2) array, (int, int, int, int), (int, int)
-        Centre x, y of each window in the frame; the least x and y and the largest x and y of them;
-        half the width and height, the middle left out.
+    gradients : (H, W) array, (H, W) array
+        Gradient along x and y.
+    middles : (N, 2) array
+        x, y of each window's middle pixel; what is beyond the array is not counted.
+    half : (int, int)
+        Half the width and height of the windows, the middle left out.
     rule : (float, float)
         Share of a window's largest squared magnitude, and squared magnitude, that an edge point
         has at least.
@@ -254,48 +207,21 @@ def count_edges(
     (N,) array
         Counts of all cells together.
     """
-    (pixels, (x0, y0, x1, y1), (left, up)), (table, tangents, signed) = windows, directions
-    width, height = 2 * left + 1, 2 * up + 1
-    shape = y1 - y0 + height, x1 - x0 + width
-    images = np.empty(shape, np.int16), np.empty(shape, np.int16), np.empty(shape, np.int32)
-    _sobel(grey, images, corner[0] - x0 + left, corner[1] - y0 + up)
-    firsts = pixels - np.array([x0, y0])
-    limits = _limits_of(_window_peaks(images[2], width, height), firsts, rule)
-    totals, done = np.zeros(len(pixels), np.int64), limits == _NEVER
-    counts[:] = 0
-    while not done.all():
-        lowest = limits[~done].min()
-        chosen = np.flatnonzero(~done & (limits <= _RANGE * lowest))
-        done[chosen] = True
-        xs, ys = firsts[chosen, 0], firsts[chosen, 1]
-        area = xs.min(), ys.min(), xs.max() + width, ys.max() + height
-        points = _list_points(images, lowest, area, table, tangents, signed)
-        for i in chosen:
-            x, y = firsts[i]
-            totals[i] = _count_window(points, limits[i], (x, y, x + width, y + height), counts[i])
+    (gx, gy), (across, up) = gradients, half
+    height, width = gx.shape
+    # Zeros around the image let the windows at its border be as large as the others.
+    padded = np.zeros((height + 2 * up, width + 2 * across), np.int32)
+    strengths = padded[up : up + height, across : across + width]
+    for y in range(height):
+        for x in range(width):
+            along, down = np.int32(gx[y, x]), np.int32(gy[y, x])
+            strengths[y, x] = along * along + down * down
+    limits = _limits_of(_window_peaks(padded, 2 * across + 1, 2 * up + 1), middles, rule)
+    points = _list_points(gradients, strengths, limits.min(), directions)
+    totals = np.empty(len(middles), np.int64)
+    for i in range(len(middles)):
+        x, y = middles[i]
+        left, right = max(x - across, 0), min(x + across + 1, width)
+        window = left, max(y - up, 0), right, min(y + up + 1, height)
+        totals[i] = _count_window(points, limits[i], window, counts[i])
     return totals
-
-
-class CellCounts(NamedTuple):
-    """Counts of the table's cells (N, K + 1 or more), and of all bins together (N,)."""
-
-    cells: Counts
-    totals: Numbers
-
-
-def count_directions(
-    feature: GradientDirections, frame: Frame, placement: Placement, table: CellTable
-) -> CellCounts:
-    """Count edge points by direction, the gradient taken in the frame."""
-    # One pixel more makes every gradient in the windows that of the whole frame.
-    left, top, right, bottom = placement.covered(margin=1)
-    counts = np.empty((len(placement.pixels), len(table.values)), np.int32)
-    totals = count_edges(
-        to_grey(frame[top:bottom, left:right]),
-        (left, top),
-        (placement.pixels, placement.extent, (placement.reach[0], placement.reach[2])),
-        (np.float32(feature.threshold) ** 2, np.float32(feature.floor) ** 2),
-        (table.cells, TANGENTS, feature.signed),
-        counts,
-    )
-    return CellCounts(counts, totals)

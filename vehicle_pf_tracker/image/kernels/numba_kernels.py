@@ -12,29 +12,27 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The kernels in numba."""
+"""The kernels in numba, and windows and references in the form that they take."""
 
 from __future__ import annotations
 
-from typing import TypeGuard
+import functools
+import math
+from typing import NamedTuple, TypeGuard
 
 import numpy as np
+from numba import types
 
-from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
-from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.kernels import numba_jit
+from vehicle_pf_tracker.image.gradients import GradientDirections, gradients_of
+from vehicle_pf_tracker.image.kernels import numba_correlation, numba_jit
 from vehicle_pf_tracker.image.kernels.interface import Kernels
-from vehicle_pf_tracker.image.kernels.numba_edges import count_directions
-from vehicle_pf_tracker.image.kernels.numba_gradient_cells import gradient_cells
-from vehicle_pf_tracker.image.kernels.numba_inputs import (
-    CellTable,
-    Placement,
-    roots_up_to,
-    table_of,
-)
+from vehicle_pf_tracker.image.kernels.numba_edges import TANGENTS, count_edges
 from vehicle_pf_tracker.image.kernels.numba_jit import (
     Cells,
+    Table,
+    compiled,
     marginal_cells,
     pair_cells,
 )
@@ -45,27 +43,157 @@ from vehicle_pf_tracker.image.kernels.numba_mean_shift import (
     ellipse,
     shift_kernels,
 )
-from vehicle_pf_tracker.image.kernels.numba_spectra import correlated
 from vehicle_pf_tracker.image.kernels.numba_windows import (
     Pixels,
+    Reach,
     Reals,
     compare_counts,
     compare_joint,
     compare_windows,
     joint_cells,
+    window_pixels,
 )
-from vehicle_pf_tracker.image.similarity import Reference
+from vehicle_pf_tracker.image.similarity import Histogram, Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
-from vehicle_pf_tracker.image.window import (
-    Coefficients,
-    Positions,
-    Window,
-    WindowFeature,
-    to_grey,
-)
+from vehicle_pf_tracker.image.window import Coefficients, Positions, Window, WindowFeature, to_grey
+
+
+class Placement(NamedTuple):
+    """Positions of windows in a frame.
+
+    Attributes
+    ----------
+    pixels : (N, 2) array
+        Centre x, y of each window.
+    extent : (int, int, int, int)
+        Least x and y, largest x and y of them.
+    reach : (int, int, int)
+        Pixels of a window left of its centre, right of it counting itself, and above it.
+    size : (int, int)
+        Width and height of the frame.
+    """
+
+    pixels: Pixels
+    extent: tuple[int, int, int, int]
+    reach: Reach
+    size: tuple[int, int]
+
+    @classmethod
+    def of(
+        cls, feature: WindowFeature, frame: Frame, positions: Positions, window: Window
+    ) -> Placement:
+        """Find the windows around positions."""
+        size = frame_size(frame)
+        pixels, extent = window_pixels(positions, *size)
+        return cls(pixels, extent, reach_of(feature, window), size)
+
+    def covered(self, margin: int = 0) -> tuple[int, int, int, int]:
+        """Left, top, right, bottom of all windows and a margin, as far as the frame goes."""
+        (x0, y0, x1, y1), (left, _, up), (width, height) = self.extent, self.reach, self.size
+        right, bottom = min(x1 + left + 1 + margin, width), min(y1 + up + 1 + margin, height)
+        return max(x0 - left - margin, 0), max(y0 - up - margin, 0), right, bottom
+
+
+def reach_of(feature: WindowFeature, window: Window) -> Reach:
+    """Reach of a feature's windows; pairs of pixels end one column earlier."""
+    right = window.half_width + (0 if type(feature) is Cooccurrence else 1)
+    return window.half_width, right, window.half_height
+
+
+_LANES = 16
+"""Cells are padded to a multiple of this, so that loops over them fill vector registers."""
+
+_MOST_ROOTS = 1 << 16
+"""Largest table of square roots: 512 KB, which fits the second-level cache of common processors."""
+
+_HISTOGRAM = types.Array(types.float64, 1, "A", readonly=True)
+
+
+class CellTable(NamedTuple):
+    """Cell of each bin, and the factor of each cell's count.
+
+    Attributes
+    ----------
+    cells : (bins,) array of uint16
+        Position of each active bin among the K active ones, K for all others.
+    active : int
+        K.
+    values : (K + 1 or more,) array
+        Square roots of the reference at the active bins, followed by zeros.
+    """
+
+    cells: Table
+    active: int
+    values: Reals
+
+
+@compiled(types.Tuple((types.uint16[::1], types.int64, types.float64[::1]))(_HISTOGRAM))
+def _number_cells(histogram: Histogram) -> tuple[Table, int, Reals]:
+    """Give a number to each bin that is not zero; see `CellTable` for what is returned."""
+    active = 0
+    for value in histogram:
+        active += value != 0
+    cells = np.full(len(histogram), active, np.uint16)
+    values = np.zeros(-(-(active + 1) // _LANES) * _LANES)
+    number = 0
+    for k in range(len(histogram)):
+        if histogram[k] != 0:
+            cells[k], values[number] = number, math.sqrt(histogram[k])
+            number += 1
+    return cells, active, values
+
+
+def table_of(reference: Reference) -> CellTable:
+    """Return the table of a reference, computed once."""
+    kept = reference.kept.get("cells")
+    if not isinstance(kept, CellTable):
+        kept = CellTable(*_number_cells(reference.histogram))
+        reference.kept["cells"] = kept
+    return kept
+
+
+def roots_up_to(count: int) -> Reals:
+    """Square roots of 0 to `count` or more, as far as a table of them is worth while."""
+    return _roots(min(1 << int(count).bit_length(), _MOST_ROOTS))
+
+
+@functools.lru_cache(maxsize=32)
+def _roots(length: int) -> Reals:
+    table = np.sqrt(np.arange(length + 1, dtype=np.float64))
+    table.flags.writeable = False
+    return table
+
 
 _COUNTED_PIXELS = {JointColour, RgbMarginals, Cooccurrence}
 """Features of which each pixel counts equally in all windows."""
+
+
+def kernel_similarity(
+    frame: Frame, positions: Positions, window: Window, reference: Reference, bits: int
+) -> Coefficients:
+    """Compare kernel-weighted histograms; see `image.mean_shift`."""
+    return compare_kernels(*_ellipses(frame, positions, window, reference, bits))
+
+
+def mean_shift(
+    frame: Frame, positions: Positions, window: Window, reference: Reference, bits: int
+) -> Positions:
+    """Move every position one mean-shift step; see `image.mean_shift`."""
+    arguments = _ellipses(frame, positions, window, reference, bits)
+    steps = shift_kernels(*arguments)
+    return np.where(np.isnan(steps), positions, arguments[1] + 0.5 + steps)
+
+
+def _ellipses(
+    frame: Frame, positions: Positions, window: Window, reference: Reference, bits: int
+) -> tuple[Cells, Pixels, tuple[int, int], Offsets, Ellipse]:
+    """Return the arguments of `compare_kernels`."""
+    placement = Placement.of(JointColour(bits), frame, positions, window)
+    table = table_of(reference)
+    left, top, right, bottom = placement.covered()
+    cells = joint_cells(frame[top:bottom, left:right], bits, table.cells)
+    offsets, profile = ellipse(window)
+    return cells, placement.pixels, (left, top), offsets, (profile, table.values)
 
 
 class NumbaKernels(Kernels):
@@ -73,8 +201,10 @@ class NumbaKernels(Kernels):
 
     name = "numba"
 
-    gradient_cells = staticmethod(gradient_cells)
-    correlated = staticmethod(correlated)
+    gradient_cells = staticmethod(numba_correlation.gradient_cells)
+    correlated = staticmethod(numba_correlation.correlated)
+    kernel_similarity = staticmethod(kernel_similarity)
+    mean_shift = staticmethod(mean_shift)
 
     def __init__(self) -> None:
         super().__init__(numba_jit.notices())
@@ -92,36 +222,8 @@ class NumbaKernels(Kernels):
             table = table_of(reference)
             return _compare_pixels(feature, frame, positions, window, table)
         if _counts_edges(feature):
-            placement, table = Placement.of(feature, frame, positions, window), table_of(reference)
-            cells, totals = count_directions(feature, frame, placement, table)
-            roots = roots_up_to(window.width * window.height)
-            return compare_counts(cells, totals, (table.values, roots))
+            return _compare_edges(feature, frame, positions, window, table_of(reference))
         return super().similarity(feature, frame, positions, window, reference)
-
-    def kernel_similarity(
-        self,
-        feature: JointColour,
-        frame: Frame,
-        positions: Positions,
-        window: Window,
-        reference: Reference,
-    ) -> Coefficients:
-        """Compare; see `Kernels.kernel_similarity`."""
-        placement = Placement.of(feature, frame, positions, window)
-        return compare_kernels(*_ellipses(feature, frame, placement, window, reference))
-
-    def mean_shift(
-        self,
-        feature: JointColour,
-        frame: Frame,
-        positions: Positions,
-        window: Window,
-        reference: Reference,
-    ) -> Positions:
-        """Move; see `Kernels.mean_shift`."""
-        placement = Placement.of(feature, frame, positions, window)
-        steps = shift_kernels(*_ellipses(feature, frame, placement, window, reference))
-        return np.where(np.isnan(steps), positions, placement.pixels + 0.5 + steps)
 
 
 def _counts_edges(feature: WindowFeature) -> TypeGuard[GradientDirections]:
@@ -130,11 +232,7 @@ def _counts_edges(feature: WindowFeature) -> TypeGuard[GradientDirections]:
 
 
 def _compare_pixels(
-    feature: WindowFeature,
-    frame: Frame,
-    positions: Positions,
-    window: Window,
-    table: CellTable,
+    feature: WindowFeature, frame: Frame, positions: Positions, window: Window, table: CellTable
 ) -> Reals:
     """Compare windows by their pixels."""
     planes = 3 if type(feature) is RgbMarginals else 1
@@ -154,12 +252,24 @@ def _compare_pixels(
     )
 
 
-def _ellipses(
-    feature: JointColour, frame: Frame, placement: Placement, window: Window, reference: Reference
-) -> tuple[Cells, Pixels, tuple[int, int], Offsets, Ellipse]:
-    """Return the arguments of `compare_kernels`."""
-    table = table_of(reference)
-    left, top, right, bottom = placement.covered()
-    cells = joint_cells(frame[top:bottom, left:right], feature.bits, table.cells)
-    offsets, profile = ellipse(window)
-    return cells, placement.pixels, (left, top), offsets, (profile, table.values)
+def _compare_edges(
+    feature: GradientDirections,
+    frame: Frame,
+    positions: Positions,
+    window: Window,
+    table: CellTable,
+) -> Reals:
+    """Compare windows by the directions of their edge points, the gradient taken in the frame."""
+    placement = Placement.of(feature, frame, positions, window)
+    # One pixel more makes every gradient in the windows that of the whole frame.
+    left, top, right, bottom = placement.covered(margin=1)
+    counts = np.empty((len(positions), len(table.values)), np.int32)
+    totals = count_edges(
+        gradients_of(to_grey(frame[top:bottom, left:right])),
+        placement.pixels - (left, top),
+        (window.half_width, window.half_height),
+        (np.float32(feature.threshold) ** 2, np.float32(feature.floor) ** 2),
+        (table.cells, TANGENTS, feature.signed),
+        counts,
+    )
+    return compare_counts(counts, totals, (table.values, roots_up_to(window.width * window.height)))

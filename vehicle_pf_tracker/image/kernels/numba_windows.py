@@ -287,12 +287,7 @@ def compare_windows(
 
 @compiled(types.float64[::1](FRAME, _POSITIONS, types.int64, PAIR, TABLE, SCALE))
 def compare_joint(
-    frame: Frame,
-    positions: Positions,
-    bits: int,
-    half: tuple[int, int],
-    table: Table,
-    scale: Scale,
+    frame: Frame, positions: Positions, bits: int, half: tuple[int, int], table: Table, scale: Scale
 ) -> Reals:
     """Compare windows of joint colours in one call, the main cost of most trackers' steps.
 

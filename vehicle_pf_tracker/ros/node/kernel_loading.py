@@ -19,7 +19,7 @@ from __future__ import annotations
 import threading
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.image.kernels.choice import load_kernels, takes_long
+from vehicle_pf_tracker.image.kernels.interface import load_kernels, takes_long
 from vehicle_pf_tracker.ros.messages import NOT_READY
 
 _THREAD = "loading kernels"

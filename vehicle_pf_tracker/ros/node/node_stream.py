@@ -16,11 +16,11 @@
 
 from __future__ import annotations
 
-import faulthandler
 import time
 import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 from rclpy.node import Node
@@ -38,12 +38,12 @@ from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.image_input import read_image
 from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder, KeptTarget
 from vehicle_pf_tracker.ros.node.outputs import Outputs
+from vehicle_pf_tracker.ros.node.watchdog import Watchdog
 from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
 
 _PATIENCE, _LEAST_PATIENCE = 10.0, 0.5
 """Periods of the images, and s at least, after which a step is reported with where it was: by then
 images are lost, and a camera of 100 Hz is no reason to report a busy machine."""
-_STDERR = 2
 _PERIOD = 5.0
 """Interval between two lines of the same kind in the log, s."""
 
@@ -118,6 +118,7 @@ class NodeStream(ABC):
         own, name = configuration.node, str(node.get_name())
         memory = own.incident_memory * 10**6
         self.incidents = IncidentRecorder(name, memory) if memory else None
+        self._watchdog = Watchdog(partial(self.warnings.say, "slow"))
         self._kept = KeptTarget(node.get_fully_qualified_name()) if own.keep_target else None
         box = self._kept.load() if self._kept else None
         if box is not None:
@@ -214,11 +215,10 @@ class NodeStream(ABC):
 
     def process(self, message: Image | CompressedImage, extra: Any = None) -> None:
         """Read an image, feed it and publish the answer; `extra` is passed on to `feed`."""
-        header, began = message.header, time.monotonic()
+        header = message.header
         if self.incidents is not None:
             self.incidents.keep(message)
-        patience = max(_PATIENCE * self.period, _LEAST_PATIENCE)
-        faulthandler.dump_traceback_later(patience, file=_STDERR)
+        self._watchdog.begin(max(_PATIENCE * self.period, _LEAST_PATIENCE))
         try:
             image = read_image(message)
             self.feed(image, stamp_ns(header), extra)
@@ -232,11 +232,7 @@ class NodeStream(ABC):
             self.answer(header, frame)
             self._keep_target()
         finally:
-            faulthandler.cancel_dump_traceback_later()
-        seconds = time.monotonic() - began
-        if seconds > patience:
-            words = f"an image took {seconds:.1f} s, more than ten periods"
-            self.warnings.say("slow", f"{words}; stderr shows where it was by then")
+            self._watchdog.end()
 
     def _keep_target(self) -> None:
         """Save the target for a new start; a disk that is full costs no image its answer."""

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A node as a process of its own: memory, exit status.
+"""A process of one node, or of several: memory, exit status.
 
 Memory for images is kept, instead of returned to the system after every one. By default glibc maps
 fresh pages for each block as large as an image, and the kernel has to clear them. Keeping them
@@ -33,7 +33,7 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 
 from vehicle_pf_tracker.ros.node.kernel_loading import is_loading
-from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_node
+from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_nodes
 
 _LARGEST_BLOCK = 32 * 2**20
 """Bytes; the highest threshold that glibc takes, more than a 4K image."""
@@ -76,17 +76,21 @@ it ends, so that ``respawn`` in a launch file can restart it."""
 _BROKEN = "a request could not be answered:"
 
 
-def run_node(name: str, make_node: Callable[[], Node], arguments: Sequence[str]) -> int:
-    """Run a node that takes images until a signal ends it.
+def run_nodes(
+    name: str, makers: Sequence[Callable[[], Node]], arguments: Sequence[str], usage: str
+) -> int:
+    """Run nodes that take images, in turns, until a signal ends them.
 
     Parameters
     ----------
     name : str
         Name of the executable, for its errors.
-    make_node : callable
-        Makes the node.
+    makers : sequence of callable
+        Each makes a node.
     arguments : sequence of str
         Command line without the program's name.
+    usage : str
+        Answer to words that are not ROS's.
 
     Returns
     -------
@@ -97,8 +101,8 @@ def run_node(name: str, make_node: Callable[[], Node], arguments: Sequence[str])
 
     def serve(words: list[str]) -> int:
         if words:
-            return answer_usage(name, words, _usage(name))
-        return spin_node(make_node, _OVERLAY_BYTES, _spin)
+            return answer_usage(name, words, usage)
+        return spin_nodes(makers, _OVERLAY_BYTES, _spin, arguments)
 
     status = run_process(name, arguments, serve)
     if is_loading():  # a thread in LLVM would be left behind
@@ -132,7 +136,8 @@ def _spin_once(executor: SingleThreadedExecutor, node: Node) -> bool:
     return True
 
 
-def _usage(name: str) -> str:
+def node_usage(name: str) -> str:
+    """Return how the executable `name` of one node is called."""
     return (
         f"usage: {name} [--ros-args -p NAME:=VALUE --params-file FILE -r image:=TOPIC ...]\n"
         f"`vehicle-pf-tracker params {name.removesuffix('_tracker')}` prints every parameter."

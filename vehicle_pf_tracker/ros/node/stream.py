@@ -33,7 +33,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
-from vehicle_pf_tracker.image.stillness import PATIENCE, Stillness
+from vehicle_pf_tracker.image.target_pixels import Stillness
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation
@@ -44,11 +44,6 @@ from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
 from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TargetError
-
-_STILL = (
-    f"the target has not moved for {PATIENCE:g} s while other things did: it stands, or it is "
-    "no vehicle"
-)
 
 
 class Stream(NodeStream):
@@ -276,11 +271,8 @@ class Stream(NodeStream):
         if estimate.regime == START:
             still.begin(estimate.box, stamp_ns(header))
             words = self.doubts(frame, estimate.box)
-        was_suspect = still.is_suspect
-        still.look(frame, estimate.box, stamp_ns(header))
+        words += still.look(frame, estimate.box, stamp_ns(header))
         events["moved"] = still.moved
-        if still.is_suspect and not was_suspect:
-            words.append(_STILL)
         for sentence in words:
             self.log.warning(sentence)
         if words:

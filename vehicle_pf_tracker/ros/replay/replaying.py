@@ -28,8 +28,8 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.recordings.messages import COMPRESSED_IMAGE
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.topics import COMPRESSED_IMAGE
 from vehicle_pf_tracker.ros.replay.discovery import Spinner
 from vehicle_pf_tracker.ros.replay.player import Player
 from vehicle_pf_tracker.ros.replay.publishing import decompressed

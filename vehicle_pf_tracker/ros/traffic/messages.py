@@ -43,10 +43,10 @@ from vehicle_pf_tracker.ros.messages import (
     packed,
     status,
 )
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.watches import ENTRY, EXIT
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 CODES: Mapping[TrackMode, int] = MappingProxyType(
     {mode: code for code, mode in enumerate(TrackMode)}
@@ -200,10 +200,6 @@ def counts_message(
     latest : mapping of str to Crossing
         The last crossing of each place, by the place's name.
     """
-    directions = {
-        **{line.name: line.directions for line in counter.plan.lines},
-        **{zone.name: (ENTRY, EXIT) for zone in counter.plan.zones},
-    }
     statuses = [
         status(
             DiagnosticStatus.OK,
@@ -212,7 +208,7 @@ def counts_message(
             hardware_id,
             _values(counter, place, names, latest.get(place)),
         )
-        for place, names in directions.items()
+        for place, names in counter.directions.items()
     ]
     return DiagnosticArray(header=header, status=statuses)
 

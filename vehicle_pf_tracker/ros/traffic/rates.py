@@ -19,13 +19,8 @@ from __future__ import annotations
 import math
 import time
 from collections import deque
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from typing import NamedTuple
-
-from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
-from vehicle_pf_tracker.trackers.traffic.session import Detector
 
 _WINDOW = 60.0
 """Seconds that rates are of, as they are per minute."""
@@ -111,30 +106,3 @@ class Rates:
         distance, rate = value - mean, max(_RATE, 1.0 / self._judged)
         self._usual[name] = mean + rate * distance, variance + rate * (distance**2 - variance)
         return self._judged > _SETTLED and abs(distance) > _USUAL * math.sqrt(variance) + 1.0
-
-
-class TimedDetector:
-    """A detector, with what it found last and how long that took.
-
-    Attributes
-    ----------
-    found : int
-        Number of detections in the last image.
-    seconds : float
-        Time that they took, s.
-    disturbed, is_blind : bool
-        See `Detector`.
-    """
-
-    def __init__(self, detector: Detector) -> None:
-        self._detector = detector
-        self.found, self.seconds = 0, 0.0
-        self.disturbed = self.is_blind = False
-
-    def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
-        """Find vehicles; see `Detector`."""
-        began = time.perf_counter()
-        found = self._detector.detect(frame, tracks)
-        self.found, self.seconds = len(found), time.perf_counter() - began
-        self.disturbed, self.is_blind = self._detector.disturbed, self._detector.is_blind
-        return found

@@ -25,13 +25,13 @@ from sensor_msgs.msg import RegionOfInterest
 from std_msgs.msg import Int64
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.offline.model_files import is_url
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import detections_type
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
 from vehicle_pf_tracker.ros.node.input_messages import box_of_region, finite
 from vehicle_pf_tracker.ros.traffic.stream import TrafficOutputs, TrafficStream
-from vehicle_pf_tracker.ros.traffic.vehicles import plane_of
 from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
@@ -68,12 +68,13 @@ class TrafficNode(ImageNode):
     def prepare(self) -> None:
         """Make session, detector, outputs and services."""
         configuration = self.table.configuration
-        plane_of(configuration.session.road)
         if configuration.tracker.detector.kind == TOPIC and detections_type() is None:
             raise InputError(
                 "detector.kind is topic, and vision_msgs, which detections come in, is not "
                 "installed (apt: ros-<release>-vision-msgs)"
             )
+        if is_url(configuration.tracker.detector.model):
+            self.get_logger().info("fetching the network, unless it is in the cache")
         outputs = TrafficOutputs(self, image_topic(self, configuration.node.image_transport))
         self._outputs = outputs
         self.stream = TrafficStream(self, configuration, outputs, self.diagnostics.begin())
@@ -102,6 +103,12 @@ class TrafficNode(ImageNode):
         super().deactivate()
         if self.stream is not None:
             self.stream.drop_waiting()
+
+    def cleanup(self) -> None:
+        """Release all of it, the page too."""
+        if self.stream is not None and self.stream.page is not None:
+            self.stream.page.close()
+        super().cleanup()
 
     def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
         super()._on_image(message, info)
@@ -153,5 +160,5 @@ class TrafficNode(ImageNode):
         return f"vehicle {self.stream.vehicles.remove_selected()} is forgotten"
 
     def _check(self, configuration: Configuration) -> None:
-        plane_of(configuration.session.road)
+        configuration.session.road.fixed_plane()
         super()._check(configuration)

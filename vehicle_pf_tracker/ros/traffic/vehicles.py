@@ -22,24 +22,16 @@ from __future__ import annotations
 import math
 from collections import Counter as Tally
 from collections.abc import Sequence
-from pathlib import Path
 
 from vehicle_pf_tracker.core.box import Box, Position, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import CodedFrame, Frame
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
-from vehicle_pf_tracker.offline.detectors import detector_maker
+from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
-from vehicle_pf_tracker.parameters.road import RoadParameters
-from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.ros.traffic.rates import TimedDetector
-from vehicle_pf_tracker.trackers.traffic.association import check_library
-from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 NONE = 0
 """Number that ends a selection; vehicles have numbers from 1."""
@@ -116,7 +108,7 @@ _MOST_TARGETS = 100
 and each would be followed."""
 
 
-class Vehicles:
+class Vehicles(CountedVehicles):
     """The vehicles of one stream of images.
 
     Parameters
@@ -126,10 +118,8 @@ class Vehicles:
 
     Attributes
     ----------
-    session : TrafficSession
-        Drives the tracker.
-    counter : Counter or None
-        Counts; None without lines and zones.
+    session, counter
+        See `CountedVehicles`.
     latest : dict of str to Crossing
         Last crossing of each place.
     waiting : list of Box
@@ -146,34 +136,15 @@ class Vehicles:
     """
 
     def __init__(self, configuration: Configuration) -> None:
-        check_library()
-        parameters = configuration.tracker
-        make = detector_maker(parameters.detector)
+        super().__init__(*session_and_counter(configuration))
         self._configuration = configuration
-        lines = parameters.lines
-        self._plan = read_counting_plan(Path(lines)) if lines else CountingPlan()
-        self.session = TrafficSession(
-            TrafficTracker(parameters, plane_of(configuration.session.road)),
-            (lambda: TimedDetector(make())) if make else None,
-            frame_rate=parameters.frame_rate,
-            reset_on_time_jump=configuration.session.reset_on_time_jump,
-            every=parameters.detector.every,
-            regions=self._plan.regions,
-        )
-        self.counter = self._counter()
         self.latest: dict[str, Crossing] = {}
         self.selection = Selection()
-        self._restarts = 0
         self._is_shown = False
         self._added = 0
         self.waiting: list[Box] = []
         self.given: list[Box] = []
         self._configured: Box | None = configuration.session.target.box
-
-    @property
-    def estimates(self) -> tuple[TrackEstimate, ...]:
-        """Estimates of the last image."""
-        return self.session.estimates
 
     @property
     def selected(self) -> TrackEstimate | None:
@@ -190,11 +161,8 @@ class Vehicles:
         InputError
             If the image cannot be used; all vehicles are kept.
         """
-        self.session.feed(image, stamp_ns, detections)
-        if self.session.restarts != self._restarts:
-            self._begin_anew()
-        if self.counter is not None:
-            for crossing in self.counter.update(self.estimates, stamp_ns):
+        for crossing in self.follow(image, stamp_ns, detections):
+            if not crossing.doubt:
                 self.latest[crossing.place] = crossing
         self._is_shown, self._added = True, 0
         return [*self.session.events, *self._add_waiting()]
@@ -247,8 +215,7 @@ class Vehicles:
         self._is_shown = False
         self.waiting.clear()
         self.latest.clear()
-        if self.counter is not None:
-            self.counter.reset()
+        self.counter.reset()
 
     def reconfigure(self, configuration: Configuration) -> None:
         """Take new parameters between two images; no vehicle is lost by it."""
@@ -260,14 +227,10 @@ class Vehicles:
             frame_rate=configuration.tracker.frame_rate,
             reset_on_time_jump=configuration.session.reset_on_time_jump,
         )
-        if configuration.session.road == before.road:
-            return
-        self.session.tracker.road = plane_of(configuration.session.road)
-        if self.counter is not None:
-            totals = self.counter.totals
-            self.counter = self._counter()
-            assert self.counter is not None
-            self.counter.totals.update(totals)
+        if configuration.session.road != before.road:
+            plane = configuration.session.road.fixed_plane()
+            self.session.tracker.road = self.counter.plane = plane
+            self.counter.forget_vehicles()
 
     def summary(self) -> dict[str, object]:
         """Count the vehicles by what is claimed of them, and those dropped for a bad state."""
@@ -276,19 +239,11 @@ class Vehicles:
         dropped = self.session.tracker.bad_states
         return {"vehicles": len(self.estimates), **counts, "dropped for a bad state": dropped}
 
-    def _counter(self) -> Counter | None:
-        if not self._plan.is_counting:
-            return None
-        return Counter(self._plan, plane_of(self._configuration.session.road))
-
     def _begin_anew(self) -> None:
-        """Note that the session has discarded all vehicles but those that it kept."""
-        self._restarts = self.session.restarts
+        super()._begin_anew()
         self.selection.identity = self.session.successors.get(self.selection.identity, NONE)
         if not self.session.recovered:
             self._configured = self._configuration.session.target.box
-        if self.counter is not None:
-            self.counter.forget_vehicles()
 
     def _add_waiting(self) -> list[str]:
         """Follow the targets that waited for an image, and select the configured one."""
@@ -310,19 +265,3 @@ class Vehicles:
             return NONE
         self.given.append(box)
         return identity
-
-
-def plane_of(road: RoadParameters) -> RoadPlane | None:
-    """Return the calibrated road; its lens and pose cannot come from topics.
-
-    Raises
-    ------
-    InputError
-        If they should.
-    """
-    if road.from_camera_info or road.from_tf:
-        raise InputError(
-            "traffic_tracker takes no road from topics; instead of road.from_camera_info and "
-            "road.from_tf give road.intrinsics, road.distortion and road.camera_pose"
-        )
-    return road.plane(road.lens, road.pose) if road.is_set else None

@@ -35,7 +35,7 @@ from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs
 from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, Footage, Picture
 from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
 from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
-from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_node
+from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_nodes
 from vehicle_pf_tracker.ros.video_source.outputs import ImageOutputs, Pace, read_calibration
 
 _NAME = "video_source"
@@ -276,7 +276,7 @@ def run_video_source(arguments: Sequence[str]) -> int:
     def serve(words: list[str]) -> int:
         if len(words) > 1 or any(word.startswith("-") for word in words):
             return answer_usage(_NAME, words, _USAGE)
-        return spin_node(lambda: VideoSourceNode(*words), _IMAGE_BYTES, _spin)
+        return spin_nodes([lambda: VideoSourceNode(*words)], _IMAGE_BYTES, _spin, arguments)
 
     return run_process(_NAME, arguments, serve)
 

@@ -40,7 +40,7 @@ from vehicle_pf_tracker.image.correlation_filter import (
 from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures, Grey
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.spectra import Spectrum, shifted
-from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import FilterParameters, SizeParameters
 
 _CELLS = 32
 """Cells along each side of a patch; a power of two for the Fourier transform."""
@@ -65,6 +65,8 @@ _LEAST_USUAL = 1e-3
 zeros."""
 _RIM = 1
 """Cells around the target that are measured with it: their gradients normalise its outermost."""
+_DATED_EVERY = 40
+"""Frames between two filters that are kept: in a second a vehicle turns."""
 _COLOURS = 3
 _HUE_GAIN = 4.0
 """Weight of Lab's a and b. Paint spans some 20 of their 100 units: unweighted, a grey car answers
@@ -147,23 +149,25 @@ class Appearance:
     ----------
     kernels : Kernels
         Implementation that measures gradients and multiplies spectra.
-    size : (2,) array
-        Width and height of the target in the first frame, px.
-    penalty : float
-        See `CorrelationFilter`.
-    colour : bool
-        True where cells have luminance and colour besides gradients.
+    size, learnt : (2,) arrays
+        Width and height of the target in the first frame, and of the part that is learnt, px.
+    options : FilterParameters
+        The penalty.
     """
 
-    def __init__(self, kernels: Kernels, size: Array, penalty: float, *, colour: bool) -> None:
-        zoom = min(_TARGET_SIDE / math.sqrt(size.prod()), _LARGEST_ZOOM)
+    def __init__(
+        self, kernels: Kernels, size: Array, learnt: Array, options: FilterParameters
+    ) -> None:  # fmt: skip
+        zoom = min(_TARGET_SIDE / math.sqrt(learnt.prod()), _LARGEST_ZOOM)
         self._side = _CELLS * CELL
-        self._target = np.minimum(size * zoom, _LARGEST_SHARE * self._side)
-        self._colour, self._kernels = colour, kernels
-        self._filter = CorrelationFilter(_CELLS, self._target / CELL, penalty, kernels)
+        target = np.minimum(learnt * zoom, _LARGEST_SHARE * self._side)
+        self._box = target * (size / learnt)
+        self._kernels, self.first_size = kernels, size
+        self._filter = CorrelationFilter(_CELLS, target / CELL, options.penalty, kernels)
         self.usual_response = 0.0
         self._least_usual = 0.0
         self.dated: tuple[_Dated, ...] = ()
+        self._dated_next = 0
 
     def use_kernels(self, kernels: Kernels) -> None:
         """Measure gradients and multiply spectra by another implementation from now on."""
@@ -172,7 +176,7 @@ class Appearance:
     def patch(self, frame: Frame, position: Array, size: Array, *, wide: bool = False) -> Patch:
         """Cut the surroundings of a box of this centre and size (px) out of a frame."""
         side = _WIDE_CELLS * CELL if wide else self._side
-        return cut_patch(frame, position, self._target / size, side)
+        return cut_patch(frame, position, self._box / size, side)
 
     def usual_patch(self, patch: Patch) -> Patch:
         """Return the part of a wide patch that a usual one shows; a usual one itself."""
@@ -193,8 +197,11 @@ class Appearance:
             response = np.maximum(response, once)
         return View(patch, None if wide else spectrum, response)
 
-    def remember(self, count: int) -> None:
-        """Keep the present filter as a dated one: the first and the latest ones, `count` in all."""
+    def remember(self, count: int, frame: int) -> None:
+        """Date the filter now and then: the first and the latest ones are kept, `count` in all."""
+        if frame < self._dated_next:
+            return
+        self._dated_next = frame + _DATED_EVERY
         if self._filter.weights is None or not self.usual_response:
             return
         dated = *self.dated, _Dated(self._filter.weights, self.usual_response)
@@ -206,7 +213,7 @@ class Appearance:
         """Response to a box of this centre and size (px), relative to the usual one."""
         columns, rows = self._filter.extent
         piece = (columns + 2 * _RIM) * CELL, (rows + 2 * _RIM) * CELL
-        image = cut_image(frame, position, self._target / size, piece)
+        image = cut_image(frame, position, self._box / size, piece)
         grey = np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), np.uint8)
         return self._filter.respond_in_middle(self._features(image, grey)) / self.usual_response
 
@@ -236,9 +243,7 @@ class Appearance:
         return transform(self._features(patch.image, patch.grey))
 
     def _features(self, image: Frame, grey: Grey) -> CellFeatures:
-        features = self._kernels.gradient_cells(grey, _COLOURS if self._colour else 0)
-        if not self._colour:
-            return features
+        features = self._kernels.gradient_cells(grey, _COLOURS)
         cells = features.shape[2], features.shape[1]
         small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
         lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
@@ -268,9 +273,7 @@ def searched_size(
         Response at a size.
     """
     direction = np.array(_DIRECTIONS[turn % len(_DIRECTIONS)])
-    together = direction.all()
-    gain = parameters.gain if together else parameters.aspect_gain
-    if not parameters.step or not gain:
+    if not parameters.step or not parameters.gain:
         return size
     factor = (1 + parameters.step) ** direction
     at_size, smaller, larger = peak(size), peak(size / factor), peak(size * factor)
@@ -279,4 +282,4 @@ def searched_size(
         steps = min(max(0.5 * (smaller - larger) / bend, -1.0), 1.0)
     else:
         steps = float(np.sign(larger - smaller))
-    return np.asarray(size * factor ** (gain * steps))
+    return np.asarray(size * factor ** (parameters.gain * steps))

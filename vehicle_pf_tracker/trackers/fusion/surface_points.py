@@ -30,7 +30,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.flow import Found, PointFlow, Points
+from vehicle_pf_tracker.image.shared_motion import Found, PointFlow, Points
 
 _GRID = 6
 """Points along each axis of a set: two thirds of 36 may be lost until they tell no more of the size

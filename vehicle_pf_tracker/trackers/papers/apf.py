@@ -31,11 +31,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.filtering.motion import (
-    RAYLEIGH_MEAN,
-    sample_normal,
-    sample_normal_rayleigh,
-)
+from vehicle_pf_tracker.filtering.motion import RAYLEIGH_MEAN, sample_normal, sample_normal_rayleigh
 from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.image.colour import Histogram, JointColour
@@ -47,14 +43,14 @@ from vehicle_pf_tracker.trackers.papers.clear_level import (
     ClearLevel,
     ClearLevelParameters,
 )
-from vehicle_pf_tracker.trackers.papers.likelihood import (
+from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
+    MeanVelocity,
     as_printed_switch,
     histogram_bits_parameter,
     log_likelihood,
     resampling_parameter,
 )
-from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.parameters import ParticleParameters, share
 
 
@@ -159,9 +155,9 @@ class ApfVelocityParameters:
 class ApfParameters(ParticleParameters):
     """Parameters of `apf`."""
 
-    as_printed: bool = as_printed_switch("interpretations 1, 5, 6, 7, 11 and 27")
+    as_printed: bool = as_printed_switch(source="interpretations 1, 5, 6, 7, 11 and 27")
     histogram_bits: int = histogram_bits_parameter()
-    resampling: str = resampling_parameter("P1 Algorithm 2")
+    resampling: str = resampling_parameter(source="P1 Algorithm 2")
     motion: ApfMotionParameters = group(ApfMotionParameters)
     likelihood: LikelihoodParameters = group(LikelihoodParameters)
     reference: ApfReferenceParameters = group(ApfReferenceParameters)

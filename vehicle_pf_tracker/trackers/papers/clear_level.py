@@ -24,8 +24,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.core.running_level import RunningLevel
 from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.trackers.evidence import RunningLevel
 from vehicle_pf_tracker.trackers.parameters import share
 
 RELATIVE = "extension: the relative rule (interpretation 27)"

@@ -28,13 +28,12 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import from_log
-from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.shared import log_likelihood
 from vehicle_pf_tracker.trackers.parameters import particles_parameter
 
 
@@ -103,11 +102,9 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
 
     def similarity(self, frame: Frame, positions: Array) -> Array:
         """Bhattacharyya coefficient of each window with the reference, shape (N,)."""
-        feature = JointColour(self.parameters.histogram_bits)
-        return self.kernels.kernel_similarity(
-            feature, frame, positions, self.window, self._reference
-        )
+        bits = self.parameters.histogram_bits
+        return self.kernels.kernel_similarity(frame, positions, self.window, self._reference, bits)
 
     def _shift(self, frame: Frame, positions: Array) -> Array:
-        feature = JointColour(self.parameters.histogram_bits)
-        return self.kernels.mean_shift(feature, frame, positions, self.window, self._reference)
+        bits = self.parameters.histogram_bits
+        return self.kernels.mean_shift(frame, positions, self.window, self._reference, bits)

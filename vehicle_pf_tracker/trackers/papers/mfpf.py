@@ -53,14 +53,13 @@ from vehicle_pf_tracker.trackers.papers.feature_weighting import (
     common_survivors,
     weigh_features,
 )
-from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
-from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     TEXTURES,
     FeatureFilterParameters,
     MfpfParameters,
     edge_feature,
 )
+from vehicle_pf_tracker.trackers.papers.shared import MeanVelocity, log_likelihood
 
 FilterParametersT = TypeVar("FilterParametersT", bound=FeatureFilterParameters)
 

@@ -16,15 +16,16 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
 from vehicle_pf_tracker.image.window import WindowFeature
 from vehicle_pf_tracker.parameters.table import group, parameter
-from vehicle_pf_tracker.trackers.papers.likelihood import (
+from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
     as_printed_switch,
     resampling_parameter,
@@ -39,12 +40,12 @@ TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {
 """The textures that P2 tried, by the word that the parameter takes."""
 
 
-def texture_parameter() -> Any:
-    """Make the choice of the texture feature."""
-    return parameter(
-        "glcm", "The histogram that describes texture; the paper tried all three and kept glcm.",
-        choices=TEXTURES, source="P2 section III-D", effect="relearns",
-    )  # fmt: skip
+texture_parameter = functools.partial(
+    parameter, "glcm",
+    "The histogram that describes texture; the paper tried all three and kept glcm.",
+    choices=TEXTURES, source="P2 section III-D", effect="relearns",
+)  # fmt: skip
+"""Make the choice of the texture feature."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +138,7 @@ def edge_feature(parameters: EdgeParameters) -> GradientDirections:
 class FeatureFilterParameters(ParticleParameters):
     """Common parameters of `mfpf` and its single-feature filters."""
 
-    as_printed: bool = as_printed_switch("interpretations 1, 12 to 19, 25, 26 and 30")
+    as_printed: bool = as_printed_switch(source="interpretations 1, 12 to 19, 25, 26 and 30")
     reference_weight: float = share(
         0.7, "Higher: the reference keeps more of the first frame and follows the last one less.",
         source="P2 eq. 9, interpretation 15 (no value printed)", tuned=True,
@@ -150,7 +151,7 @@ class FeatureFilterParameters(ParticleParameters):
         "mean", "The weighted mean of the particles, or the best one, as printed.",
         choices=("mean", "best"), source="P2 eq. 12, 13 and 18, interpretation 17",
     )  # fmt: skip
-    resampling: str = resampling_parameter("P2 eq. 15")
+    resampling: str = resampling_parameter(source="P2 eq. 15")
     resample_below: float = share(
         0.5, "Higher: resamples at larger effective sample sizes; 1 always.",
         unit="share of the particles", source="P2 eq. 14, interpretation 16",
@@ -183,11 +184,7 @@ class MfpfParameters(FeatureFilterParameters):
         """Return the parameters as printed; see `CommonParameters.printed`."""
         printed = common_print(self)
         return replace(
-            printed,
-            edges=PRINTED_EDGES,
-            texture="glcm",
-            update_unused=True,
-            joint_resampling=False,
+            printed, edges=PRINTED_EDGES, texture="glcm", update_unused=True, joint_resampling=False
         )
 
 

@@ -27,14 +27,12 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.base import BaseTracker, Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.likelihood import histogram_bits_parameter
-from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.papers.pf import VELOCITY_WINDOW
+from vehicle_pf_tracker.trackers.papers.shared import MeanVelocity, histogram_bits_parameter
 from vehicle_pf_tracker.trackers.parameters import CommonParameters
 
 
@@ -75,11 +73,11 @@ class MsTracker(BaseTracker[MsParameters]):
         return np.asarray([centre])
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        before, feature = self._cloud.mean(), JointColour(self.parameters.histogram_bits)
+        before, bits = self._cloud.mean(), self.parameters.histogram_bits
         cloud = Cloud.uniform(self._climb(frame, self._cloud.positions))
         position = cloud.mean()
         rho = self.kernels.kernel_similarity(
-            feature, frame, cloud.positions, self.window, self._reference
+            frame, cloud.positions, self.window, self._reference, bits
         )
         similarity = float(1.0 - hellinger_distance(rho)[0])
         self._velocity.add(before, position, elapsed)
@@ -90,10 +88,10 @@ class MsTracker(BaseTracker[MsParameters]):
     def _climb(self, frame: Frame, position: Array) -> Array:
         """Step until a step is short."""
         settings, window = self.parameters, self.window
-        feature = JointColour(settings.histogram_bits)
+        bits = settings.histogram_bits
         for _ in range(settings.iterations):
             before = position
-            position = self.kernels.mean_shift(feature, frame, before, window, self._reference)
+            position = self.kernels.mean_shift(frame, before, window, self._reference, bits)
             if np.hypot(*(position - before)[0]) < settings.shortest_step:
                 break
         return position

@@ -39,13 +39,13 @@ from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.papers.likelihood import (
+from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
+    MeanVelocity,
     histogram_bits_parameter,
     log_likelihood,
     resampling_parameter,
 )
-from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
 from vehicle_pf_tracker.trackers.parameters import ParticleParameters
 
 VELOCITY_WINDOW = 8
@@ -62,7 +62,7 @@ class ColourParameters(ParticleParameters):
         bounds=(0.01, 1000.0), unit="px/frame", source="P1 eq. 7", tuned=True,
     )  # fmt: skip
     histogram_bits: int = histogram_bits_parameter(tuned=True)
-    resampling: str = resampling_parameter("P1 Algorithm 2")
+    resampling: str = resampling_parameter(source="P1 Algorithm 2")
     # 0.158 is Perez's lambda of 20.
     likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.158)
 

@@ -33,8 +33,8 @@ from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient
 from vehicle_pf_tracker.image.window import bounds
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.likelihood import LikelihoodParameters, log_likelihood
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.shared import LikelihoodParameters, log_likelihood
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,12 +40,12 @@ from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.likelihood import (
+from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
     as_printed_switch,
     log_likelihood,
 )
-from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.parameters import share
 
 
@@ -53,7 +53,7 @@ from vehicle_pf_tracker.trackers.parameters import share
 class RepeatedResamplingParameters(ColourParameters):
     """Parameters of both filters of P3."""
 
-    as_printed: bool = as_printed_switch("interpretations 21, 22 and 29")
+    as_printed: bool = as_printed_switch(source="interpretations 21, 22 and 29")
     sigma: float = parameter(
         14.0,
         "About 1.75 times the speed: less loses fast vehicles, more follows similar vehicles.",
@@ -251,11 +251,7 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
         return bool(best < test.similarity * self._judge.level)
 
     def _regenerate(
-        self,
-        frame: Frame,
-        particles: WeighedParticles,
-        kept: npt.NDArray[np.bool_],
-        spread: float,
+        self, frame: Frame, particles: WeighedParticles, kept: npt.NDArray[np.bool_], spread: float
     ) -> WeighedParticles:
         """Replace all particles but the kept ones by copies of those; only these are weighed."""
         missing = len(kept) - int(kept.sum())

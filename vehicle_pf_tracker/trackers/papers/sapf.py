@@ -30,8 +30,8 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import Weights, from_log
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.likelihood import log_likelihood
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.shared import log_likelihood
 from vehicle_pf_tracker.trackers.parameters import particles_parameter
 
 _PRECISION = 1e-4
@@ -126,8 +126,7 @@ class SapfParameters(ColourParameters):
     """Parameters of `sapf`."""
 
     num_particles: int = particles_parameter(
-        50,
-        "Particles of each layer; more: steadier estimates, at more time per frame.",
+        50, "Particles of each layer; more: steadier estimates, at more time per frame."
     )
     annealing: AnnealingParameters = group(AnnealingParameters)
 

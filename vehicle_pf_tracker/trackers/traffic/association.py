@@ -22,7 +22,7 @@ are hidden near by: by distance, size and colours.
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import math
 from collections.abc import Sequence
 
@@ -31,7 +31,9 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import (
+    NOTHING,
     SHIPPED,
     DetectionEvidence,
     Detections,
@@ -39,7 +41,8 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     clipped,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import ColourBins, Track, edges_of, similarity
+from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
 
 GATE = 30.0
 """Largest cost of a pair: the 0.9999 quantile of chi-squared with four degrees of freedom is 23.5,
@@ -53,18 +56,20 @@ _LEAST_PART = 0.15
 
 
 def check_library() -> None:
-    """Check at the start, not in the first frame, that the library of `assign` is there.
+    """Load the library of `assign` at the start: it takes a second, in which a node loses images.
 
     Raises
     ------
     InputError
         If it is not.
     """
-    if importlib.util.find_spec("scipy") is None:
+    try:
+        importlib.import_module("scipy.optimize")
+    except ModuleNotFoundError:
         raise InputError(
             "traffic needs the Python module scipy: install the extra [video], "
             "pip install 'vehicle_pf_tracker[video]', or with apt python3-scipy"
-        )
+        ) from None
 
 
 def deviations(edges: Array, noise: float) -> Array:
@@ -119,9 +124,6 @@ def assign(costs: Array) -> list[tuple[int, int]]:
     return list(zip(rows[good].tolist(), columns[good].tolist(), strict=True))
 
 
-_NOTHING = np.empty((0, 4))
-
-
 class FrameDetections:
     """Detections of one frame, with what is known about each, while they are given to tracks.
 
@@ -150,6 +152,8 @@ class FrameDetections:
         For learning what becomes of them.
     log_odds : (N,) array
         Log odds that each is a vehicle.
+    gains, ranks : (N,) arrays
+        How much likelier each score is a vehicle's, as a logarithm; and how high among theirs.
     clutter : (N,) array
         Logarithm of the false alarms per image as often as where each is.
     free : list of int
@@ -167,11 +171,10 @@ class FrameDetections:
         self.edges = np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
         self.scores = detections.scores
         self.labels = detections.labels
-        self.samples = [
-            evidence.sample(edges, score, size)
-            for edges, score in zip(self.edges, self.scores.tolist(), strict=True)
-        ]
+        self.samples = evidence.samples(self.edges, self.scores, size)
         self.log_odds = evidence.log_odds(self.samples)
+        self.gains = evidence.gains(self.scores)
+        self.ranks = evidence.ranks(self.scores)
         self.clutter = evidence.clutter(self.samples)
         self.free = list(range(len(boxes)))
         self._colours = colours
@@ -180,25 +183,24 @@ class FrameDetections:
     def histogram(self, index: int) -> Array:
         """Colours of a detection."""
         if index not in self._histograms:
-            self._histograms[index] = self._colours.histogram(self.edges[index], _NOTHING)
+            self._histograms[index] = self._colours.histogram(self.edges[index], NOTHING)
         return self._histograms[index]
 
 
 def pair_costs(
     tracks: Sequence[Track],
     found: FrameDetections,
-    indices: Sequence[int],
     settings: DetectionParameters,
     numbers: TrafficNumbers = SHIPPED,
 ) -> Array:
-    """Cost of each pair of a track and one of the detections at `indices`, by edges and colours."""
-    predicted = edges_of(tracks)
-    variances = np.array([np.diag(track.state.edge_covariance) for track in tracks])
-    spread = np.sqrt(variances + deviations(predicted, settings.edge_noise) ** 2)
-    costs = edge_costs(clipped(predicted, found.size), spread, found.edges[indices], numbers)
+    """Cost of each pair of a track and a detection, by edges and colours."""
+    states = VehicleState.stacked([track.state for track in tracks])
+    variances = states.edge_covariance.diagonal(axis1=1, axis2=2)
+    spread = np.sqrt(variances + deviations(states.edges, settings.edge_noise) ** 2)
+    costs = edge_costs(clipped(states.edges, found.size), spread, found.edges, numbers)
     if settings.colour_cost:
         for row, column in np.argwhere(costs < GATE).tolist():
-            alike = similarity(tracks[row].colours, found.histogram(indices[column]))
+            alike = similarity(tracks[row].colours, found.histogram(column))
             costs[row, column] += settings.colour_cost * (1 - alike)
     return costs
 
@@ -238,25 +240,45 @@ def fits(
     noise : float
         Standard deviation of an edge, fraction of the size.
     """
-    predicted, detected = edges_of(tracks), found.edges[indices]
-    covariances = np.array([track.state.edge_covariance for track in tracks])
-    spread = deviations(detected, noise)
-    reach = np.sqrt(covariances.diagonal(axis1=1, axis2=2))[:, np.newaxis] + spread
-    apart = np.abs(detected - predicted[:, np.newaxis])
-    cut = cut_edges(predicted, found.size)[:, np.newaxis] & cut_edges(detected, found.size)
-    rows, columns = np.nonzero((cut | (apart < _FARTHEST * reach)).all(axis=2))
+    states = VehicleState.stacked([track.state for track in tracks])
+    predicted, detected = states.edges, found.edges[indices]
+    covariances, spread = states.edge_covariance, deviations(detected, noise)
+    reach = np.sqrt(covariances.diagonal(axis1=1, axis2=2))
+    cut, also_cut = cut_edges(predicted, found.size), cut_edges(detected, found.size)
+    apart = np.abs(detected[:, 0] - predicted[:, :1])
+    rows, columns = np.nonzero(
+        (apart < _FARTHEST * (reach[:, :1] + spread[:, 0])) | (cut[:, :1] & also_cut[:, 0])
+    )
+    for edge in range(1, 4):
+        far = np.abs(detected[columns, edge] - predicted[rows, edge])
+        near = far < _FARTHEST * (reach[rows, edge] + spread[columns, edge])
+        near |= cut[rows, edge] & also_cut[columns, edge]
+        rows, columns = rows[near], columns[near]
     sides = np.tile(detected[:, 2:] - detected[:, :2], 2)
     false = found.clutter[indices] - math.log(found.size[0] * found.size[1])
     false -= np.log(sides[:, :2] * _SIZES).sum(axis=1)
     unknown = (_SIZES * sides[columns]) ** 2 / (2 * np.pi)
-    variances = spread[columns] ** 2 + np.where(cut[rows, columns], unknown, 0.0)
-    covariance = covariances[rows] + variances[:, np.newaxis] * np.eye(4)
-    residual = (detected[columns] - predicted[rows])[..., np.newaxis]
-    costs = (residual * np.linalg.solve(covariance, residual)).sum(axis=(1, 2))
+    both_cut = cut[rows] & also_cut[columns]
+    covariance = covariances[rows]
+    covariance[:, range(4), range(4)] += spread[columns] ** 2 + np.where(both_cut, unknown, 0.0)
     odds = np.full((len(tracks), len(detected)), -np.inf)
-    density = -(costs + np.linalg.slogdet(2 * np.pi * covariance)[1]) / 2
-    odds[rows, columns] = density - false[columns]
+    odds[rows, columns] = (
+        _log_density(detected[columns] - predicted[rows], covariance) - false[columns]
+    )
     return odds
+
+
+def _log_density(residuals: Array, covariances: Array) -> Array:
+    """Logarithm of Gaussian densities (N,) at residuals (N, 4) of edges: one after the other."""
+    total = np.zeros(len(residuals))
+    for _ in range(residuals.shape[1]):
+        # Rounding leaves no edge less than its measurement's noise.
+        variance = np.maximum(covariances[:, 0, 0], _PIXEL_NOISE**2)
+        total -= (residuals[:, 0] ** 2 / variance + np.log(2 * np.pi * variance)) / 2
+        slope = covariances[:, 1:, 0] / variance[:, np.newaxis]
+        residuals = residuals[:, 1:] - slope * residuals[:, :1]
+        covariances = covariances[:, 1:, 1:] - slope[..., np.newaxis] * covariances[:, :1, 1:]
+    return total
 
 
 _MISSED_FOR = 5.0
@@ -269,6 +291,9 @@ _REACH = 1.0
 """Distance from the prediction, in widths, within which a vehicle can reappear at once; ..."""
 _REACH_GROWTH = 1 / 30
 """... and its growth per nominal period, of itself: roads bend, drivers brake."""
+_TWIN = 0.5
+"""The same, in reaches, for one that was confirmed as another vehicle: beside a lorry that hides a
+car there is another one more often."""
 _SIZE_RATIO = 2.0
 """Largest ratio of areas: a vehicle reappears part by part. At 4, boxes of two merged vehicles were
 taken for one of them (of three seeds of `traffic-forty` with `poor`, IDF1 lower by 0.5 on
@@ -291,22 +316,11 @@ def former(track: Track, others: Sequence[Track]) -> Track | None:
     return min(costs)[2] if costs else None
 
 
-def resume(hidden: Track, track: Track) -> None:
-    """Go on with a hidden vehicle where the new track that it turned out to be is."""
-    hidden.state, hidden.before = track.state, track.before
-    hidden.score = track.score
-    for label, votes in track.votes.items():
-        hidden.vote(label, votes)
-    hidden.has_driven = hidden.has_driven or track.has_driven
-    hidden.unseen = hidden.undetected = 0.0
-    hidden.log_odds = max(hidden.log_odds, track.log_odds)
-    hidden.visible, hidden.covers, hidden.hidden_by = track.visible, track.covers, None
-    hidden.sides, hidden.partial = track.sides, track.partial
-
-
 def _cost(track: Track, other: Track) -> float | None:
     """Distance in reaches; None where it cannot be the same vehicle."""
     if other is track or not other.confirmed or other.undetected < _MISSED_FOR:
+        return None
+    if track.confirmed and other.undetected <= track.age:  # there were two of them
         return None
     if other.visible < _IN_SIGHT:
         return None
@@ -318,6 +332,10 @@ def _cost(track: Track, other: Track) -> float | None:
     width = math.sqrt(new.width * old.width)
     distance = math.hypot(x - u, y - v) / width / (_REACH * (1 + _REACH_GROWTH * other.undetected))
     fall = other.usual_similarity - similarity(other.colours, track.colours)
-    if distance > 1 or fall > _LARGEST_FALL or not np.any(track.colours):
+    if (
+        distance > (_TWIN if track.confirmed else 1)
+        or fall > _LARGEST_FALL
+        or not np.any(track.colours)
+    ):
         return None
     return distance

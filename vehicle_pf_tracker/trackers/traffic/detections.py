@@ -23,8 +23,10 @@ well.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
 
 import cv2
 import numpy as np
@@ -34,10 +36,14 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.parameters.counting_plan import Region
 
+IntArray: TypeAlias = npt.NDArray[np.intp]
+
 MOST_DETECTIONS = 300
 """Detections of a frame that are looked at, the highest scores first. No camera shows as many
 vehicles; a detector that reports more is out of order, and association would take seconds."""
 
+NOTHING = np.empty((0, 4))
+"""No boxes."""
 _LARGEST_SHARE = 4
 """Largest side of a detection, in sides of the image; a larger one is no vehicle."""
 
@@ -91,11 +97,12 @@ class Detections:
         kept, inner = np.ones(len(self), bool), np.zeros(len(self), bool)
         for region in regions:
             outline = np.asarray(region.corners, np.float32)
-            inside = [cv2.pointPolygonTest(outline, one, False) >= 0 for one in centres.tolist()]
+            signs = [cv2.pointPolygonTest(outline, one, False) for one in centres.tolist()]
+            inside = np.array(signs, np.float64) >= 0  # of no detection too
             if region.is_inside:
                 inner |= inside
             else:
-                kept &= ~np.asarray(inside, bool)
+                kept &= ~inside
         if any(region.is_inside for region in regions):
             kept &= inner
         return self.take(np.flatnonzero(kept))
@@ -130,17 +137,14 @@ def areas(edges: Array) -> Array:
 
 
 def overlaps(edges: Array, others: Array) -> Array:
-    """Measure the intersection over union of one box (4,) with others (N, 4)."""
+    """Measure the intersection over union of boxes (..., 4) with others (..., 4)."""
     common = intersections(edges, others)
     return np.asarray(common / (areas(edges) + areas(others) - common))
 
 
-def inside_image(edges: Array, size: tuple[int, int]) -> float:
-    """Measure the share of a box (4,) that lies in an image of this width and height."""
-    left, top, right, bottom = edges.tolist()
-    width, height = min(right, size[0]) - max(left, 0.0), min(bottom, size[1]) - max(top, 0.0)
-    area = max(max(right - left, 0.0) * max(bottom - top, 0.0), 1.0)
-    return float(max(width, 0.0) * max(height, 0.0) / area)
+def inside_image(edges: Array, size: tuple[int, int]) -> Array:
+    """Measure the shares of boxes (..., 4) that lie in an image of this width and height."""
+    return np.asarray(intersections(edges, np.array([0.0, 0.0, *size])) / areas(edges))
 
 
 def clipped(edges: Array, size: tuple[int, int]) -> Array:
@@ -170,8 +174,7 @@ mean of all places for the number of one, are worth."""
 _LARGEST_LOG_ODDS = 6.0
 
 
-@dataclass(frozen=True, slots=True)
-class Sample:
+class Sample(NamedTuple):
     """Score and place of a detection whose outcome is to be learnt."""
 
     score: float
@@ -182,9 +185,7 @@ class DetectionEvidence:
     """Outcomes of detections by score, and false alarms by place."""
 
     def __init__(self) -> None:
-        self._scores = np.empty(_REMEMBERED)
-        self._genuine = np.empty(_REMEMBERED)
-        self._count = 0
+        self._outcomes: deque[tuple[float, bool]] = deque(maxlen=_REMEMBERED)
         self._fresh = 0
         self._sorted = np.empty(0)
         self._sums = np.zeros(1)
@@ -198,26 +199,32 @@ class DetectionEvidence:
         if self._images > _MEMORY:
             self._images /= 2
             self._false /= 2
+        if self._fresh >= min(_REFRESHED_EVERY, len(self._outcomes)) > 0:
+            scores, genuine = np.array(self._outcomes).T
+            order = np.argsort(scores, kind="stable")
+            self._sorted = scores[order]
+            self._sums = np.concatenate([[0.0], np.cumsum(genuine[order])])
+            self._fresh = 0
 
-    def sample(self, edges: Array, score: float, size: tuple[int, int]) -> Sample:
-        """Describe a detection by its edges (px) and its score."""
-        centre = (edges[:2] + edges[2:]) / 2
-        column, row = np.clip(centre / size * _GRID, 0, _GRID - 1).astype(int).tolist()
-        return Sample(score, (row, column))
+    def samples(self, edges: Array, scores: Array, size: tuple[int, int]) -> list[Sample]:
+        """Describe detections by their edges (N, 4) in px and their scores."""
+        centres = (edges[:, :2] + edges[:, 2:]) / 2
+        places = np.clip(centres / size * _GRID, 0, _GRID - 1).astype(int).tolist()
+        return [
+            Sample(score, (row, column))
+            for score, (column, row) in zip(scores.tolist(), places, strict=True)
+        ]
 
     def learn(self, sample: Sample, genuine: bool, *, alone: bool = True) -> None:
         """Add the outcome of a detection; one beside a vehicle is no false alarm of its place."""
-        index = self._count % _REMEMBERED
-        self._scores[index], self._genuine[index] = sample.score, genuine
-        self._count += 1
+        self._outcomes.append((sample.score, genuine))
         self._fresh += 1
-        if self._fresh >= min(_REFRESHED_EVERY, self._count):
-            self._refresh()
         row, column = sample.place
         self._false[row, column] += alone and not genuine
-        self._places[int(genuine), row, column] += 1
-        if self._places[:, row, column].sum() > _OLD:
-            self._places[:, row, column] /= 2
+        here = self._places[:, row, column]
+        here[int(genuine)] += 1
+        if here[0] + here[1] > _OLD:
+            here /= 2
 
     def log_odds(self, samples: list[Sample]) -> Array:
         """Logarithm of the odds that detections are vehicles, (N,); 0 where nothing is known.
@@ -225,41 +232,34 @@ class DetectionEvidence:
         A place only speaks against a detection: where many vehicles pass, parts of vehicles are
         detected as well.
         """
-        if not samples:
-            return np.zeros(0)
-        by_score = self._by_score(np.array([one.score for one in samples]))
-        rows, columns = np.array([one.place for one in samples]).T
+        scores, rows, columns = _columns(samples)
         totals = self._places.sum(axis=(1, 2))
         here = self._places[:, rows, columns]
         by_place = np.log(here[1] / here[0]) - np.log(totals[1] / totals[0])
-        both = by_score + np.minimum(by_place, 0.0)
+        both = self._by_score(scores) + np.minimum(by_place, 0.0)
         return np.asarray(np.clip(both, -_LARGEST_LOG_ODDS, _LARGEST_LOG_ODDS))
 
-    def score_gain(self, score: float) -> float:
-        """Logarithm of how much more often vehicles have this score than false alarms have it."""
+    def gains(self, scores: Array) -> Array:
+        """Logarithm of how much more often vehicles have scores (N,) than false alarms have."""
         genuine, total = self._sums[-1], len(self._sorted)
         usual = np.log((genuine + _PRIOR) / (total - genuine + _PRIOR))
-        return float(self._by_score(np.array([score]))[0] - usual)
+        return np.asarray(self._by_score(scores) - usual)
 
-    def rank(self, score: float) -> float:
-        """Share of the vehicles' detections that had a lower score; 0 before enough are known."""
-        below = self._sums[np.searchsorted(self._sorted, score)]
-        return float(below / max(self._sums[-1], _NEIGHBOURS))
+    def ranks(self, scores: Array) -> Array:
+        """Share of the vehicles' detections with lower scores, (N,); 0 before enough are known."""
+        below = self._sums[np.searchsorted(self._sorted, scores)]
+        return np.asarray(below / max(self._sums[-1], _NEIGHBOURS))
 
     def clutter(self, samples: list[Sample]) -> Array:
         """Logarithm of the false alarms per image, (N,), in a place as large as the image.
 
         The number in one place is that of a Poisson process, its prior the mean of all places.
         """
-        if not samples:
-            return np.zeros(0)
-        rows, columns = np.array([one.place for one in samples]).T
-        seen = self._false[rows, columns] * _GRID**2 + _IMAGES * np.exp(self._usual())
-        return np.asarray(np.log(seen / (self._images + _IMAGES)))
-
-    def _usual(self) -> float:
-        total = float(self._false.sum()) + _FALSE_ALARMS * _IMAGES
-        return float(np.log(total / (self._images + _IMAGES)))
+        _, rows, columns = _columns(samples)
+        images = self._images + _IMAGES
+        usual = (self._false.sum() + _FALSE_ALARMS * _IMAGES) / images
+        seen = self._false[rows, columns] * _GRID**2 + _IMAGES * usual
+        return np.asarray(np.log(seen / images))
 
     def _by_score(self, scores: Array) -> Array:
         left = np.searchsorted(self._sorted, scores, "left")
@@ -269,12 +269,11 @@ class DetectionEvidence:
         genuine = self._sums[high] - self._sums[low]
         return np.asarray(np.log((genuine + _PRIOR) / (high - low - genuine + _PRIOR)))
 
-    def _refresh(self) -> None:
-        count = min(self._count, _REMEMBERED)
-        order = np.argsort(self._scores[:count], kind="stable")
-        self._sorted = self._scores[order]
-        self._sums = np.concatenate([[0.0], np.cumsum(self._genuine[order])])
-        self._fresh = 0
+
+def _columns(samples: list[Sample]) -> tuple[Array, IntArray, IntArray]:
+    """Scores, rows and columns (N,) of samples."""
+    places = np.array([one.place for one in samples], dtype=np.intp).reshape(-1, 2)
+    return np.array([one.score for one in samples]), places[:, 0], places[:, 1]
 
 
 @dataclass(frozen=True, slots=True)

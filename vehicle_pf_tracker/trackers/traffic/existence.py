@@ -21,7 +21,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections
 from vehicle_pf_tracker.trackers.traffic.detections import (
@@ -163,23 +162,22 @@ class Existence:
 
     def _add(self, track: Track, found: FrameDetections, index: int, fit: float) -> bool:
         sample, log_odds = found.samples[index], float(found.log_odds[index])
-        gain = log_odds if track.confirmed else self._evidence.score_gain(sample.score)
+        gain = log_odds if track.confirmed else float(found.gains[index])
         track.add_evidence(found.edges[index], min(max(gain, _LEAST), _MOST), fit)
         doubted = min(max(log_odds - _SCORE_DOUBT, _LEAST), _MOST)
-        if track.way < _STILL and self._evidence.rank(sample.score) < _USUAL:
+        if track.way < _STILL and found.ranks[index] < _USUAL:
             doubted = _LEAST
-        track.strength += doubted
+        track.prove(doubted, sample)
         if track.has_driven or track.given:
             if track.given or track.state.speed_ratio > _MOVING:
                 self._evidence.learn(sample, True)
                 size = track.state.road_size
                 self._sizes = _SIZE_MEMORY * self._sizes + (size, size**2)
             return False
-        track.samples.append(sample)
         known = track.confirmed or track.log_odds >= self.parameters.birth.evidence
         sized = self._is_sized(track, _LIKELY_SIZE, unknown=False)
-        track.is_likely = known and sized and track.drive()[1] > _DRIVES
-        track.has_driven = known and self._drives(track)
+        is_likely = known and sized and track.drive()[1] > _DRIVES
+        track.judge(is_likely=is_likely, has_driven=known and self._drives(track))
         self._teach(track)
         proven = track.has_driven or track.strength > self._numbers.proven_by_scores
         return not track.confirmed and known and proven
@@ -222,17 +220,17 @@ class Existence:
         detected = [one for one in tracks if one.confirmed and one.undetected == 0]
         if not detected and _in_sight(tracks) >= _BLIND_FROM:
             return
-        boxes = edges_of(detected)
+        doubles = _doubles([one for one in tracks if one.confirmed and one.undetected], detected)
         for track in tracks:
             in_sight = min(track.visible, track.inside) > _PLAIN_SIGHT
             if track.has_driven and in_sight and track.unseen <= _ONE_PERIOD:
                 self._note(track.undetected == 0)
             if track.undetected == 0 or (track.given and track.unseen <= _ONE_PERIOD):
                 continue
-            if track.confirmed and _is_double(track, boxes):
-                track.log_odds -= _DOUBLE * elapsed
+            if track in doubles:
+                track.miss(_DOUBLE * elapsed)
             if in_sight:
-                track.log_odds -= elapsed * self._missed(track)
+                track.miss(elapsed * self._missed(track))
 
     def _note(self, detected: bool) -> None:
         """Note that a vehicle in plain sight was detected, or was not."""
@@ -261,10 +259,11 @@ class Existence:
             Nominal frame period in s.
         """
         kept = []
-        for track in tracks:
+        shares = inside_image(edges_of(tracks), size).tolist()
+        for track, inside in zip(tracks, shares, strict=True):
             unseen = track.unseen * period
-            track.lost = unseen > self.parameters.lost_after or track.log_odds < 0
-            if self._goes_on(track, unseen, inside_image(track.state.edges, size)):
+            track.lose(unseen > self.parameters.lost_after or track.log_odds < 0)
+            if self._goes_on(track, unseen, inside):
                 kept.append(track)
                 continue
             if track.confirmed:
@@ -295,12 +294,13 @@ def _in_sight(tracks: Sequence[Track]) -> int:
     )
 
 
-def _is_double(track: Track, detected: Array) -> bool:
-    """Test whether a track without a detection is the same vehicle as a detected one."""
-    if not len(detected):
-        return False
-    edges = track.state.edges
-    if overlaps(edges, detected).max() > _SAME:
-        return True
-    share = intersections(edges, detected).max() / areas(edges)
-    return track.matches < _YOUNG and float(share) > _PART
+def _doubles(tracks: Sequence[Track], detected: Sequence[Track]) -> set[Track]:
+    """Find tracks without a detection that are the same vehicle as a detected one."""
+    boxes, others = edges_of(tracks)[:, np.newaxis], edges_of(detected)
+    inside = (intersections(boxes, others) / areas(boxes)).max(axis=1, initial=0.0)
+    same = overlaps(boxes, others).max(axis=1, initial=0.0) > _SAME
+    return {
+        track
+        for track, is_same, share in zip(tracks, same, inside, strict=True)
+        if is_same or (track.matches < _YOUNG and share > _PART)
+    }

@@ -20,13 +20,17 @@ ends: measured, it would brake the vehicle at an occluder and shrink it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import INWARD, cut_edges, deviations
 from vehicle_pf_tracker.trackers.traffic.detections import areas
-from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
+from vehicle_pf_tracker.trackers.traffic.track import Track, edges_of
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
 _PUSHED = 1.0
@@ -61,9 +65,7 @@ _NOTABLE = 0.15
 """Share of the prediction above which another detection in it is no fragment."""
 _CROWDED = 3
 """Detections in a row that tell: one may have been torn apart by chance."""
-NO_OTHERS = np.empty((0, 4))
-"""Edges of other detections where there are none."""
-_OPPOSITE = (Edge.RIGHT, Edge.BOTTOM, Edge.LEFT, Edge.TOP)
+_OPPOSITE = [Edge.RIGHT, Edge.BOTTOM, Edge.LEFT, Edge.TOP]
 
 
 def first_state(
@@ -103,90 +105,75 @@ def first_state(
 
 
 def measure(
-    track: Track,
+    tracks: Sequence[Track],
     edges: Array,
-    noise: float,
-    covered: float,
+    settings: DetectionParameters,
     size: tuple[int, int],
-    others: Array = NO_OTHERS,
-) -> bool:
-    """Correct a track's state by a detection; True if the whole of the vehicle was measured.
+    others: Array,
+) -> npt.NDArray[np.bool_]:
+    """Correct the states of tracks, each by its detection; True where the whole was measured.
 
     Parameters
     ----------
-    track : Track
-        Track, predicted into this frame.
-    edges : (4,) array
-        Edges of the detection, px.
-    noise : float
-        Standard deviation of an edge, fraction of the size.
-    covered : float
-        Standard deviations inward above which an edge is taken to be covered.
+    tracks : sequence of N Track
+        Tracks, predicted into this frame.
+    edges : (N, 4) array
+        Edges of the detection of each, px.
+    settings : DetectionParameters
+        Noise of an edge, and where an edge is taken to be covered.
     size : (int, int)
         Width and height of the image.
-    others : (N, 4) array
-        Edges of the other detections, px.
+    others : (M, 4) array
+        Edges of all detections, px.
     """
-    state = track.state
-    if _is_one_of_several(track, edges, others):
-        state.resize(edges)
-    predicted = state.edges
-    spread = deviations(predicted, noise)
-    uncertainty = np.sqrt(np.diag(state.edge_covariance) + spread**2)
-    normal = ((edges - predicted) * INWARD / uncertainty).tolist()
-    cut, beyond = cut_edges(edges, size), cut_edges(predicted, size)
-    sides = edges[2:] - edges[:2]
-    track.sides = np.maximum(sides, _FADED * track.sides)
-    shrunk = sides < _WHOLE * np.minimum(predicted[2:] - predicted[:2], track.sides)
-    less = sides < _LESS * track.sides
-    patient = track.matches >= _SETTLED and track.partial < _PATIENCE
-    whole = True
-    for edge in Edge:
-        if cut[edge] and beyond[edge]:
-            continue
-        own, opposite = normal[edge], normal[_OPPOSITE[edge]]
-        jumped = bool(less[edge % 2]) and own > covered and opposite > -_PUSHED
-        crept = bool(shrunk[edge % 2]) and own > max(opposite, 0.0)
-        if jumped or crept:
-            whole = False
-            if patient:
-                continue
-        state.measure(edge, float(edges[edge]), float(spread[edge]))
-    track.partial = 0 if whole else track.partial + 1
-    return whole
+    _divide(tracks, edges, others)
+    states = VehicleState.stacked([track.state for track in tracks])
+    predicted = states.edges
+    spread = deviations(predicted, settings.edge_noise)
+    variances = states.edge_covariance.diagonal(axis1=1, axis2=2)
+    normal = (edges - predicted) * INWARD / np.sqrt(variances + spread**2)
+    opposite = normal[:, _OPPOSITE]
+    unknown = cut_edges(edges, size) & cut_edges(predicted, size)
+    sides = edges[:, 2:] - edges[:, :2]
+    latest = np.maximum(sides, _FADED * np.array([track.sides for track in tracks]))
+    shrunk = sides < _WHOLE * np.minimum(predicted[:, 2:] - predicted[:, :2], latest)
+    less = sides < _LESS * latest
+    jumped = np.tile(less, 2) & (normal > settings.covered) & (opposite > -_PUSHED)
+    crept = np.tile(shrunk, 2) & (normal > np.maximum(opposite, 0.0))
+    covered = (jumped | crept) & ~unknown
+    patient = np.array([one.matches >= _SETTLED and one.partial < _PATIENCE for one in tracks])
+    left_out = unknown | (covered & patient[:, np.newaxis])
+    states.measure(edges, np.where(left_out, np.inf, spread))
+    states.give_back([track.state for track in tracks])
+    whole = ~covered.any(axis=1)
+    for track, own, is_whole in zip(tracks, latest, whole.tolist(), strict=True):
+        track.measured(own, is_whole=is_whole)
+    return np.asarray(whole)
 
 
-def _is_one_of_several(track: Track, edges: Array, others: Array) -> bool:
-    """Test whether what was taken for one vehicle is several, of which this is the nearest.
+def _divide(tracks: Sequence[Track], edges: Array, others: Array) -> None:
+    """Shrink boxes of several vehicles that were taken for one to the nearest one's.
 
     Vehicles that enter the image side by side are one blob, and drive apart later. The detection of
     one is then no part of a larger vehicle whose rest is hidden: the rest is there, behind it.
 
     Parameters
     ----------
-    track : Track
-        Track, predicted into this frame.
-    edges : (4,) array
-        Edges of its detection, px.
-    others : (N, 4) array
-        Edges of the other detections.
+    tracks : sequence of N Track
+        Tracks, predicted into this frame.
+    edges : (N, 4) array
+        Edges of the detection of each, px.
+    others : (M, 4) array
+        Edges of all detections.
     """
-    predicted = track.state.edges
-    own = areas(others)
+    predicted = edges_of(tracks)
+    each, own = predicted[:, np.newaxis], edges[:, np.newaxis]
     beside = (
-        (intersections(predicted, others) > _NOTABLE * areas(predicted))
-        & (intersections(edges, others) < _BESIDE * own)
-        & (others[:, Edge.BOTTOM] < edges[Edge.BOTTOM])
-    )
-    known = intersections(predicted, edges[np.newaxis])[0] > _INSIDE * areas(edges)
-    track.crowded = track.crowded + 1 if known and beside.any() else 0
-    if track.crowded < _CROWDED:
-        return False
-    track.crowded = 0
-    track.sides = edges[2:] - edges[:2]
-    return True
-
-
-def is_cut(edges: Array, size: tuple[int, int]) -> bool:
-    """Tell whether a border of the image cuts a box (4,)."""
-    return bool(cut_edges(edges, size).any())
+        (intersections(each, others) > _NOTABLE * areas(each))
+        & (intersections(own, others) < _BESIDE * areas(others))
+        & (others[:, Edge.BOTTOM] < own[..., Edge.BOTTOM])
+    ).any(axis=1)
+    known = intersections(predicted, edges) > _INSIDE * areas(edges)
+    for track, box, crowded in zip(tracks, edges, (known & beside).tolist(), strict=True):
+        if track.crowd(crowded) >= _CROWDED:
+            track.shrink_to(box)

@@ -102,6 +102,8 @@ _TYPES: Mapping[str, Any] = {
     "tensor(uint8)": np.uint8,
 }
 """Types of inputs, by ONNX Runtime's names."""
+_LARGEST_INPUT = 4096
+"""Longest side of an input, px, as of `detector.input_size`: one of 20 000 px takes 12 GB."""
 _CELL = 32
 """Size of the largest cells of most networks, px: an open input's sides are multiples of it."""
 _MOST_BOXES = 3000
@@ -212,6 +214,16 @@ class NetworkDetector:
             )
         sides = shape[2:4] if is_planar else shape[1:3]
         height, width = (side if isinstance(side, int) and side > 0 else None for side in sides)
+        if isinstance(shape[0], int) and shape[0] > 1:
+            raise InputError(
+                f"the network {self._name} takes {shape[0]} images at once; export it with a "
+                "batch of 1"
+            )
+        if max(height or 0, width or 0) > _LARGEST_INPUT:
+            raise InputError(
+                f"the network {self._name} takes images of {width}x{height} px; export it with "
+                f"{_LARGEST_INPUT} px a side at most"
+            )
         return inputs[0].name, _TYPES[inputs[0].type], is_planar, (width, height)
 
     def _size(self, across: int, down: int) -> tuple[int, int]:

@@ -101,17 +101,24 @@ def class_count(form: str, outputs: Mapping[str, Array]) -> int | None:
 
 
 def decode(form: str, outputs: Mapping[str, Array], width: int, height: int) -> Found:
-    """Read the outputs for an input of this size in px."""
+    """Read the outputs for an input of this size in px; a box with NaN or infinity scores 0."""
     if form == SSD:
         return _decode_ssd(outputs, width, height)
     (output,) = outputs.values()
-    rows = np.asarray(output[0] if form == YOLOX else output[0].T, np.float64)
+    rows = _finite(output[0] if form == YOLOX else output[0].T)
     boxes = _placed(rows[:, :4], width, height) if form == YOLOX else rows[:, :4]
     scores = rows[:, 5:] * rows[:, 4:5] if form == YOLOX else rows[:, 4:]
     classes = scores.argmax(axis=1)
     best = scores[np.arange(len(scores)), classes]
     corner = boxes[:, :2] - boxes[:, 2:] / 2
     return Found(np.hstack([corner, boxes[:, 2:]]), best, classes)
+
+
+def _finite(rows: Array) -> Array:
+    """Copy rows of boxes, those that have a number without meaning as zeros."""
+    copied = np.array(rows, np.float64)
+    copied[~np.isfinite(copied).all(axis=1)] = 0.0
+    return copied
 
 
 def _placed(boxes: Array, width: int, height: int) -> Array:
@@ -154,17 +161,19 @@ def _ssd_names(names: Sequence[str]) -> tuple[str, str, str] | None:
 def _decode_ssd(outputs: Mapping[str, Array], width: int, height: int) -> Found:
     names = _ssd_names(list(outputs))
     assert names is not None, "it is SSD by these names"
-    boxes = np.asarray(outputs[names[0]], np.float64).reshape(-1, 4)
-    scores = np.asarray(outputs[names[1]], np.float64).ravel()
-    classes = np.asarray(outputs[names[2]]).ravel().astype(np.int64)
-    count = min(len(boxes), len(scores), len(classes))
-    boxes = boxes[:count]
+    columns = [
+        np.asarray(outputs[name]).reshape(-1, size)
+        for name, size in zip(names, (4, 1, 1), strict=True)
+    ]
+    count = min(map(len, columns))
+    rows = _finite(np.hstack([column[:count] for column in columns]))
+    boxes = rows[:, :4]
     if names[0].startswith("detection_"):  # TensorFlow has y before x
         boxes = boxes[:, [1, 0, 3, 2]]
-    if not boxes.size or float(np.nanmax(np.abs(boxes))) <= _NORMALISED:
+    if np.abs(boxes).max(initial=0.0) <= _NORMALISED:
         boxes = boxes * np.array([width, height, width, height])
     corners = np.hstack([boxes[:, :2], boxes[:, 2:] - boxes[:, :2]])
-    return Found(corners, scores[:count], classes[:count])
+    return Found(corners, rows[:, 4], rows[:, 5].astype(np.int64))
 
 
 COCO = (

@@ -95,7 +95,9 @@ class DetectorParameters:
         choices=(MOTION, MODEL, TOPIC, NONE), read_only=True,
     )  # fmt: skip
     model: str = parameter(
-        "", "File of the network, .onnx: YOLOX, YOLOv8 or SSD by the form of its outputs.",
+        "",
+        "Network, .onnx: YOLOX, YOLOv8 or SSD by the form of its outputs. A file, or a URL that "
+        "is fetched once; #sha256=… at its end demands this sum.",
         read_only=True,
     )  # fmt: skip
     classes: str = parameter(
@@ -132,8 +134,9 @@ class DetectorParameters:
     )  # fmt: skip
     every: int = parameter(
         1, "Above 1: the detector looks at every k-th image, and pixels hold vehicles in between; "
-        "images do not wait for a topic's.",
-        bounds=(1, 1000), unit="images",
+        "images do not wait for a topic's. 0: the smallest k that keeps the images' rate, which "
+        "depends on the machine.",
+        bounds=(0, 1000), unit="images",
     )  # fmt: skip
 
     def validate(self) -> None:
@@ -178,6 +181,12 @@ class TrafficParameters:
         "YAML of lines and zones to count at, and of regions of interest; empty: nothing is "
         "counted.",
         read_only=True,
+    )  # fmt: skip
+    page_port: int = parameter(
+        -1,
+        "Port of a page with picture and counts, for browsers of this machine; 0: any free one, "
+        "-1: no page.",
+        bounds=(-1, 65535), read_only=True,
     )  # fmt: skip
     detector: DetectorParameters = group(DetectorParameters)
 

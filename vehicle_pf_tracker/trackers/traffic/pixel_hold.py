@@ -28,10 +28,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.flow import PointFlow
+from vehicle_pf_tracker.image.shared_motion import PointFlow
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, TrafficNumbers, areas
-from vehicle_pf_tracker.trackers.traffic.track import ColourBins, Track, similarity
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge, V, X
+from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import V, X
 
 Grey: TypeAlias = npt.NDArray[np.uint8]
 
@@ -107,10 +108,7 @@ class PixelHold:
         ]
         for track, hold in zip(held, self.measure(held, colours, normals), strict=True):
             if hold is not None:
-                track.unseen = 0.0
-                for edge in Edge:
-                    value, deviation = hold.edges[edge], hold.deviations[edge]
-                    track.state.measure(edge, float(value), float(deviation))
+                track.hold(hold.edges, hold.deviations)
 
     def measure(
         self, tracks: Sequence[Track], colours: ColourBins, normals: Array

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Protocol
 
@@ -60,6 +61,28 @@ class Detector(Protocol):
         ...
 
 
+@dataclass(slots=True)
+class Found:
+    """Totals of what was detected, for a user who finds no vehicle.
+
+    Attributes
+    ----------
+    images : int
+        Images with detections, or that a detector has looked at.
+    disturbed : int
+        Images that differed too much from those before.
+    boxes : int
+        Detections.
+    outside : int
+        Those of them that are outside the regions.
+    """
+
+    images: int = 0
+    disturbed: int = 0
+    boxes: int = 0
+    outside: int = 0
+
+
 class TrafficSession(StreamSession[TrafficTracker]):
     """Control of the tracker: elapsed time, restarts, detections.
 
@@ -78,8 +101,6 @@ class TrafficSession(StreamSession[TrafficTracker]):
         Nominal rate in 1/s; 0 takes the median of the first ten intervals.
     reset_on_time_jump : bool
         Discard all vehicles when stamps go back and stay back.
-    every : int
-        The detector looks at every k-th image; pixels hold the vehicles in between.
     regions : sequence of Region
         Detections elsewhere are ignored; none: all count.
 
@@ -89,6 +110,8 @@ class TrafficSession(StreamSession[TrafficTracker]):
         Estimates of the last image.
     detector : Detector or None
         The detector in use.
+    found : Found
+        Totals of what was detected.
     events, recovered
         See `StreamSession`.
     restarts : int
@@ -104,16 +127,15 @@ class TrafficSession(StreamSession[TrafficTracker]):
         *,
         frame_rate: float = 0.0,
         reset_on_time_jump: bool = True,
-        every: int = 1,
         regions: Sequence[Region] = (),
     ) -> None:
         super().__init__(tracker, frame_rate, reset_on_time_jump)
         self.estimates: tuple[TrackEstimate, ...] = ()
+        self.found = Found()
         self.restarts = 0
         self.successors: Mapping[int, int] = MappingProxyType({})
         self.detector = make_detector() if make_detector else None
         self._make_detector = make_detector
-        self._every, self._images = every, 0
         self._regions = tuple(regions)
         self._given: dict[int, tuple[Box, str]] = {}
         self._detections: Detections | None = None
@@ -178,8 +200,13 @@ class TrafficSession(StreamSession[TrafficTracker]):
     def _step(self, turn: Turn, detections: Detections | None) -> None:
         if detections is None and self.detector is not None:
             detections = self._detected(self.detector, turn.frame)
-        if detections is not None and self._regions:
-            detections = detections.within(self._regions)
+        if detections is not None:
+            self.found.images += 1
+            self.found.boxes += len(detections)
+            if self._regions:
+                inside = detections.within(self._regions)
+                self.found.outside += len(detections) - len(inside)
+                detections = inside
         self.estimates = self.tracker.step(turn.frame, detections, turn.elapsed)
         if self._given:
             followed = {one.identity: (one.box, one.label) for one in self.estimates}
@@ -187,11 +214,9 @@ class TrafficSession(StreamSession[TrafficTracker]):
 
     def _detected(self, detector: Detector, frame: Frame) -> Detections | None:
         """Return the detections; None where it did not look, so that no vehicle is missed."""
-        self._images += 1
-        if (self._images - 1) % self._every:
-            return None
         found = detector.detect(frame, self.estimates)
         if detector.disturbed:
+            self.found.disturbed += 1
             self.events.append(_DISTURBED)
         return None if detector.is_blind else found
 

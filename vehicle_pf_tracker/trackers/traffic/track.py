@@ -12,11 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Vehicles that are followed: state, evidence of existence, colours, and occlusions among them.
-
-Colours are histograms of boxes, from an image that is quantised once for all vehicles. Of two
-vehicles, the one whose lower edge is nearer on the road hides the other.
-"""
+"""Vehicles that are followed: state, evidence of existence, colours."""
 
 from __future__ import annotations
 
@@ -25,68 +21,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import intersections
-from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.detections import Sample, areas, inside_image
+from vehicle_pf_tracker.trackers.traffic.colours import BINS
+from vehicle_pf_tracker.trackers.traffic.detections import NOTHING, Sample
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
-
-BINS = 64
-"""Four levels of each channel: enough to tell colours, few enough for a box of 100 px."""
-_INNER = 0.1
-"""Margin on each side, of the size, that is left out: background."""
-_WIDE = 48
-"""Width in px above which every other row and column is enough."""
-
-
-class ColourBins:
-    """Frame as numbers of joint colour bins."""
-
-    def __init__(self, frame: Frame) -> None:
-        level = frame >> 6
-        bins = (level[..., 0] << 4) | (level[..., 1] << 2) | level[..., 2]
-        self._bins: npt.NDArray[np.uint8] = np.asarray(bins, np.uint8)
-
-    def histogram(self, edges: Array, covers: Array) -> Array:
-        """Count the colours of a box's inner part.
-
-        Parameters
-        ----------
-        edges : (4,) array
-            Edges of the box, px.
-        covers : (K, 4) array
-            Edges of boxes whose pixels are left out.
-
-        Returns
-        -------
-        (BINS,) array
-            Shares of the colours; zero where nothing of the box is in sight.
-        """
-        left, top, right, bottom = edges.tolist()
-        dx, dy = _INNER * (right - left), _INNER * (bottom - top)
-        x0, x1 = max(int(left + dx), 0), max(int(right - dx) + 1, 0)
-        y0, y1 = max(int(top + dy), 0), max(int(bottom - dy) + 1, 0)
-        part = self._bins[y0:y1, x0:x1]
-        if len(covers):
-            seen = np.ones(part.shape, dtype=bool)
-            for cover in np.maximum(covers - (x0, y0, x0, y0), 0.0).astype(int).tolist():
-                seen[cover[1] : cover[3], cover[0] : cover[2]] = False
-            part = part[seen]
-        elif x1 - x0 > _WIDE:
-            part = part[::2, ::2]
-        counts = np.bincount(part.ravel(), minlength=BINS)
-        return np.asarray(counts / max(int(counts.sum()), 1))
-
-
-def similarity(one: Array, other: Array) -> float:
-    """Bhattacharyya coefficient of two histograms, 0 to 1."""
-    return float(np.sqrt(one * other).sum())
-
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
 
 MOST_EVIDENCE = 8.0
 """Bound of the log odds that a vehicle exists: however long it was seen, some ten missed
@@ -139,6 +80,8 @@ class Track:
         Its way shows that it is no part of the scene.
     given : bool
         It was given by hand: that no detector finds it does not refute it.
+    joined : int
+        Number of the track as which it was found again; 0 if of none.
     score : float
         Score of its detection in this frame; NaN without one.
     age, unseen, undetected : float
@@ -175,13 +118,14 @@ class Track:
     is_likely: bool = False
     has_driven: bool = False
     given: bool = False
+    joined: int = 0
     score: float = math.nan
     age: float = 0.0
     unseen: float = 0.0
     undetected: float = 0.0
     visible: float = 1.0
     inside: float = 1.0
-    covers: Array = field(default_factory=lambda: np.empty((0, 4)))
+    covers: Array = field(default_factory=lambda: NOTHING)
     hidden_by: int | None = None
     before: Array = field(default_factory=lambda: np.zeros(4))
     samples: list[Sample] = field(default_factory=list)
@@ -200,19 +144,63 @@ class Track:
         """Class that most of its detections say, by their scores."""
         return max(self.votes, key=self.votes.__getitem__, default="")
 
-    def predict(self, elapsed: float) -> None:
-        """Go on by `elapsed` nominal periods."""
+    def go_on(self, elapsed: float) -> None:
+        """Go on by `elapsed` nominal periods, before the state is predicted."""
         self.before = self.state.edges
-        self.state.predict(elapsed)
         self.age += elapsed
         self.unseen += elapsed
         self.undetected += elapsed
         self.score = math.nan
 
-    def vote(self, label: str, weight: float) -> None:
-        """Take the class that a detection says."""
+    def show(self, visible: float, inside: float, covers: Array, hidden_by: int | None) -> None:
+        """Take what of it is in sight, and what hides the rest."""
+        self.visible, self.inside = visible, inside
+        self.covers, self.hidden_by = covers, hidden_by
+
+    def confirm(self, identity: int, *, given: bool = False) -> None:
+        """Become the vehicle of this number, by hand if it is `given`: then without a doubt."""
+        self.identity, self.given = identity, given
+        if given:
+            self.log_odds = MOST_EVIDENCE
+
+    def resume(self, track: Track) -> None:
+        """Go on where the new track is that this hidden vehicle turned out to be."""
+        self.state, self.before, self.joined = track.state, track.before, track.serial
+        self.score = track.score
+        for label, votes in track.votes.items():
+            self.votes[label] = self.votes.get(label, 0.0) + votes
+        self.has_driven = self.has_driven or track.has_driven
+        self.unseen = self.undetected = 0.0
+        self.log_odds = max(self.log_odds, track.log_odds)
+        self.show(track.visible, track.inside, track.covers, None)
+        self.sides, self.partial = track.sides, track.partial
+
+    def name(self, label: str, score: float) -> None:
+        """Take score and class of its detection in this frame."""
+        self.score = score
         if label:
-            self.votes[label] = self.votes.get(label, 0.0) + max(weight, _LEAST_VOTE)
+            self.votes[label] = self.votes.get(label, 0.0) + max(score, _LEAST_VOTE)
+
+    def measured(self, sides: Array, *, is_whole: bool) -> None:
+        """Take the largest latest sides (2,) in px, and whether a detection showed all of it."""
+        self.sides = sides
+        self.partial = 0 if is_whole else self.partial + 1
+
+    def crowd(self, crowded: bool) -> int:
+        """Count the detections in a row that had another one beside them in the box."""
+        self.crowded = self.crowded + 1 if crowded else 0
+        return self.crowded
+
+    def shrink_to(self, edges: Array) -> None:
+        """Be no more than what is in a box (4,)."""
+        self.crowded = 0
+        self.sides = edges[2:] - edges[:2]
+        self.state.resize(edges)
+
+    def hold(self, edges: Array, deviations: Array) -> None:
+        """Take edges (4,) by the pixels, px, and their standard deviations."""
+        self.unseen = 0.0
+        self.state.measure(edges, deviations)
 
     def learn_colours(self, colours: Array) -> None:
         """Let the colours follow those of a box in plain sight."""
@@ -265,6 +253,24 @@ class Track:
         # The share is distributed as Beta(1, count - 2): two slopes, of twice as many coordinates.
         return straightness, -(count - 2) * math.log(max(1 - straightness, _STRAIGHTEST))
 
+    def prove(self, doubted: float, sample: Sample) -> None:
+        """Take the evidence by the score of a detection, of which it is not known what it shows."""
+        self.strength += doubted
+        if not (self.has_driven or self.given):
+            self.samples.append(sample)
+
+    def judge(self, *, is_likely: bool, has_driven: bool) -> None:
+        """Take what its detections so far say about its way and size."""
+        self.is_likely, self.has_driven = is_likely, has_driven
+
+    def miss(self, log_odds: float) -> None:
+        """Take evidence against it: it was not detected."""
+        self.log_odds -= log_odds
+
+    def lose(self, lost: bool) -> None:
+        """Be predicted no longer, or again."""
+        self.lost = lost
+
     @property
     def way(self) -> float:
         """Distance from its first detection, in its present widths; 0 before it."""
@@ -286,14 +292,15 @@ class Track:
 
     def estimate(self) -> TrackEstimate:
         """Estimate of this frame."""
-        mode = self.mode
+        mode, state = self.mode, self.state
         confidence = 1 / (1 + math.exp(-self.log_odds))
         hidden = mode in (TrackMode.OCCLUDED, TrackMode.LOST)
         return TrackEstimate(
             identity=self.identity,
             serial=self.serial,
-            box=self.state.box,
-            velocity=self.state.velocity,
+            joined=self.joined,
+            box=state.box,
+            velocity=state.velocity,
             mode=mode,
             confidence=confidence * (_HIDDEN_CONFIDENCE if hidden else 1.0),
             label=self.label,
@@ -304,59 +311,17 @@ class Track:
         )
 
 
-_OCCLUDER_SEEN = 3.0
-"""Nominal periods since it was seen, up to which a vehicle can hide others."""
-_NAMED_SHARE = 0.3
-"""Share of a vehicle above which the one that hides it is named as its occluder."""
-
-
 def edges_of(tracks: Sequence[Track]) -> Array:
     """Return the edges (T, 4) of tracks, px."""
     return np.array([track.state.edges for track in tracks]).reshape(-1, 4)
 
 
-def nearest_first(tracks: Sequence[Track], road: RoadPlane | None) -> list[Track]:
-    """Order vehicles by their distance from the camera.
-
-    Parameters
-    ----------
-    tracks : sequence of Track
-        Vehicles.
-    road : RoadPlane or None
-        Road that they stand on; None: the lower a vehicle stands in the image, the nearer it is.
-    """
-    edges = edges_of(tracks)
-    feet = np.column_stack([(edges[:, 0] + edges[:, 2]) / 2, edges[:, 3]])
-    nearness = feet[:, 1] if road is None else road.homography.nearness(road.ideal(feet))
-    # What a lens cannot show is out of the image, and last.
-    distances = np.nan_to_num(-nearness, nan=np.inf).tolist()
-    order = sorted(range(len(tracks)), key=lambda index: (distances[index], tracks[index].serial))
-    return [tracks[index] for index in order]
-
-
-def cover(tracks: Sequence[Track], size: tuple[int, int], occlusions: bool) -> None:
-    """Note what of each vehicle is in sight.
-
-    Parameters
-    ----------
-    tracks : sequence of Track
-        Nearest first.
-    size : (int, int)
-        Width and height of the image.
-    occlusions : bool
-        False: no vehicle hides another.
-    """
-    nearer: list[Track] = []
-    edges = np.empty((0, 4))
+def predict(tracks: Sequence[Track], horizon: float, elapsed: float, drive: Drive) -> list[Track]:
+    """Predict vehicles below a horizon (row in px), and return those whose states are sound."""
+    states = VehicleState.stacked([track.state for track in tracks])
     for track in tracks:
-        own = track.state.edges
-        common = intersections(own, edges) / areas(own)
-        track.covers = edges[common > 0]
-        track.visible = max(1 - float(common.sum()), 0.0)
-        track.inside = inside_image(own, size)
-        track.hidden_by = None
-        if len(common) and common.max() > _NAMED_SHARE:
-            track.hidden_by = nearer[int(common.argmax())].identity
-        if occlusions and track.confirmed and track.unseen <= _OCCLUDER_SEEN and not track.lost:
-            nearer.append(track)
-            edges = np.vstack([edges, own])
+        track.go_on(elapsed)
+    states.move_horizon(horizon)
+    states.predict(elapsed, drive)
+    states.give_back([track.state for track in tracks])
+    return [track for track, sound in zip(tracks, states.is_sound.tolist(), strict=True) if sound]

@@ -32,11 +32,12 @@ from vehicle_pf_tracker.trackers.traffic.association import (
     GATE,
     FrameDetections,
     assign,
+    cut_edges,
     fits,
     former,
     pair_costs,
-    resume,
 )
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import (
     SHIPPED,
     DetectionEvidence,
@@ -47,17 +48,14 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
-from vehicle_pf_tracker.trackers.traffic.measuring import first_state, is_cut, measure
+from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure
+from vehicle_pf_tracker.trackers.traffic.occlusion import cover, nearest_first
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.pixel_hold import PixelHold
 from vehicle_pf_tracker.trackers.traffic.track import (
-    MOST_EVIDENCE,
-    ColourBins,
     Track,
-    cover,
     edges_of,
-    nearest_first,
-    similarity,
+    predict,
 )
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge
 
@@ -65,10 +63,6 @@ _VEHICLE_WIDTH = 1.8
 """Width of a car in m, by which speeds and accelerations become widths."""
 _FOCAL = 1.2
 """Focal length, of the image's width: that of a camera with a field of view of 45 degrees."""
-_RECENT = 4.0
-"""Nominal periods since it was seen, up to which a track chooses first among the detections."""
-_STRONG = -0.4
-"""Least log odds of a detection that is offered to the tracks in the first round."""
 _NESTED = 0.7
 """Share of a detection inside a detected vehicle above which it is a part of that vehicle."""
 _LEARNING_SHARE = 0.8
@@ -145,10 +139,9 @@ class TrafficTracker:
             One for every vehicle that is followed, by identity, tentative ones last.
         """
         self._look(frame)
-        for track in self._tracks:
-            track.predict(elapsed)
-        self._drop_bad_states()
-        self._tracks = nearest_first(self._tracks, self.road)
+        followed = predict(self._tracks, self._row, elapsed, self._drive)
+        self.bad_states += len(self._tracks) - len(followed)
+        self._tracks = nearest_first(followed, self.road)
         cover(self._tracks, self._size, self.parameters.occlusions)
         normals = self._rng.standard_normal((self.parameters.num_particles, 3))
         if detections is not None:
@@ -174,10 +167,8 @@ class TrafficTracker:
             raise RuntimeError("show the tracker a frame before adding a vehicle")
         check_target(box, *self._size)
         track = self._begin(np.array([*box.corners[0], *box.corners[2]]))
-        track.vote(label, 1.0)
-        track.given = True
-        self._confirm(track)
-        track.log_odds = MOST_EVIDENCE
+        track.name(label, 1.0)
+        self._confirm(track, given=True)
         track.learn_colours(self._colours.histogram(track.state.edges, track.covers))
         return track.identity
 
@@ -226,42 +217,28 @@ class TrafficTracker:
         self._row = self._horizon.look(
             self.parameters.motion.horizon, growths, self._size, self.road
         )
-        for track in self._tracks:
-            track.state.move_horizon(self._row)
 
     def _take(self, detections: Detections, elapsed: float) -> None:
         """Give the detections to the tracks; what is left over may be new vehicles."""
         self._evidence.look()
         found = FrameDetections(detections, self._evidence, self._colours, self._size)
-        recent = [one for one in self._tracks if one.confirmed and one.unseen < _RECENT]
-        strong = np.flatnonzero(found.log_odds >= _STRONG).tolist()
-        self._match(recent, found, strong)
-        self._drop_parts(found)
-        self._match([one for one in self._tracks if one.confirmed], found, found.free)
-        self._drop_parts(found)
+        self._match([one for one in self._tracks if one.confirmed], found)
+        self._drop_inside(
+            [one for one in self._tracks if one.confirmed and not one.undetected], found
+        )
         self._match_tentative([one for one in self._tracks if not one.confirmed], found)
+        self._merge_twins()
         self._existence.fade(self._tracks, elapsed)
-        there = edges_of([one for one in self._tracks if one.confirmed and one.unseen < _RECENT])
+        self._drop_inside([one for one in self._tracks if one.confirmed], found, either=True)
         for index in found.free:
-            if _is_taken(found.edges[index], there):
-                self._evidence.learn(found.samples[index], False, alone=False)
-            else:
-                self._begin_from(found, index)
+            self._begin_from(found, index)
 
-    def _match(
-        self, tracks: Sequence[Track], found: FrameDetections, indices: Sequence[int]
-    ) -> None:
-        """Pair tracks that have no detection yet with some of the free detections."""
-        tracks = [track for track in tracks if track.undetected > 0]
-        indices = [index for index in indices if index in found.free]
-        if not tracks or not indices:
-            return
-        settings = self.parameters.detections
-        pairs = assign(pair_costs(tracks, found, indices, settings, self._numbers))
-        for _, column in pairs:
-            found.free.remove(indices[column])
-        for row, column in pairs:
-            self._correct(tracks[row], found, indices[column])
+    def _match(self, tracks: Sequence[Track], found: FrameDetections) -> None:
+        """Pair confirmed tracks with detections."""
+        if tracks and found.free:
+            settings = self.parameters.detections
+            pairs = assign(pair_costs(tracks, found, settings, self._numbers))
+            self._correct([(tracks[row], column, 0.0) for row, column in pairs], found)
 
     def _match_tentative(self, tracks: Sequence[Track], found: FrameDetections) -> None:
         """Pair new tracks with free detections that are rather theirs than false alarms."""
@@ -269,80 +246,96 @@ class TrafficTracker:
             return
         indices = found.free.copy()
         odds = fits(tracks, found, indices, self.parameters.detections.edge_noise)
-        for row, column in assign(GATE - odds):
-            found.free.remove(indices[column])
-            self._correct(tracks[row], found, indices[column], float(odds[row, column]))
+        pairs = assign(GATE - odds)
+        fitting = [(tracks[row], indices[one], float(odds[row, one])) for row, one in pairs]
+        self._correct(fitting, found)
 
-    def _correct(self, track: Track, found: FrameDetections, index: int, fit: float = 0.0) -> None:
-        """Correct a track by its detection."""
+    def _correct(self, pairs: Sequence[tuple[Track, int, float]], found: FrameDetections) -> None:
+        """Correct tracks by their detections; the log odds by their places are of new tracks."""
+        if not pairs:
+            return
+        tracks, indices = [track for track, _, _ in pairs], [index for _, index, _ in pairs]
+        taken = set(indices)
+        found.free = [index for index in found.free if index not in taken]
+        edges = found.edges[indices]
         settings = self.parameters.detections
-        edges = found.edges[index]
-        others = np.delete(found.edges, index, axis=0)
-        whole = measure(track, edges, settings.edge_noise, settings.covered, self._size, others)
-        track.score = float(found.scores[index])
-        track.vote(found.labels[index], track.score)
-        if whole and track.visible > _LEARNING_SHARE:
-            track.learn_colours(found.histogram(index))
-            if not is_cut(edges, self._size):
-                track.growth.add(edges)
-        if self._existence.detected(track, found, index, fit):
-            self._confirm(track)
+        whole = measure(tracks, edges, settings, self._size, found.edges)
+        cut = np.asarray(cut_edges(edges, self._size).any(axis=1))
+        for (track, index, fit), is_whole, is_cut in zip(pairs, whole, cut, strict=True):
+            track.name(found.labels[index], float(found.scores[index]))
+            if is_whole and track.visible > _LEARNING_SHARE:
+                track.learn_colours(found.histogram(index))
+                if not is_cut:
+                    track.growth.add(found.edges[index])
+            if self._existence.detected(track, found, index, fit):
+                self._confirm(track)
 
-    def _confirm(self, track: Track) -> None:
+    def _merge_twins(self) -> None:
+        """Merge vehicles that were born a second time with the ones that they are."""
+        missed = [one for one in self._tracks if one.confirmed and one.undetected]
+        if not (missed and self.parameters.returning):
+            return
+        longest = max(one.undetected for one in missed)
+        for track in self._tracks.copy():
+            if not track.confirmed or track.undetected or track.age >= longest or track.given:
+                continue
+            if (twin := former(track, missed)) is not None:
+                twin.resume(track)
+                self._tracks.remove(track)
+                missed.remove(twin)
+
+    def _confirm(self, track: Track, *, given: bool = False) -> None:
         """Give a new vehicle its number, unless it is one that was hidden."""
-        may_return = self.parameters.returning and not track.given
+        may_return = self.parameters.returning and not given
         if may_return and (hidden := former(track, self._tracks)) is not None:
-            resume(hidden, track)
+            hidden.resume(track)
             self._tracks.remove(track)
             return
         self.last_identity += 1
-        track.identity = self.last_identity
+        track.confirm(self.last_identity, given=given)
 
-    def _drop_parts(self, found: FrameDetections) -> None:
-        """Drop detections inside vehicles that have one: their bonnets, or second boxes."""
-        detected = [one for one in self._tracks if one.confirmed and one.undetected == 0]
-        boxes = edges_of(detected)
-        for index in tuple(found.free):
-            edges = found.edges[index]
-            if (intersections(edges, boxes) > _NESTED * areas(edges)).any():
+    def _drop_inside(
+        self, tracks: Sequence[Track], found: FrameDetections, *, either: bool = False
+    ) -> None:
+        """Drop free detections that are inside vehicles, bonnets or second boxes, or `either`."""
+        boxes, edges = edges_of(tracks), found.edges[found.free, np.newaxis]
+        smaller = np.minimum(areas(boxes), areas(edges)) if either else areas(edges)
+        inside = np.asarray((intersections(edges, boxes) > _NESTED * smaller).any(axis=1))
+        for index, is_inside in zip(found.free.copy(), inside.tolist(), strict=True):
+            if is_inside:
                 found.free.remove(index)
                 self._evidence.learn(found.samples[index], False, alone=False)
 
     def _begin_from(self, found: FrameDetections, index: int) -> None:
         """Take a detection for a new vehicle, as yet without evidence."""
-        edges = found.edges[index]
-        track = self._begin(edges)
-        track.score = float(found.scores[index])
-        track.vote(found.labels[index], track.score)
+        track = self._begin(found.edges[index])
+        track.name(found.labels[index], float(found.scores[index]))
         track.learn_colours(found.histogram(index))
         if self._existence.begun(track, found, index):
             self._confirm(track)
 
-    def _begin(self, edges: Array) -> Track:
-        """Begin a track in a box."""
-        parameters, period = self.parameters, self.frame_period
-        drive = Drive(
-            acceleration=parameters.motion.acceleration * period**2 / _VEHICLE_WIDTH,
-            top_speed=parameters.motion.top_speed * period / _VEHICLE_WIDTH,
+    @property
+    def _drive(self) -> Drive:
+        motion, period = self.parameters.motion, self.frame_period
+        return Drive(
+            acceleration=motion.acceleration * period**2 / _VEHICLE_WIDTH,
+            top_speed=motion.top_speed * period / _VEHICLE_WIDTH,
             focal=_FOCAL * self._size[0],
         )
+
+    def _begin(self, edges: Array) -> Track:
+        """Begin a track in a box."""
         # A horizon below the box would have it drive on the sky.
         horizon = min(self._row, float(edges[Edge.BOTTOM]) - 1)
         self._serial += 1
-        state = first_state(edges, parameters.detections.edge_noise, horizon, drive, self._size)
+        noise = self.parameters.detections.edge_noise
+        state = first_state(edges, noise, horizon, self._drive, self._size)
         track = Track(self._serial, state)
         self._tracks.append(track)
         return track
 
-    def _drop_bad_states(self) -> None:
-        """Drop vehicles of an unsound state: association with them would fail for all."""
-        sound = [track for track in self._tracks if track.state.is_sound]
-        self.bad_states += len(self._tracks) - len(sound)
-        self._tracks = sound
-
     def _end(self) -> None:
         """End tracks that are no vehicles, or have left; the horizon is learnt from the others."""
-        self._drop_bad_states()
         kept = self._existence.survivors(self._tracks, self._size, self.frame_period)
         for track in self._tracks:
             if track.confirmed and track not in kept:
@@ -355,9 +348,3 @@ class TrafficTracker:
             if track.confirmed and track.undetected == 0:
                 now = self._colours.histogram(track.state.edges, track.covers)
                 track.learn_similarity(similarity(track.colours, now))
-
-
-def _is_taken(edges: Array, boxes: Array) -> bool:
-    """Test whether a tracked vehicle is where a new one would begin."""
-    smaller = np.minimum(areas(boxes), areas(edges))
-    return bool((intersections(edges, boxes) > _NESTED * smaller).any())

@@ -19,16 +19,19 @@ proportional to the distance from the camera, so that a vehicle of constant spee
 speed and a size in the image that follow from v: (x, v, width, height) in px, and the velocities
 across and along the road, in units in which a place on the road is (x / v, 1 / v). The Gaussian is
 carried exactly where measurements are linear in it (boxes), and by particles where they are not
-(pixels): the Gaussian particle filter of Kotecha and Djuric (2003).
+(pixels): the Gaussian particle filter of Kotecha and Djuric (2003). The states of all vehicles are
+stacked, predicted and measured in one go.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
@@ -87,6 +90,9 @@ OBSERVATION = np.array(
 _HIGHEST_MEAN = np.full(6, _LARGEST)
 _LOWEST_MEAN = np.array([-_LARGEST, _LEAST, _LEAST, _LEAST, -_LARGEST, -_LARGEST])
 """Bounds of the mean, by component."""
+_TINY = float(np.finfo(float).tiny)
+_LEAST_SEEN = np.array([_NEAREST_HORIZON, 1.0, 1.0])
+"""Least distance from the horizon, width and height of what is measured, px."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +115,7 @@ class Drive:
 
 
 class VehicleState:
-    """Gaussian over a vehicle's place, size and velocity.
+    """Gaussian over a vehicle's place, size and velocity, or over those of N vehicles at once.
 
     Parameters
     ----------
@@ -121,149 +127,184 @@ class VehicleState:
         Row of the horizon in px.
     drive : Drive
         Motion of vehicles.
+
+    Attributes
+    ----------
+    mean : (6,) or (N, 6) array
+        Mean of the state.
+    covariance : (6, 6) or (N, 6, 6) array
+        Its covariance.
+    horizon : () or (N,) array
+        Row of the horizon in px.
+    edges : (4,) or (N, 4) array
+        Left, top, right and bottom in px.
     """
 
     def __init__(self, edges: Array, deviations: Array, horizon: float, drive: Drive) -> None:
-        self.horizon = horizon
-        self._drive = drive
         left, top, right, bottom = edges.tolist()
-        width, height = right - left, bottom - top
         v = max(bottom - horizon, _NEAREST_HORIZON)
-        self.mean = np.array([(left + right) / 2, v, width, height, 0.0, 0.0])
-        sides = deviations**2
-        speed = drive.top_speed * width / v
-        self.covariance = np.diag(
-            [
-                (sides[Edge.LEFT] + sides[Edge.RIGHT]) / 4,
-                sides[Edge.BOTTOM],
-                sides[Edge.LEFT] + sides[Edge.RIGHT],
-                sides[Edge.TOP] + sides[Edge.BOTTOM],
-                speed**2,
-                (speed / drive.focal) ** 2,
-            ]
-        )
+        self.horizon = np.array(horizon)
+        self.mean = np.array([(left + right) / 2, v, right - left, bottom - top, 0.0, 0.0])
+        by_left, by_top, by_right, by_bottom = (deviations**2).tolist()
+        width, height = by_left + by_right, by_top + by_bottom
+        speed = (drive.top_speed * (right - left) / v) ** 2
+        along = speed / drive.focal**2
+        variances = width / 4, by_bottom, width, height, speed, along
+        self.covariance: Array = np.diag(variances)
+        self._settle()
 
-    @property
-    def edges(self) -> Array:
-        """Left, top, right and bottom in px."""
-        # As `OBSERVATION` says, without its product: this is asked most often of all.
-        x, v, w, h = self.mean[:ACROSS].tolist()
-        return np.array([x - w / 2, v - h + self.horizon, x + w / 2, v + self.horizon])
+    @classmethod
+    def stacked(cls, states: Sequence[VehicleState]) -> VehicleState:
+        """Stack the states of several vehicles; `give_back` hands them what became of it."""
+        self = cls.__new__(cls)
+        self.mean = np.array([one.mean for one in states]).reshape(-1, 6)
+        self.covariance = np.array([one.covariance for one in states]).reshape(-1, 6, 6)
+        self.horizon = np.array([one.horizon for one in states])
+        self.edges = np.array([one.edges for one in states]).reshape(-1, 4)
+        return self
+
+    def give_back(self, states: Sequence[VehicleState]) -> None:
+        """Let each vehicle have its row of the stack."""
+        for index, one in enumerate(states):
+            one.mean, one.covariance = self.mean[index], self.covariance[index]
+            one.horizon, one.edges = self.horizon[index], self.edges[index]
 
     @property
     def box(self) -> Box:
-        """Box in px."""
+        """Box of one vehicle in px."""
         left, top, right, bottom = self.edges.tolist()
         return Box(left, top, max(right - left, 1.0), max(bottom - top, 1.0))
 
     @property
     def edge_covariance(self) -> Array:
-        """Covariance of the edges, (4, 4) in px²."""
+        """Covariance of the edges, (..., 4, 4) in px²."""
         return np.asarray(OBSERVATION @ self.covariance @ OBSERVATION.T)
 
     @property
-    def is_sound(self) -> bool:
+    def is_sound(self) -> npt.NDArray[np.bool_]:
         """True while the state is a Gaussian: finite, and of positive variances."""
-        total = float(self.mean.sum() + self.covariance.sum())
-        return math.isfinite(total) and float(self.covariance.diagonal().min()) > 0
+        totals = self.mean.sum(axis=-1) + self.covariance.sum(axis=(-2, -1))
+        variances = self.covariance.diagonal(axis1=-2, axis2=-1)
+        return np.asarray(np.isfinite(totals) & (variances > 0).all(axis=-1))
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """Velocity of the box's centre in px per nominal period."""
+        """Velocity of the box's centre of one vehicle, px per nominal period."""
         x, v, _, h, across, along = self.mean.tolist()
         growth = -along * v
         return x * growth + across * v, (v - h / 2) * growth
 
     @property
     def road_size(self) -> float:
-        """Side of the box over the distance from the horizon: the same all along the road."""
-        return math.sqrt(self.mean[W] * self.mean[H]) / float(self.mean[V])
+        """Side of a box over the distance from the horizon: the same all along the road."""
+        _, v, w, h, _, _ = self.mean.tolist()
+        return math.sqrt(w * h) / float(v)
 
     @property
     def speed_ratio(self) -> float:
-        """Distance of the velocity on the road from zero, in standard deviations."""
-        velocity = self.mean[ACROSS:]
-        return math.sqrt(velocity @ np.linalg.solve(self.covariance[ACROSS:, ACROSS:], velocity))
+        """Distance of a velocity on the road from zero, in standard deviations."""
+        across, along = self.mean[ACROSS:].tolist()
+        (first, both), (_, second) = self.covariance[ACROSS:, ACROSS:].tolist()
+        squared = across**2 * second - 2 * across * along * both + along**2 * first
+        return math.sqrt(max(squared, 0.0) / max(first * second - both**2, _TINY))
 
-    def predict(self, elapsed: float) -> None:
+    def predict(self, elapsed: float, drive: Drive) -> None:
         """Drive on for `elapsed` nominal periods."""
-        x, v, w, h, across, along = self.mean.tolist()
+        x, v, w, h, across, along = np.moveaxis(self.mean, -1, 0)
         bound = _FASTEST_APPROACH ** min(elapsed, _LONGEST_APPROACH)
         divisor = 1 + v * along * elapsed
-        growth = 1 / min(max(divisor, 1 / bound), bound)
-        by_v, by_along = -along * elapsed * growth**2, -v * elapsed * growth**2
-        if not 1 / bound <= divisor <= bound:  # there the growth depends on nothing
-            by_v = by_along = 0.0
+        growth = 1 / np.clip(divisor, 1 / bound, bound)
+        free = (divisor >= 1 / bound) & (divisor <= bound)  # else the growth depends on nothing
+        by_v, by_along = free * -along * elapsed * growth**2, free * -v * elapsed * growth**2
         driven = x + v * across * elapsed
-        self.mean = np.array([driven * growth, v * growth, w * growth, h * growth, across, along])
-        step = np.eye(6)
-        step[X, X] = step[W, W] = step[H, H] = growth
-        step[X, V] = across * elapsed * growth + driven * by_v
-        step[X, ACROSS] = v * elapsed * growth
-        step[X, ALONG] = driven * by_along
-        step[V, V] = growth + v * by_v
-        step[V, ALONG] = v * by_along
-        step[W, V], step[W, ALONG] = w * by_v, w * by_along
-        step[H, V], step[H, ALONG] = h * by_v, h * by_along
-        push = self._drive.acceleration * w / v
-        self.covariance = step @ self.covariance @ step.T
-        self.covariance[ACROSS, ACROSS] += push**2 * elapsed
-        self.covariance[ALONG, ALONG] += (push / self._drive.focal) ** 2 * elapsed
-        self.covariance[W, W] += (_SIZE_WALK * w) ** 2 * elapsed
-        self.covariance[H, H] += (_SIZE_WALK * h) ** 2 * elapsed
+        step = np.zeros_like(self.covariance)
+        step[..., ACROSS, ACROSS] = step[..., ALONG, ALONG] = 1.0
+        step[..., X, X] = step[..., W, W] = step[..., H, H] = growth
+        step[..., X, V] = across * elapsed * growth + driven * by_v
+        step[..., X, ACROSS] = v * elapsed * growth
+        step[..., X, ALONG] = driven * by_along
+        step[..., V, V] = growth + v * by_v
+        step[..., V, ALONG] = v * by_along
+        step[..., W, V], step[..., W, ALONG] = w * by_v, w * by_along
+        step[..., H, V], step[..., H, ALONG] = h * by_v, h * by_along
+        sides = [driven * growth, v * growth, w * growth, h * growth, across, along]
+        self.mean = np.stack(sides, axis=-1)
+        push = drive.acceleration * w / v
+        self._transform(step)
+        self.covariance[..., ACROSS, ACROSS] += push**2 * elapsed
+        self.covariance[..., ALONG, ALONG] += (push / drive.focal) ** 2 * elapsed
+        self.covariance[..., W, W] += (_SIZE_WALK * w) ** 2 * elapsed
+        self.covariance[..., H, H] += (_SIZE_WALK * h) ** 2 * elapsed
         self._bound()
+        self._settle()
 
     def resize(self, edges: Array) -> None:
         """Take a box (4,) for the vehicle's without doubt; it drives as before."""
         left, top, right, bottom = edges.tolist()
-        v = max(bottom - self.horizon, _NEAREST_HORIZON)
+        v = max(bottom - float(self.horizon), _NEAREST_HORIZON)
         self.mean[:ACROSS] = (left + right) / 2, v, right - left, bottom - top
+        self._settle()
 
     def move_horizon(self, horizon: float) -> None:
         """Take another row (px) for the horizon; box and velocity of the lower edge stay.
 
         Where the horizon leaps, size and speed become uncertain.
         """
-        if abs(horizon - self.horizon) < _HORIZON_MOVED * self.mean[V]:
+        x, v = self.mean[..., X], self.mean[..., V].copy()
+        moved = np.abs(horizon - self.horizon) >= _HORIZON_MOVED * v
+        if not moved.any():
             return
-        x, v = self.mean[: V + 1].tolist()
-        new = max(v + self.horizon - horizon, _NEAREST_HORIZON)
+        new = np.where(moved, np.maximum(v + self.horizon - horizon, _NEAREST_HORIZON), v)
         ratio, self.horizon = v / new, v + self.horizon - new
-        step = np.eye(6)
-        step[ALONG, ALONG] = ratio**2
-        step[ACROSS, ACROSS] = ratio
-        step[ACROSS, ALONG] = x * (ratio - 1) * ratio
-        self.mean = step @ self.mean
-        self.mean[V] = new
-        self.covariance = step @ self.covariance @ step.T
+        step = np.zeros_like(self.covariance)
+        step[..., range(6), range(6)] = 1.0
+        step[..., ALONG, ALONG] = ratio**2
+        step[..., ACROSS, ACROSS] = ratio
+        step[..., ACROSS, ALONG] = x * (ratio - 1) * ratio
+        self.mean = (step @ self.mean[..., np.newaxis])[..., 0]
+        self.mean[..., V] = new
+        self._transform(step)
         # Size and speed along the road were learnt with the other horizon, and hold the less, the
         # farther it was; the speed across was seen.
-        doubt = max(abs(np.log(ratio)) - _HORIZON_LEAPT, 0.0) * self.mean
-        doubt[[X, V, ACROSS]] = 0.0
-        self.covariance += np.diag(doubt**2)
+        doubt = np.maximum(np.abs(np.log(ratio)) - _HORIZON_LEAPT, 0.0)
+        for part in (W, H, ALONG):
+            self.covariance[..., part, part] += (doubt * self.mean[..., part]) ** 2
         self._bound()
+        self._settle()
 
-    def measure(self, edge: Edge, value: float, deviation: float) -> None:
-        """Take the measurement of an edge in px, of this standard deviation."""
-        row = OBSERVATION[edge]
-        offset = self.horizon if edge in (Edge.TOP, Edge.BOTTOM) else 0.0
-        self._correct(row, value - offset - float(row @ self.mean), deviation**2)
+    def measure(self, edges: Array, deviations: Array) -> None:
+        """Take measured edges (..., 4) in px of these standard deviations; infinite: not seen."""
+        for edge in Edge:
+            row = OBSERVATION[edge]
+            spread = self.covariance @ row
+            offset = self.horizon if edge in (Edge.TOP, Edge.BOTTOM) else 0.0
+            residual = edges[..., edge] - offset - self.mean @ row
+            variance = spread @ row + deviations[..., edge] ** 2
+            gain = spread / variance[..., np.newaxis]
+            self.mean = self.mean + gain * residual[..., np.newaxis]
+            self.mean[..., V:ACROSS] = np.maximum(self.mean[..., V:ACROSS], _LEAST_SEEN)
+            self.covariance = self.covariance - gain[..., np.newaxis] * spread[..., np.newaxis, :]
+        self._settle()
 
-    def _correct(self, row: Array, residual: float, variance: float) -> None:
-        spread = self.covariance @ row
-        gain = spread / (float(row @ spread) + variance)
-        self.mean = self.mean + gain * residual
-        self.covariance = self.covariance - np.outer(gain, spread)
-        self.mean[V] = max(self.mean[V], _NEAREST_HORIZON)
-        self.mean[W], self.mean[H] = max(self.mean[W], 1.0), max(self.mean[H], 1.0)
+    def _transform(self, step: Array) -> None:
+        self.covariance = step @ self.covariance @ np.swapaxes(step, -2, -1)
 
     def _bound(self) -> None:
         """Keep a prediction within bounds; a vehicle that is in sight is far inside them."""
         self.mean = np.clip(self.mean, _LOWEST_MEAN, _HIGHEST_MEAN)
-        variances = self.covariance.diagonal()
-        if variances.max() <= _VAGUEST**2:
+        variances = self.covariance.diagonal(axis1=-2, axis2=-1)
+        if variances.max(initial=0.0) <= _VAGUEST**2:
             return
         # Scaled from both sides a covariance stays one, and correlations stay what they are.
-        shares = np.minimum(_VAGUEST / np.sqrt(variances), 1.0)
-        bounded = self.covariance * np.outer(shares, shares)
-        self.covariance = (bounded + bounded.T) / 2
+        with np.errstate(invalid="ignore"):  # of an unsound one, which is dropped
+            shares = np.minimum(_VAGUEST / np.sqrt(variances), 1.0)
+        bounded = self.covariance * (shares[..., np.newaxis] * shares[..., np.newaxis, :])
+        self.covariance = (bounded + np.swapaxes(bounded, -2, -1)) / 2
+
+    def _settle(self) -> None:
+        """Derive the edges, as `OBSERVATION` says."""
+        x, v, half = self.mean[..., X], self.mean[..., V], self.mean[..., W] / 2
+        self.edges = np.empty((*self.mean.shape[:-1], len(Edge)))
+        self.edges[..., Edge.LEFT], self.edges[..., Edge.RIGHT] = x - half, x + half
+        self.edges[..., Edge.BOTTOM] = bottom = v + self.horizon
+        self.edges[..., Edge.TOP] = bottom - self.mean[..., H]

@@ -16,7 +16,7 @@
 
 import pytest
 
-from vehicle_pf_tracker.core.running_level import RunningLevel
+from vehicle_pf_tracker.trackers.evidence import RunningLevel
 
 
 def level_of(*values, rate=0.5):

@@ -12,17 +12,78 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Mean velocity of the estimates, which gives P1 its principal motion direction."""
+"""Parts of variants of several papers: colour likelihood, mean velocity and parameters."""
 
 from __future__ import annotations
 
+import functools
 from collections import deque
 from collections.abc import Iterable
+from dataclasses import dataclass
 from itertools import islice
 from typing import TypeAlias
 
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.filtering.weights import Weights
+from vehicle_pf_tracker.image.similarity import hellinger_distance
+from vehicle_pf_tracker.parameters.table import parameter
+
 Vector: TypeAlias = tuple[float, float]
 _Move: TypeAlias = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class LikelihoodParameters:
+    """Decrease of the weights with the distance of the histograms."""
+
+    sigma_v: float = parameter(
+        0.1, "Smaller: weights fall faster as a particle's histogram departs from the reference.",
+        bounds=(1e-3, 100.0), source="P1 eq. 25, interpretation 1 (printed: 1.5)", tuned=True,
+    )  # fmt: skip
+    squared_distance: bool = parameter(
+        True, "False takes the distance unsquared, as printed; the weights are then almost flat.",
+        source="P1 eq. 25, interpretation 1",
+    )  # fmt: skip
+
+
+def log_likelihood(coefficients: Array, parameters: LikelihoodParameters) -> Weights:
+    """Logarithm of equation 25 without its constant factor.
+
+    Parameters
+    ----------
+    coefficients : (N,) array
+        Bhattacharyya coefficients of the particles' histograms with the reference.
+    parameters : LikelihoodParameters
+        Spread of the distance, and whether it is squared.
+
+    Returns
+    -------
+    (N,) array
+        ``-d_B² / (2 sigma_v²)``, or with ``d_B`` in place of its square.
+    """
+    distance = hellinger_distance(coefficients)
+    if parameters.squared_distance:
+        distance = np.square(distance)
+    return np.asarray(distance / (-2 * parameters.sigma_v**2))
+
+
+as_printed_switch = functools.partial(
+    parameter, False, "Follow the paper to the letter: overrides every interpretation below."
+)
+"""Make the switch that follows the paper to the letter; `source` names what it undoes."""
+histogram_bits_parameter = functools.partial(
+    parameter, 3, "More: finer colours, more easily upset by light and noise.", bounds=(1, 5),
+    unit="bits/channel", source="P1 section III-C", effect="relearns",
+)  # fmt: skip
+"""Make the resolution of joint colour histograms."""
+resampling_parameter = functools.partial(
+    parameter, "multinomial", "How ancestors are drawn; systematic and stratified vary less.",
+    choices=SCHEMES,
+)  # fmt: skip
+"""Make the choice of a resampling scheme; `source` is where the paper resamples."""
 
 
 class MeanVelocity:

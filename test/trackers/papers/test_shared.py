@@ -14,7 +14,7 @@
 
 import pytest
 
-from vehicle_pf_tracker.trackers.papers.mean_velocity import MeanVelocity
+from vehicle_pf_tracker.trackers.papers.shared import MeanVelocity
 
 
 def moved(velocity, *steps):

@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.calibration import (
+from vehicle_pf_tracker.parameters.road import (
     format_pairs,
     parse_lens,
     parse_numbers,

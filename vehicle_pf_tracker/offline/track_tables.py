@@ -1,0 +1,82 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Tables that a run over many vehicles has written, as arrays or data frames."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.offline.traffic_results import COUNTS, TRACKS
+
+_INTEGERS = {"frame", "stamp_ns", "id"}
+_TEXTS = {"mode", "label", "hidden_by", "place", "direction"}
+
+
+def read_tracks(folder: str | Path, *, pandas: bool = False) -> Any:
+    """Read ``tracks.csv`` of a folder that `traffic` has written.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The folder.
+    pandas : bool
+        Return a data frame instead.
+
+    Returns
+    -------
+    numpy.recarray or pandas.DataFrame
+        A row for each vehicle and frame, with the columns of the file; NaN where it has no number.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or pandas is not installed.
+    """
+    return _read(Path(folder) / TRACKS, pandas)
+
+
+def read_counts(folder: str | Path, *, pandas: bool = False) -> Any:
+    """Read ``counts.csv``, a row for each crossing; see `read_tracks`."""
+    return _read(Path(folder) / COUNTS, pandas)
+
+
+def _read(path: Path, as_frame: bool) -> Any:
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            names, *rows = csv.reader(file)
+        columns = {
+            name: _column(name, [row[index] for row in rows]) for index, name in enumerate(names)
+        }
+    except (OSError, ValueError, IndexError) as error:
+        raise InputError(f"cannot read the table {path}: {error}") from None
+    if not as_frame:
+        kinds = [(name, column.dtype) for name, column in columns.items()]
+        return np.rec.fromarrays(list(columns.values()), dtype=np.dtype(kinds))
+    try:
+        from pandas import DataFrame  # noqa: PLC0415 - no dependency of ours
+    except ImportError:
+        raise InputError("a data frame needs pandas: pip install pandas") from None
+    return DataFrame(columns)
+
+
+def _column(name: str, cells: list[str]) -> Any:
+    if name in _TEXTS:
+        return np.array(cells, str)
+    return np.array([cell or "nan" for cell in cells], np.int64 if name in _INTEGERS else float)

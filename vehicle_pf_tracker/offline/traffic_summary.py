@@ -1,0 +1,172 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Summary of a run over many vehicles: how many, of what class, through how many occlusions."""
+
+from __future__ import annotations
+
+from collections import Counter as Tally
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.watches import ENTRY, EXIT
+
+
+@dataclass(slots=True)
+class VehicleLog:
+    """Life of one vehicle in a run.
+
+    Attributes
+    ----------
+    label : str
+        Class; "" where it is unknown.
+    survived : int
+        Occlusions after which it was visible under the same number.
+    is_hidden : bool
+        True from the beginning of an occlusion until it is visible again.
+    """
+
+    label: str = ""
+    survived: int = 0
+    is_hidden: bool = False
+
+
+class TrafficSummary:
+    """Counts vehicles and occlusions, frame by frame.
+
+    Attributes
+    ----------
+    frames : int
+        Frames so far.
+    most_at_once : int
+        Largest number of confirmed vehicles in a frame.
+    vehicles : dict of int to VehicleLog
+        Every vehicle that was visible and confirmed, by its number.
+    """
+
+    def __init__(self) -> None:
+        self.frames = 0
+        self.most_at_once = 0
+        self.vehicles: dict[int, VehicleLog] = {}
+        self._occupancy: Tally[str] = Tally()
+        self._most_in_zone: dict[str, int] = {}
+
+    def add(self, estimates: Iterable[TrackEstimate], occupancy: Mapping[str, int]) -> None:
+        """Take the next frame, and the number of vehicles in each zone."""
+        self.frames += 1
+        confirmed = [one for one in estimates if one.mode in (*CONFIRMED, TrackMode.LOST)]
+        for one in confirmed:
+            self._follow(one)
+        present = sum(one.mode is not TrackMode.LOST for one in confirmed)
+        self.most_at_once = max(self.most_at_once, present)
+        for zone, count in occupancy.items():
+            self._occupancy[zone] += count
+            self._most_in_zone[zone] = max(count, self._most_in_zone.get(zone, 0))
+
+    def _follow(self, one: TrackEstimate) -> None:
+        is_visible = one.mode is TrackMode.TRACKING
+        vehicle = self.vehicles.get(one.identity)
+        if vehicle is None:
+            if is_visible:
+                self.vehicles[one.identity] = VehicleLog(one.label)
+            return
+        if is_visible:
+            vehicle.survived += vehicle.is_hidden
+            vehicle.label = one.label or vehicle.label
+        vehicle.is_hidden = not is_visible
+
+    @property
+    def survived(self) -> int:
+        """Occlusions after which a vehicle was visible under the same number."""
+        return sum(one.survived for one in self.vehicles.values())
+
+    @property
+    def ended_hidden(self) -> int:
+        """Vehicles that stayed invisible after their last occlusion."""
+        return sum(one.is_hidden for one in self.vehicles.values())
+
+    def sentences(self, counter: Counter) -> list[str]:
+        """Return the summary, a line for each fact."""
+        found = [
+            f"{_number(len(self.vehicles), 'vehicle')} in {self.frames} frames, at most "
+            f"{self.most_at_once} at once{self._classes()}",
+            f"{_number(self.survived, 'occlusion')} survived under the same number; "
+            f"{_number(self.ended_hidden, 'vehicle')} not seen again after an occlusion",
+        ]
+        return found + self._counts(counter)
+
+    def to_json(self, counter: Counter) -> dict[str, Any]:
+        """Return the summary for `run.json`."""
+        return {
+            "frames": self.frames,
+            "vehicles": len(self.vehicles),
+            "most_at_once": self.most_at_once,
+            "occlusions_survived": self.survived,
+            "ended_occluded": self.ended_hidden,
+            "counts": [
+                {"place": place, "direction": direction, "class": label, "count": count}
+                for (place, direction, label), count in sorted(counter.totals.items())
+            ],
+            "occupancy": {
+                zone.name: {
+                    "mean": self._mean_in(zone.name),
+                    "most": self._most_in_zone.get(zone.name, 0),
+                }
+                for zone in counter.plan.zones
+            },
+        }
+
+    def _classes(self) -> str:
+        classes = Tally(one.label for one in self.vehicles.values() if one.label)
+        return f" ({_listed(classes)})" if classes else ""
+
+    def _counts(self, counter: Counter) -> list[str]:
+        lines = [
+            f"line {line.name}: "
+            + ", ".join(_direction(counter, line.name, to) for to in line.directions)
+            for line in counter.plan.lines
+        ]
+        zones = [
+            f"zone {zone.name}: {counter.count(zone.name, ENTRY)} entered, "
+            f"{counter.count(zone.name, EXIT)} left, {self._mean_in(zone.name):.1f} there on "
+            f"average, at most {self._most_in_zone.get(zone.name, 0)}"
+            for zone in counter.plan.zones
+        ]
+        return lines + zones
+
+    def _mean_in(self, zone: str) -> float:
+        return self._occupancy[zone] / max(self.frames, 1)
+
+
+def _direction(counter: Counter, place: str, direction: str) -> str:
+    classes = Tally(
+        {
+            label: count
+            for (at, to, label), count in counter.totals.items()
+            if (at, to) == (place, direction) and label
+        }
+    )
+    known = f" ({_listed(classes)})" if classes else ""
+    return f"{counter.count(place, direction)} {direction}{known}"
+
+
+def _listed(classes: Tally[str]) -> str:
+    return ", ".join(f"{count} {label}" for label, count in classes.most_common())
+
+
+def _number(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -1,0 +1,190 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The second half of a step: follow the vehicle, and learn what it looks like."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.fusion.appearance import View, searched_size
+from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, hidden_hypotheses
+from vehicle_pf_tracker.trackers.fusion.observe import gathered
+from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
+from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
+from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
+from vehicle_pf_tracker.trackers.fusion.turning import Turned
+
+_STRONG = 0.8
+"""Probability of visibility from which the size is followed."""
+_WEAK_RESPONSE = 0.6
+"""Response below which sizes are not followed: a half-hidden vehicle looks smaller."""
+_WHOLE = 0.8
+"""Share of the surface from which the spread of points tells the size: what an occluder covers,
+shrinks."""
+_TURNING_STIFFNESS = 0.5
+"""Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
+turn by 90 degrees nothing that was learnt before stays right (scene `turn`, seed 100)."""
+_LEAST_LEVEL, _TURNING_LEVEL_RATE = 0.3, 0.3
+"""Least response that the usual one follows in a turn, and how fast: a new level in 3 frames."""
+_TURNING_SHARE, _TURNING_RESPONSE = 0.85, 0.7
+"""Share of the surface that still moves with a vehicle that turns, and response below which it
+does: it is learnt the faster then the lower the response, as what it looked like is out of date."""
+_LEAST_PLIANT = 0.2
+"""Response below which learning becomes no faster: five times the usual speed."""
+_LEAST_LEARNT = 0.5
+"""Response below which nothing is learnt: what is there differs in more than it agrees."""
+
+
+def follow(state: State, seen: Observation, step: Step) -> State:
+    """Follow a vehicle that is seen, or the prediction of one that is not."""
+    if state.turned is not None:
+        return _follow_outline(state, state.turned, step)
+    if state.visibility.is_seen:
+        return _follow_sighting(state, seen, step)
+    if not seen.again:
+        state = _entering_occlusion(state, step)
+    elif state.visibility is Visibility.GONE:
+        state = replace(state, particles=state.particles.all_visible(0.0))
+    return replace(state, position=step.inside(state.particles.mean))
+
+
+def _entering_occlusion(state: State, step: Step) -> State:
+    """Predict from the last clear sightings: the occluder has dragged later ones along."""
+    fitted = step.memory.sightings.fit()
+    if fitted is None:
+        return replace(state, particles=state.particles.all_visible(DOUBT), measured=state.size)
+    path, last = fitted
+    if not last.cut:
+        step.memory.turning.begin(path, last)
+    size = last.size * path.scale_at(last.age)
+    state = replace(state, size=size, measured=size)
+    count, sigma = step.parameters.num_particles, step.hidden_velocity_sigma
+    particles = hidden_hypotheses(step.rng, path, last.age, count, state.extent, sigma)
+    return replace(state, particles=particles)
+
+
+def _follow_sighting(state: State, seen: Observation, step: Step) -> State:
+    """Take position, velocity and, of a vehicle seen whole, size from the peak."""
+    state = _centred(state, seen, step)
+    sized = Work.SIZE in state.work and seen.response > _WEAK_RESPONSE
+    if sized and _is_sure(state):
+        state = _sized(state, step, again=seen.again)
+    step.memory.sightings.add(state.position, state.size, seen.response)
+    return state
+
+
+def _is_sure(state: State) -> bool:
+    """Test whether a vehicle is surely visible, and as a whole."""
+    return state.is_whole and state.particles.probability_visible > _STRONG
+
+
+def _centred(state: State, seen: Observation, step: Step) -> State:
+    """Centre the hypotheses on the sighting; their velocities take on the displacement."""
+    particles, position = state.particles, seen.position
+    if seen.again:
+        visible = particles.probability_visible
+        particles = gathered(state, step, position, particles.mean_velocity, visible)
+    else:
+        moved = (position - state.position) / max(step.elapsed, 1e-3)
+        gain = 1.0 if state.frames == 1 else step.parameters.motion.gain
+        velocities = particles.velocities + gain * (moved - particles.velocities)
+        centred = step.inside(particles.positions + (position - particles.mean))
+        particles = replace(particles, positions=centred, velocities=velocities)
+    return replace(state, particles=particles, position=position)
+
+
+def _sized(state: State, step: Step, *, again: bool) -> State:
+    """Follow the size by the spread of points on the vehicle, and by the filter's response."""
+    options, memory, size = step.parameters.size, step.memory, state.size
+
+    def peak(size: Array) -> float:
+        return memory.appearance.response_at(step.frame, state.position, size)
+
+    if not again and options.step and memory.surface.share > _WHOLE:
+        size = size * np.exp(memory.points.stretch / 2)
+    size = searched_size(size, state.frames // 2, peak, options)
+    return replace(state, size=step.bounded(size))
+
+
+def _follow_outline(state: State, turned: Turned, step: Step) -> State:
+    """Take position, size and velocity from the outline of a vehicle that turns."""
+    position, size = step.inside(turned.position), step.bounded(turned.size)
+    state = replace(state, position=position, size=size)
+    step.memory.sightings.add(position, size, 1.0)
+    particles = gathered(state, step, position, turned.velocity, 1 - DOUBT)
+    return replace(state, particles=particles)
+
+
+def learn(state: State, seen: Observation, step: Step) -> None:
+    """Learn from a vehicle that is seen; keep what the next frame is compared with."""
+    if state.turned is not None:
+        _learn_turn(state, seen.view, state.turned.position, step)
+    elif state.visibility.is_seen:
+        _learn_sighting(state, seen, step)
+    patch = step.memory.appearance.usual_patch(seen.view.patch)
+    if Work.SIZE in state.work:
+        step.memory.points.keep(patch, state.position)
+    step.memory.surface.keep(patch, state.position, state.size)
+
+
+def _learn_sighting(state: State, seen: Observation, step: Step) -> None:
+    """Learn the usual values, new points, and what the vehicle and strangers look like."""
+    memory = step.memory
+    if seen.again:
+        memory.points.restart()
+    if _is_sure(state) and seen.response > CLEAR_RESPONSE:
+        memory.surface.learn_usual()
+    if Work.SIZE in state.work:
+        memory.points.renew(state.position, state.size, whole=state.is_whole)
+    _learn_appearance(state, seen, step)
+    if state.work is not Work.BOTH:  # in full view
+        memory.appearance.remember(step.parameters.filter.memory, state.frames)
+    if state.is_whole:
+        memory.strangers.measure(seen.view, state.position, state.size)
+    if seen.again:  # what was kept shows an occluder; until now its share bounds the learning
+        memory.surface.restart()
+
+
+def _learn_turn(state: State, view: View, position: Array, step: Step) -> None:
+    """Learn fast what a vehicle that turns looks like now."""
+    appearance, points = step.memory.appearance, step.memory.points
+    points.restart()
+    points.renew(state.position, state.size)
+    response = min(max(view.at(position), _LEAST_LEVEL), 1.0)
+    appearance.learn_usual(response, _TURNING_LEVEL_RATE)
+    # Without a spectrum the cells are measured again, at the size that the outline tells.
+    bare = replace(view, spectrum=None)
+    appearance.learn(step.frame, bare, state.position, state.size, _TURNING_STIFFNESS)
+
+
+def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
+    """Train the filter on a whole or turning vehicle, the less the less surely it shows."""
+    memory, options, response = step.memory, step.parameters.filter, seen.response
+    surface, appearance = memory.surface, memory.appearance
+    turns = surface.tells and surface.share > _TURNING_SHARE and response < _TURNING_RESPONSE
+    turns &= not memory.turning.can_begin  # outlines tell more of a turn, size included
+    if not turns and (response <= _LEAST_LEARNT or not state.is_whole):
+        return
+    visible = state.particles.probability_visible
+    appearance.learn_usual(response, max(USUAL_RATE, 1 / (state.frames + 1)) * visible)
+    if Work.TRAINING not in state.work:
+        return
+    stiffness = options.stiffness / visible
+    if turns:
+        stiffness *= max(response, _LEAST_PLIANT)
+    appearance.learn(step.frame, seen.view, state.position, state.size, stiffness)

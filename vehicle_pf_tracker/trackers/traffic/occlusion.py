@@ -1,0 +1,80 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Occlusions among vehicles: whose lower edge is nearer on the road hides the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vehicle_pf_tracker.core.box import intersections
+from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.trackers.traffic.detections import NOTHING, areas, inside_image
+from vehicle_pf_tracker.trackers.traffic.track import Track, edges_of
+
+_OCCLUDER_SEEN = 3.0
+"""Nominal periods since it was seen, up to which a vehicle can hide others."""
+_NAMED_SHARE = 0.3
+"""Share of a vehicle above which the one that hides it is named as its occluder."""
+
+
+def nearest_first(tracks: Sequence[Track], road: RoadPlane | None) -> list[Track]:
+    """Order vehicles by their distance from the camera.
+
+    Parameters
+    ----------
+    tracks : sequence of Track
+        Vehicles.
+    road : RoadPlane or None
+        Road that they stand on; None: the lower a vehicle stands in the image, the nearer it is.
+    """
+    edges = edges_of(tracks)
+    feet = np.column_stack([(edges[:, 0] + edges[:, 2]) / 2, edges[:, 3]])
+    nearness = feet[:, 1] if road is None else road.homography.nearness(road.ideal(feet))
+    # What a lens cannot show is out of the image, and last.
+    distances = np.nan_to_num(-nearness, nan=np.inf).tolist()
+    order = sorted(range(len(tracks)), key=lambda index: (distances[index], tracks[index].serial))
+    return [tracks[index] for index in order]
+
+
+def cover(tracks: Sequence[Track], size: tuple[int, int], occlusions: bool) -> None:
+    """Note what of each vehicle is in sight.
+
+    Parameters
+    ----------
+    tracks : sequence of Track
+        Nearest first.
+    size : (int, int)
+        Width and height of the image.
+    occlusions : bool
+        False: no vehicle hides another.
+    """
+    edges = edges_of(tracks)
+    hiding = [
+        rank
+        for rank, one in enumerate(tracks)
+        if occlusions and one.confirmed and one.unseen <= _OCCLUDER_SEEN and not one.lost
+    ]
+    common = intersections(edges[:, np.newaxis], edges[hiding]) / areas(edges)[:, np.newaxis]
+    common[np.arange(len(tracks))[:, np.newaxis] <= np.array(hiding, dtype=np.intp)] = 0.0
+    most = common.max(axis=1, initial=0.0) > _NAMED_SHARE
+    visible = np.maximum(1 - common.sum(axis=1), 0.0).tolist()
+    for track, row, inside, seen, named in zip(
+        tracks, common, inside_image(edges, size).tolist(), visible, most.tolist(), strict=True
+    ):
+        covers = edges[hiding][row > 0] if seen < 1 else NOTHING
+        hider = tracks[hiding[int(row.argmax())]].identity if named else None
+        track.show(seen, inside, covers, hider)
