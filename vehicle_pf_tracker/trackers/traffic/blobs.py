@@ -177,10 +177,12 @@ class BlobReader:
         whole = _piece(part, x, y)
         if whole.area < _SHAPED:
             return [whole]
-        halves = _cut(part)
-        if not self._are_several([_piece(half, x + u, y + v) for half, u, v in halves], whole):
+        cuts = [_cut(part, axis) for axis in (0, 1)]
+        pieces = [[_piece(half, x + u, y + v) for half, u, v in halves] for halves in cuts]
+        best = min((0, 1), key=lambda axis: self._worst(pieces[axis]))
+        if not self._are_several(pieces[best], whole):
             return [whole]
-        return [piece for half, u, v in halves for piece in self._apart(half, x + u, y + v)]
+        return [piece for half, u, v in cuts[best] for piece in self._apart(half, x + u, y + v)]
 
     def _grouped(self, pieces: list[Piece]) -> list[Piece]:
         """Join the pieces in one prediction, unless they look like vehicles of their own."""
@@ -194,8 +196,10 @@ class BlobReader:
         """Test whether parts of a blob look more like vehicles than the whole does."""
         if min(one.area for one in parts) < _OWN * whole.area or whole.area < _SHAPED:
             return False
-        apart = max(self._shape_cost(one) for one in parts)
-        return apart + self._numbers.apart < self._shape_cost(whole)
+        return self._worst(parts) + self._numbers.apart < self._shape_cost(whole)
+
+    def _worst(self, parts: list[Piece]) -> float:
+        return max(self._shape_cost(one) for one in parts)
 
     def _shape_cost(self, piece: Piece) -> float:
         """Squared standard deviations of aspect, fullness and size from the usual ones."""
@@ -240,24 +244,20 @@ def _components(mask: Mask) -> Iterator[tuple[Pixels, Array]]:
             yield part, np.array([x, y, x + width, y + height], dtype=np.float64)
 
 
-def _cut(part: Pixels) -> list[tuple[Pixels, int, int]]:
-    """Cut a blob in two, upright or level, where the boxes of its parts have the least area.
+def _cut(part: Pixels, axis: int) -> list[tuple[Pixels, int, int]]:
+    """Cut a blob between two rows, or columns, where the boxes of its parts have the least area.
 
     Each part comes with its left and upper end in the blob, whose borders all have pixels.
     """
-    least, place, best = np.inf, 0, 0
-    for axis in (0, 1):
-        lines = part if axis == 0 else part.T
-        full, length = lines.any(axis=1), lines.shape[1]
-        low = np.where(full, lines.argmax(axis=1), length)
-        high = np.where(full, length - lines[:, ::-1].argmax(axis=1), 0)
-        before = np.maximum.accumulate(high) - np.minimum.accumulate(low)
-        behind = (np.maximum.accumulate(high[::-1]) - np.minimum.accumulate(low[::-1]))[::-1]
-        counts = np.arange(1, len(lines))
-        sums = before[:-1] * counts + behind[1:] * (len(lines) - counts)
-        if len(sums) and sums.min() < least:
-            least, place, best = float(sums.min()), int(sums.argmin()) + 1, axis
-    first = np.indices(part.shape)[best] < place
+    lines = part if axis == 0 else part.T
+    full, length = lines.any(axis=1), lines.shape[1]
+    low = np.where(full, lines.argmax(axis=1), length)
+    high = np.where(full, length - lines[:, ::-1].argmax(axis=1), 0)
+    before = np.maximum.accumulate(high) - np.minimum.accumulate(low)
+    behind = (np.maximum.accumulate(high[::-1]) - np.minimum.accumulate(low[::-1]))[::-1]
+    counts = np.arange(1, len(lines))
+    sums = before[:-1] * counts + behind[1:] * (len(lines) - counts)
+    first = np.indices(part.shape)[axis] <= (sums.argmin() if len(sums) else 0)
     halves = []
     for half in (part & first, part & ~first):
         u, v, width, height = cv2.boundingRect(half.astype(np.uint8))

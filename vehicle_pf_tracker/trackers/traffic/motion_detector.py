@@ -154,11 +154,14 @@ class Background:
         The inside of a shadow shows the road as it is, at one brightness; a dark vehicle has
         windows, lights and edges. The rim of a change has an edge in either case.
         """
-        background = np.mean(self._samples[::_COMPARED], axis=0, dtype=np.float32)
+        background = np.zeros(image.shape, np.float32)
+        for sample in self._samples[::_COMPARED]:
+            cv2.accumulate(sample, background)
+        background /= len(self._samples[::_COMPARED])
         colours = image.astype(np.float32)
         power = np.maximum(cv2.transform(background * background, _SUM), 1)
         share = cv2.transform(colours * background, _SUM) / power
-        apart = cv2.transform((share[..., np.newaxis] * background - colours) ** 2, _SUM)
+        apart = cv2.transform(colours * colours, _SUM) - share * share * power
         dark = (share >= self._numbers.shadow) & (share <= 1) & (apart < (_SHADE * share) ** 2)
         smooth = cv2.blur(share, (3, 3))
         slope = cv2.magnitude(
@@ -188,6 +191,8 @@ _WIDEST = 400
 """Width in px above which the image is halved: finer says nothing more about vehicles."""
 _CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
 """Holes and gaps up to this size are closed: windscreens show the sky."""
+_FOLLOWED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
+"""Modes of vehicles that divide blobs; tentative ones may be pieces of a lorry."""
 _ALL_MOVES = 0.5
 """Share of moving pixels above which the camera moves, or the light was switched."""
 
@@ -241,7 +246,7 @@ class MotionDetector:
             self._restart()
         # Estimates are of the image before, and so is where the camera then was.
         tracked = [one for one in tracks if one.mode is TrackMode.TRACKING]
-        followed = [one for one in tracks if _is_followed(one)]
+        followed = [one for one in tracks if one.mode in _FOLLOWED]
         covered = self._steadier.to_reference(_edges(tracked) * zoom)
         predicted = self._steadier.to_reference(_predicted(followed) * zoom)
         small, seen = self._steadier.steady(small)
@@ -268,13 +273,6 @@ class MotionDetector:
     def _restart(self) -> None:
         self._background = Background(self._shape, self._seed, self._numbers)
         self._steadier = Steadier()
-
-
-def _is_followed(track: TrackEstimate) -> bool:
-    """Tell whether a track divides blobs: waiting for its proof, it would stay in a merged one."""
-    if track.mode is TrackMode.TENTATIVE:
-        return track.is_likely
-    return track.mode is not TrackMode.LOST
 
 
 def _covered(boxes: Array, image: Colours) -> Pixels:
