@@ -64,12 +64,11 @@ class Request(TrackingRequest):
     """Request of `traffic`."""
 
     output: Path | None = option(
-        "-o", type=Path, metavar="DIR",
+        "-o", metavar="DIR",
         help="folder for tracks.csv, tracks.txt, counts.csv, run.json, summary.png and heat.png "
         "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
     detections: Path | None = option(
-        type=Path, metavar="FILE",
         help="detections as MOTChallenge has them, det.txt, instead of a detector",
     )  # fmt: skip
     detector: str | None = option(
@@ -80,11 +79,7 @@ class Request(TrackingRequest):
     model: str | None = option(
         metavar="FILE", help="the network, .onnx, or its URL: YOLOX, YOLOv8 or SSD"
     )
-    lines: Path | None = option(
-        type=Path,
-        metavar="FILE",
-        help="lines, zones and regions of interest, lines.yaml",
-    )
+    lines: Path | None = option(help="lines, zones and regions of interest, lines.yaml")
     serve: int | None = option(
         type=_port, nargs="?", const=0, metavar="PORT",
         help="show picture and counts meanwhile on a page for this machine's browsers; without "
