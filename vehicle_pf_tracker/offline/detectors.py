@@ -28,7 +28,7 @@ from typing import TypeAlias
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.offline.model_files import Progress, model_file, silent
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
@@ -212,15 +212,9 @@ class DetectionFile:
 def _read_rows(path: Path) -> Array:
     """Return frame, left, top, width, height and score of every row, shape (N, 6)."""
     numbers = array("d")  # 48 bytes per row: a list of a million rows would take ten times as much
-    try:
-        with path.open(encoding="utf-8-sig") as file:
-            for number, line in enumerate(file, start=1):
-                if line.strip() and not line.lstrip().startswith("#"):
-                    numbers.extend(_row(line, f"row {number} of the detections {path}"))
-    except OSError as error:
-        raise InputError(f"cannot read the detections {path}: {error.strerror}") from error
-    except UnicodeDecodeError:
-        raise InputError(f"the detections {path} are not text") from None
+    for number, line in enumerate(read_text(path, "the detections").splitlines(), start=1):
+        if line.strip() and not line.lstrip().startswith("#"):
+            numbers.extend(_row(line, f"row {number} of the detections {path}"))
     return np.frombuffer(numbers, np.float64).reshape(-1, 6)
 
 

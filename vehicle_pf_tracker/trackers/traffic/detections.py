@@ -326,7 +326,7 @@ class TrafficNumbers:
     held_caution: float = 1.5
     colour_threshold: float = 32.0
     patience: float = 100.0
-    shadow: float = 0.35
+    shadow: float = 0.6
     apart: float = 1.0
 
 
