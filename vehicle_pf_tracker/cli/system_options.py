@@ -171,7 +171,7 @@ class EvaluationRequest(WorkersOption):
     first_seed: int = option(type=natural, default=0, metavar="S", help="the first of the seeds")
     variants: str = option(
         default=ALL, metavar="NAME,…",
-        help=f"what to compare: {', '.join(VARIANTS)}; {BASELINE}NAME of OpenCV's "
+        help=f"what to compare: {', '.join(VARIANTS)}, or a plug-in; {BASELINE}NAME of OpenCV's "
         f"{', '.join(MODELS)}; {ALL} (default) for all variants, {ALL_BASELINES} for "
         f"{', '.join(_BASELINES_WITHOUT_MODELS)}",
     )  # fmt: skip

@@ -215,6 +215,11 @@ class DetectionEvidence:
             for score, (column, row) in zip(scores.tolist(), places, strict=True)
         ]
 
+    @property
+    def cluttered(self) -> int:
+        """Number of places, of a grid, that had a false alarm lately."""
+        return int(np.count_nonzero(self._false >= 0.5))
+
     def learn(self, sample: Sample, genuine: bool, *, alone: bool = True) -> None:
         """Add the outcome of a detection; one beside a vehicle is no false alarm of its place."""
         self._outcomes.append((sample.score, genuine))
