@@ -214,6 +214,11 @@ class DetectionEvidence:
             for score, (column, row) in zip(scores.tolist(), places, strict=True)
         ]
 
+    @property
+    def cluttered(self) -> int:
+        """Number of places, of a grid, that had a false alarm lately."""
+        return int(np.count_nonzero(self._false >= 0.5))
+
     def learn(self, sample: Sample, genuine: bool, *, alone: bool = True) -> None:
         """Add the outcome of a detection; one beside a vehicle is no false alarm of its place."""
         self._outcomes.append((sample.score, genuine))
@@ -317,7 +322,7 @@ class TrafficNumbers:
     held_caution: float = 1.5
     colour_threshold: float = 32.0
     patience: float = 100.0
-    shadow: float = 0.35
+    shadow: float = 0.6
     apart: float = 1.0
 
 

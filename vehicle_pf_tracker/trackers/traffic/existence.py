@@ -57,9 +57,6 @@ _SURELY_DRIVES = 50.0
 _SMALLEST = 0.25
 """Size of the smallest vehicle on the road, of the usual one, by which large ones count more: a
 motorcycle among lorries. Smaller ones that drive are parts of vehicles."""
-_LIKELY_SIZE = 0.5
-"""The same, for a tentative vehicle to divide blobs of motion: pieces of a lorry drive straight,
-too, and would keep it in pieces. At 0.25 a close road's lorries fall apart."""
 _SIZE_MEMORY = 0.998
 """Weight of the detections before in the usual size: some minutes."""
 _STANDING = 0.2
@@ -165,9 +162,7 @@ class Existence:
                 self._sizes = _SIZE_MEMORY * self._sizes + (size, size**2)
             return False
         known = track.confirmed or track.log_odds >= self.parameters.birth.evidence
-        sized = self._is_sized(track, _LIKELY_SIZE, unknown=False)
-        is_likely = known and sized and track.drive()[1] > _DRIVES
-        track.judge(is_likely=is_likely, has_driven=known and self._drives(track))
+        track.has_driven = known and self._drives(track)
         self._teach(track)
         proven = track.has_driven or track.strength > self._numbers.proven_by_scores
         return not track.confirmed and known and proven
@@ -184,18 +179,14 @@ class Existence:
                 self._evidence.learn(oldest, False)
 
     def _drives(self, track: Track) -> bool:
-        sized = self._is_sized(track, _SMALLEST, unknown=True)
-        if track.matches < self.parameters.birth.matches or not sized:
+        total, squared = self._sizes.tolist()
+        is_small = total > 0 and track.state.road_size < _SMALLEST * squared / total
+        if track.matches < self.parameters.birth.matches or is_small:
             return False
         straightness, evidence = track.drive()
         doubt = track.doubt if evidence < _SURELY_DRIVES else 0.0
         needed = self.parameters.birth.displacement * (1 + doubt / _DOUBTED)
         return track.way > needed and straightness > _STRAIGHT and evidence > _DRIVES
-
-    def _is_sized(self, track: Track, least: float, *, unknown: bool) -> bool:
-        """Compare its size with the usual one; `unknown` as long as there is none."""
-        total, squared = self._sizes.tolist()
-        return bool(track.state.road_size >= least * squared / total) if total > 0 else unknown
 
     def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
         """Take off evidence from tracks that a detector has not seen.

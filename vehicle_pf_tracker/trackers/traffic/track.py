@@ -77,8 +77,6 @@ class Track:
         Largest width and height of its latest detections, px.
     lost : bool
         It has been hidden for too long to be predicted.
-    is_likely : bool
-        Its latest detection left it likely to be a vehicle by way and size, if unproven.
     has_driven : bool
         Its way shows that it is no part of the scene.
     given : bool
@@ -118,7 +116,6 @@ class Track:
     crowded: int = 0
     sides: Array = field(default_factory=lambda: np.zeros(2))
     lost: bool = False
-    is_likely: bool = False
     has_driven: bool = False
     given: bool = False
     joined: int = 0
@@ -267,10 +264,6 @@ class Track:
         if not (self.has_driven or self.given):
             self.samples.append(sample)
 
-    def judge(self, *, is_likely: bool, has_driven: bool) -> None:
-        """Take what its detections so far say about its way and size."""
-        self.is_likely, self.has_driven = is_likely, has_driven
-
     def miss(self, log_odds: float) -> None:
         """Take evidence against it: it was not detected."""
         self.log_odds -= log_odds
@@ -315,7 +308,6 @@ class Track:
             score=self.score,
             age=self.age,
             hidden_by=(self.hidden_by or SCENE) if hidden else None,
-            is_likely=self.is_likely,
         )
 
 

@@ -116,6 +116,11 @@ class TrafficTracker:
         """Seed in use."""
         return self._seed
 
+    @property
+    def cluttered_places(self) -> int:
+        """Number of places in the image, of a grid, that had a false alarm lately."""
+        return self._evidence.cluttered
+
     def step(
         self, frame: Frame, detections: Detections | None = None, elapsed: float = 1.0
     ) -> tuple[TrackEstimate, ...]:
