@@ -58,7 +58,9 @@ BATTERY = "{toy}/sequences --workers 1 -o {out}"
 ONE_CASE = "--seeds 1 --hard 1"
 PROGRAMS = {
     "laboratory.fusion_ablation": Program(
-        f"{BATTERY} --changes no_colour", ("ablation.md", "ablation.jsonl"), "| no colour |"
+        f"{BATTERY} --changes no_camera_motion",
+        ("ablation.md", "ablation.jsonl"),
+        "| no camera motion |",
     ),
     "benchmarks.fusion_cost": Program(
         "{toy}/sequences --frames 12 --resampled one -o {out}",
@@ -177,7 +179,7 @@ def test_a_program_writes_its_output(name, toy, tmp_path):
     program = PROGRAMS[name]
     skip_without(program.needs)
     words = [
-        word.format(toy=toy, out=tmp_path).replace("no_colour", "no colour")
+        word.format(toy=toy, out=tmp_path).replace("no_camera_motion", "no camera motion")
         for word in program.words.split()
     ]
     printed = run(name, *words)

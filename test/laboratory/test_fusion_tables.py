@@ -16,12 +16,15 @@
 
 from collections import namedtuple
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
 from laboratory import fusion_ablation, fusion_reliability
 from laboratory.fusion_fit import fitted, objective
 from laboratory.stress import Reliability, Result, Score
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.trackers.estimate import Mode
 
 Made = namedtuple("Made", "name kind sequence camera")
 
@@ -82,6 +85,21 @@ def test_the_figure_has_a_line_for_plain_and_one_for_harder_cases(tmp_path):
     assert ideal == [[0, 0], [1, 1]]
     assert plain == [[0.25, 0], [pytest.approx(0.95), 0.5]]
     assert hard == [[0.85, 0]]
+
+
+def test_tracking_counts_from_the_frame_by_which_a_vehicle_has_left(monkeypatch):
+    """Started in frame 2 and gone by 5, it claims one of the four later frames of the clip."""
+    modes = iter([Mode.TRACKING] * 2 + [Mode.LOST, Mode.TRACKING, Mode.LOST, Mode.LOST])
+    tracker = SimpleNamespace(
+        start=lambda frame, box: None, step=lambda *_: SimpleNamespace(mode=next(modes))
+    )
+    clip = SimpleNamespace(frames=lambda: (SimpleNamespace(frame=None) for _ in range(9)))
+    monkeypatch.setattr(fusion_reliability, "VideoFile", lambda path: clip)
+    system = SimpleNamespace(make=lambda seed: tracker)
+    monkeypatch.setattr(fusion_reliability, "variant_system", lambda name: system)
+    leaving = fusion_reliability.Leaving("clip.mp4", 2, Box(0, 0, 9, 9), 5)
+    assert fusion_reliability.claimed_after_leaving("clip.mp4", leaving, 0) == 0.25
+    assert next(modes, None) is None
 
 
 def test_a_camera_has_no_part_in_the_fit_that_is_judged_on_it():

@@ -18,7 +18,7 @@ import json
 import socket
 import threading
 import time
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from urllib.error import HTTPError
 from urllib.request import ProxyHandler, build_opener
 
@@ -27,7 +27,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.live_page import live_page
+from vehicle_pf_tracker.offline.live_page import LivePage
 
 GREY = np.full((48, 64, 3), 120, np.uint8)
 get = build_opener(ProxyHandler({})).open  # from this machine, whatever proxy there is
@@ -53,7 +53,7 @@ def images(page):
 
 
 def test_a_picture_is_drawn_for_who_asks_and_shown_with_its_numbers():
-    with live_page(0) as page, images(page) as drawn:
+    with closing(LivePage(0)) as page, images(page) as drawn:
         assert b"picture.jpg" in get(page.url).read()
         assert drawn == []  # nobody has asked for a picture yet
         for count in (1, 2, 3):
@@ -65,7 +65,7 @@ def test_a_picture_is_drawn_for_who_asks_and_shown_with_its_numbers():
 
 
 def test_the_last_picture_stays_when_the_camera_has_stopped():
-    with live_page(0) as page:
+    with closing(LivePage(0)) as page:
         with pytest.raises(HTTPError, match="404"):
             get(f"{page.url}picture.jpg")
         with images(page):
@@ -74,12 +74,12 @@ def test_the_last_picture_stays_when_the_camera_has_stopped():
 
 
 def test_nobody_finds_the_page_without_its_address():
-    with live_page(0) as page, pytest.raises(HTTPError, match="404"):
+    with closing(LivePage(0)) as page, pytest.raises(HTTPError, match="404"):
         get(page.url.replace(page.base, "/"))
 
 
 def test_a_port_that_is_taken_is_one_sentence():
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        with pytest.raises(InputError, match=f"cannot serve at port {port}: "), live_page(port):
-            pass
+        with pytest.raises(InputError, match=f"cannot serve at port {port}: "):
+            LivePage(port)

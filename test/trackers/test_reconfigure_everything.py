@@ -41,7 +41,6 @@ WITHOUT_EFFECT = {
     ("ms", "seed"): "mean shift draws no random numbers",
     ("fusion", "motion.camera"): "the camera of these images stands still",
     ("fusion", "motion.camera_velocity_sigma"): "the camera of these images stands still",
-    ("fusion", "motion.turns"): "nothing turns in these images",
     ("fusion", "evidence.occluded_below"): "visibility is nearly certain in these images",
     ("fusion", "evidence.clear_above"): "visibility is nearly certain in these images",
     ("apf", "velocity.from_origin"): "says how a track begins, so it is obeyed by the next one",

@@ -148,7 +148,7 @@ class Request(TrafficRequest, ReportParts, TopicOption, IdOption, MaxDiffOption)
         help="also start on twelve boxes that are a little off, as OTB does; first seed only"
     )
     max_rmse: float | None = option(
-        type=float, metavar="PX",
+        metavar="PX",
         help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
     )  # fmt: skip
 

@@ -251,17 +251,13 @@ class Request(SourceOptions, OverwriteOption):
         type=positive, default=1, metavar="N", help="frame to begin with (default: 1)"
     )
     output: Path | None = option(
-        "-o", type=Path, metavar="FILE",
-        help="write what was drawn to FILE, for run --targets, traffic --lines and road calibrate "
-        "--pairs; otherwise it is printed",
+        "-o", help="file for run --targets, traffic --lines and road calibrate --pairs; without "
+        "it, what was drawn is printed",
     )  # fmt: skip
-    edit: Path | None = option(
-        type=Path, metavar="FILE",
-        help="begin with what such a file has, and write it there again, or to -o",
-    )  # fmt: skip
+    edit: Path | None = option(help="change such a file, or with -o a copy of it")
     road: bool = switch(help="only points of the road, four or more, with their x and y in metres")
     grid: Path | None = option(
-        type=Path, metavar="PNG",
+        metavar="PNG",
         help="no page: write the frame with a grid labelled in px to PNG, to read boxes off",
     )  # fmt: skip
 

@@ -91,7 +91,7 @@ def _absolute(topic: str) -> str:
 class Request(RosOptions, TopicOption, OverwriteOption):
     """Request of `replay`, with options named as the rosbag2 player's where it has them."""
 
-    recording: Path = positional(type=Path, help="rosbag2 folder or MCAP file")
+    recording: Path = positional(metavar="REC", help="rosbag2 folder or MCAP file")
     rate: float | None = option(
         "-r", type=positive_number, metavar="X", help="speed, 1.0 is as recorded"
     )
@@ -137,7 +137,7 @@ class Request(RosOptions, TopicOption, OverwriteOption):
         help="neither set the nodes' targets nor reset them",
     )  # fmt: skip
     output: Path | None = option(
-        "-o", type=Path, metavar="DIR",
+        "-o", metavar="DIR",
         help="write what the nodes answered: estimates.csv, in a folder for each of several nodes",
     )  # fmt: skip
 

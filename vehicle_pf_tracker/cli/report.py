@@ -68,9 +68,7 @@ class ReportParts(VerbRequest):
 class Request(ReportParts):
     """Request of `report`."""
 
-    folder: Path = positional(
-        type=Path, metavar="DIR", help="evaluation folder; its report is replaced"
-    )
+    folder: Path = positional(metavar="DIR", help="evaluation folder; its report is replaced")
 
 
 def run(request: Request) -> int:

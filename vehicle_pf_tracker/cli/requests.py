@@ -21,7 +21,7 @@ import functools
 import inspect
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -85,14 +85,22 @@ def positional(**settings: Any) -> Any:
     return field(metadata={"settings": settings})
 
 
+_KINDS: Mapping[str, Mapping[str, Any]] = {
+    "Path": {"type": Path, "metavar": "FILE"}, "int": {"type": int}, "float": {"type": float},
+}  # fmt: skip
+"""Settings that follow from a field's type, where it does not say others."""
+
+
 def add_options(parser: argparse.ArgumentParser, kind: type[VerbRequest]) -> None:
     """Add the options that the fields of a request are read from."""
     declared = {one.name: one.metadata for one in fields(kind) if one.metadata}
     for base in reversed(kind.__mro__):
         heading = vars(base).get("GROUP")
         place: Any = parser.add_argument_group(heading) if heading else parser
-        for name in filter(declared.__contains__, inspect.get_annotations(base)):
-            settings = dict(declared[name]["settings"])
+        annotations = inspect.get_annotations(base)
+        for name in filter(declared.__contains__, annotations):
+            settings = _KINDS.get(annotations[name].removesuffix(" | None"), {})
+            settings = {**settings, **declared[name]["settings"]}
             if "type" in settings:
                 settings["type"] = _telling_why(settings["type"])
             if "flags" in declared[name]:
@@ -173,7 +181,7 @@ class MaxDiffOption(VerbRequest):
     """Request that associates estimates and truth."""
 
     max_diff: float = option(
-        type=float, default=MAX_DIFF, metavar="S",
+        default=MAX_DIFF, metavar="S",
         help=f"largest time between an image and its truth (default: {MAX_DIFF:g} s)",
     )  # fmt: skip
 
@@ -208,7 +216,7 @@ class SourceOptions(TopicOption):
         "stream",
     )  # fmt: skip
     fps: float | None = option(
-        type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states"
+        metavar="HZ", help="frame rate, instead of the one that SOURCE states"
     )
 
     def open_source(self, **truth: Any) -> Recording | Footage:
@@ -222,9 +230,7 @@ class SourceOptions(TopicOption):
 class IdOption(VerbRequest):
     """Request that reads truth of several targets."""
 
-    id: int | None = option(
-        type=int, metavar="N", help="number of the vehicle, where the truth has several"
-    )
+    id: int | None = option(metavar="N", help="number of the vehicle, where the truth has several")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,7 +238,6 @@ class TruthOptions(IdOption):
     """Request that reads the truth of videos and folders."""
 
     truth: Path | None = option(
-        type=Path, metavar="FILE",
         help="truth of a video or a folder (default: what lies beside a folder's images); "
         "docs/evaluation.md lists the formats",
     )  # fmt: skip

@@ -160,7 +160,7 @@ class EvaluationRequest(WorkersOption):
         help="recording or folder of images, with truth, or a folder of such",
     )  # fmt: skip
     output: Path = option(
-        "-o", type=Path, required=True, metavar="DIR",
+        "-o", required=True, metavar="DIR",
         help="evaluation folder; finished runs in it are kept, the report is written anew",
     )  # fmt: skip
     seeds: int | None = option(
@@ -187,7 +187,6 @@ class EvaluationRequest(WorkersOption):
     )  # fmt: skip
     without_defaults: bool = switch(help="leave out the defaults where there is a parameter set")
     baselines_python: Path | None = option(
-        type=Path, metavar="FILE",
         help="interpreter of the baselines (default: .venv-baselines/bin/python, else the one "
         "in your cache; without either, evaluate prints the command that builds it)",
     )  # fmt: skip

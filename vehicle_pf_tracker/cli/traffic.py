@@ -17,9 +17,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
+from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass
-from functools import partial
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -30,11 +29,10 @@ from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.counted_vehicles import session_and_counter
-from vehicle_pf_tracker.offline.detectors import DetectionFile
-from vehicle_pf_tracker.offline.live_page import live_page
+from vehicle_pf_tracker.offline.detectors import DetectionFile, call
+from vehicle_pf_tracker.offline.live_page import LivePage
 from vehicle_pf_tracker.offline.model_files import model_file
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.pictures import Pictures
@@ -43,10 +41,7 @@ from vehicle_pf_tracker.offline.traffic_following import TrafficRun
 from vehicle_pf_tracker.offline.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
 from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, NONE, TOPIC
-from vehicle_pf_tracker.trackers.traffic.session import Detector
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
@@ -69,12 +64,11 @@ class Request(TrackingRequest):
     """Request of `traffic`."""
 
     output: Path | None = option(
-        "-o", type=Path, metavar="DIR",
+        "-o", metavar="DIR",
         help="folder for tracks.csv, tracks.txt, counts.csv, run.json, summary.png and heat.png "
         "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
     detections: Path | None = option(
-        type=Path, metavar="FILE",
         help="detections as MOTChallenge has them, det.txt, instead of a detector",
     )  # fmt: skip
     detector: str | None = option(
@@ -85,11 +79,7 @@ class Request(TrackingRequest):
     model: str | None = option(
         metavar="FILE", help="the network, .onnx, or its URL: YOLOX, YOLOv8 or SSD"
     )
-    lines: Path | None = option(
-        type=Path,
-        metavar="FILE",
-        help="lines, zones and regions of interest, lines.yaml",
-    )
+    lines: Path | None = option(help="lines, zones and regions of interest, lines.yaml")
     serve: int | None = option(
         type=_port, nargs="?", const=0, metavar="PORT",
         help="show picture and counts meanwhile on a page for this machine's browsers; without "
@@ -103,8 +93,6 @@ class Request(TrackingRequest):
 def run(request: Request) -> int:
     """Follow all vehicles, write the results, and print a summary."""
     configuration = _configuration(request)
-    if request.lines:
-        configuration = configuration.updated({"lines": str(request.lines)})
     detections = DetectionFile(request.detections) if request.detections else None
     stop = Stop()
     tracking = _tracking(request, configuration, detections, stop)
@@ -141,24 +129,11 @@ def _tracking(
             "without a detector nothing is followed; give vehicles with --target x,y,w,h, or "
             "--detections FILE"
         )
-    is_network = parameters.detector.kind == MODEL
-    leavable = (lambda one: _LeavableDetector(one, stop)) if is_network else (lambda one: one)
+    # A network that does not end after a signal is left, with what was tracked.
+    run_it = stop.leaving if parameters.detector.kind == MODEL else call
     with shown_progress() as show:
-        parts = session_and_counter(configuration, leavable, show)
+        parts = session_and_counter(configuration, run_it, show)
     return TrafficRun(*parts, detections_of=detections.of if detections is not None else None)
-
-
-class _LeavableDetector:
-    """Detector whose network is left, with what was tracked, if it does not end after a signal."""
-
-    disturbed = is_blind = False
-
-    def __init__(self, detector: Detector, stop: Stop) -> None:
-        self._detector, self._stop = detector, stop
-
-    def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
-        """Find vehicles."""
-        return self._stop.leaving(partial(self._detector.detect, frame, tracks))
 
 
 def _follow(
@@ -170,11 +145,11 @@ def _follow(
     pictures: Pictures,
 ) -> tuple[int, list[str]]:
     """Follow all vehicles to the end or to a signal; return the exit status, and notices."""
-    counts = tracking.counter.plan.is_counting
+    counts, port = tracking.counter.plan.is_counting, tracking.session.tracker.parameters.page_port
     with (
         stopping(stop),
         counting("tracked") as progress,
-        live_page(request.serve) as page,
+        closing(LivePage(port)) if port >= 0 else nullcontext() as page,
         track_files(folder, counting=counts, visible_only=request.visible_only) as files,
     ):
         first, frames = numbered_part(source, request.start, request.end, stop, progress)
@@ -212,6 +187,7 @@ def _write(
         document["versions"]["onnxruntime"] = metadata.version("onnxruntime")
         document["model_sha256"] = model_file(configuration.tracker.detector.model)[1]
     document["detector"] = str(request.detections or kind)
+    document["images_with_detections"] = tracking.session.found.images
     document["summary"] = tracking.summary.to_json(tracking.counter)
     write_json(folder / RUN, document)
 
@@ -225,12 +201,13 @@ def _configuration(request: Request) -> Configuration:
         raise UsageError("give either --detections, or --detector and --model")
     if request.model and request.detector not in {None, MODEL}:
         raise UsageError(f"--model is not used by --detector {request.detector}; leave one out")
-    if request.detections:
-        return configuration.updated({"detector.kind": NONE})
-    if request.model:
-        return configuration.updated({"detector.kind": MODEL, "detector.model": request.model})
-    if request.detector:
-        return configuration.updated({"detector.kind": request.detector})
+    kind = NONE if request.detections else MODEL if request.model else request.detector
+    given = {
+        "lines": str(request.lines) if request.lines else None, "page_port": request.serve,
+        "detector.kind": kind, "detector.model": request.model,
+    }  # fmt: skip
+    changes = {name: value for name, value in given.items() if value is not None}
+    configuration = configuration.updated(changes)
     if configuration.tracker.detector.kind == TOPIC:
         raise InputError("detector.kind topic is for nodes; offline, give --detections FILE")
     return configuration

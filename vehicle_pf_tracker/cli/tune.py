@@ -78,7 +78,7 @@ class Request(StartOptions, TopicOption, MaxDiffOption, WorkersOption):
         help=f"one of: {', '.join(VARIANTS)}",
     )  # fmt: skip
     output: Path = option(
-        "-o", type=Path, required=True, metavar="DIR",
+        "-o", required=True, metavar="DIR",
         help="folder for best.yaml and the other results; finished runs in it are kept, the rest "
         "is written anew",
     )  # fmt: skip

@@ -18,20 +18,20 @@ from __future__ import annotations
 
 import time
 from collections import Counter as Tally
-from collections.abc import Callable
 from pathlib import Path
 
 from vehicle_pf_tracker.core.frame import CodedFrame, Frame
-from vehicle_pf_tracker.offline.detectors import PacedDetector, detector_maker
+from vehicle_pf_tracker.offline.detectors import PacedDetector, Run, call, detector_maker
 from vehicle_pf_tracker.offline.model_files import Progress, silent
 from vehicle_pf_tracker.offline.traffic_drawing import Trails, annotated
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.trackers.traffic.association import check_library
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.session import Detector, TrafficSession
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 
@@ -114,7 +114,7 @@ class CountedVehicles:
 
 def session_and_counter(
     configuration: Configuration,
-    change: Callable[[Detector], Detector] = lambda detector: detector,
+    run: Run = call,
     progress: Progress = silent,
 ) -> tuple[TrafficSession, Counter]:
     """Make what parameters of `TRAFFIC` ask for.
@@ -123,8 +123,8 @@ def session_and_counter(
     ----------
     configuration : Configuration
         The parameters.
-    change : callable
-        Is given each detector, and returns the one in use.
+    run : callable
+        Calls the network.
     progress : Progress
         Shows how a network is fetched.
 
@@ -139,7 +139,7 @@ def session_and_counter(
     make, every = detector_maker(parameters.detector, progress), parameters.detector.every
     session = TrafficSession(
         TrafficTracker(parameters, plane),
-        (lambda: PacedDetector(change(make()), every)) if make else None,
+        (lambda: PacedDetector(make(), every, run)) if make else None,
         frame_rate=parameters.frame_rate,
         reset_on_time_jump=configuration.session.reset_on_time_jump,
         regions=plan.regions,

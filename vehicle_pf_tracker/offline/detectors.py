@@ -21,7 +21,9 @@ import math
 import time
 from array import array
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
@@ -94,6 +96,15 @@ _RECENT = 0.1
 """Weight of the latest image among the costs."""
 
 
+Run: TypeAlias = Callable[[Callable[[], Detections]], Detections]
+"""Calls what makes detections, and returns them."""
+
+
+def call(work: Callable[[], Detections]) -> Detections:
+    """Call `work`, and return what it returns."""
+    return work()
+
+
 class PacedDetector:
     """A detector that looks at every k-th image; what it found last, and how long that took.
 
@@ -103,6 +114,8 @@ class PacedDetector:
         The detector.
     every : int
         k; 0 chooses the smallest that keeps the rate of the images.
+    run : callable
+        Calls the detector.
 
     Attributes
     ----------
@@ -116,8 +129,8 @@ class PacedDetector:
         See `Detector`.
     """
 
-    def __init__(self, detector: Detector, every: int = 1) -> None:
-        self._detector = detector
+    def __init__(self, detector: Detector, every: int = 1, run: Run = call) -> None:
+        self._detector, self._run = detector, run
         self._is_chosen = every == 0
         self.every = max(every, 1)
         self.found, self.seconds = 0, 0.0
@@ -132,7 +145,7 @@ class PacedDetector:
             return Detections.make([], [])
         self._images = 1
         began = time.perf_counter()
-        found = self._detector.detect(frame, tracks)
+        found = self._run(partial(self._detector.detect, frame, tracks))
         self.found, self.seconds = len(found), time.perf_counter() - began
         self.disturbed, self.is_blind = self._detector.disturbed, self._detector.is_blind
         return found

@@ -18,8 +18,8 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
+from importlib import resources
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import jpeg
@@ -28,47 +28,33 @@ from vehicle_pf_tracker.offline.page_server import Content, PageHandler, PageSer
 _SECONDS = 2.0
 """Longest wait for the next image, after which the one before is shown: cameras of less than one
 image per s are shown late."""
-_PAGE = b"""<!DOCTYPE html>
-<html lang="en">
-<meta charset="utf-8">
-<title>traffic</title>
-<link rel="icon" href="data:,">
-<style>
-  :root { color-scheme: light dark; font: 16px system-ui, sans-serif; }
-  body { margin: 1rem auto; max-width: 72rem; padding: 0 1rem; }
-  img { width: 100%; } td { padding-right: 2rem; font-variant-numeric: tabular-nums; }
-</style>
-<img id="picture" alt="picture with all vehicles">
-<table id="counts"></table>
-<script>
-const wait = (ms) => new Promise((done) => setTimeout(done, ms));
-(async () => {
-  for (let number = 0; ; number++) {
-    picture.src = `picture.jpg?${number}`;
-    try {
-      await picture.decode();
-      const facts = await (await fetch("counts.json")).json();
-      counts.replaceChildren(...Object.entries(facts).map(([name, value]) => {
-        const row = document.createElement("tr");
-        for (const words of [name, value]) row.insertCell().textContent = words;
-        return row;
-      }));
-      await wait(50);
-    } catch { await wait(1000); }
-  }
-})();
-</script>
-"""
 
 
 class LivePage(PageServer):
-    """Serves the latest picture, which is drawn only when it is asked for."""
+    """Serves the latest picture, which is drawn only when it is asked for, until it is closed.
+
+    Parameters
+    ----------
+    port : int
+        Port; 0 takes a free one.
+
+    Raises
+    ------
+    InputError
+        If the port cannot be had.
+    """
 
     def __init__(self, port: int) -> None:
         super().__init__(PageHandler, port)
         self._shown = threading.Condition()
         self._is_wanted = False
         self._picture, self._facts = b"", b"{}"
+        threading.Thread(target=self.serve_forever, args=[0.1], daemon=True).start()
+
+    def close(self) -> None:
+        """Serve no more."""
+        self.shutdown()
+        self.server_close()
 
     def show(self, draw: Callable[[], Frame], facts: Callable[[], Mapping[str, object]]) -> None:
         """Take the next image: what draws it, and what tells the numbers beside it."""
@@ -81,7 +67,8 @@ class LivePage(PageServer):
     def content(self, what: str) -> Content | None:
         """Return the page, the next picture, or the numbers of the last one."""
         if what == "":
-            return "text/html; charset=utf-8", _PAGE
+            page = resources.files(__package__).joinpath("live.html")
+            return "text/html; charset=utf-8", page.read_bytes()
         if what == "counts.json":
             return "application/json", self._facts
         if what.partition("?")[0] != "picture.jpg":
@@ -90,23 +77,3 @@ class LivePage(PageServer):
             self._is_wanted = True
             self._shown.wait(_SECONDS)
             return ("image/jpeg", self._picture) if self._picture else None
-
-
-@contextmanager
-def live_page(port: int | None) -> Iterator[LivePage | None]:
-    """Serve a page meanwhile, from a thread of its own; None: there is none.
-
-    Raises
-    ------
-    InputError
-        If the port cannot be had.
-    """
-    if port is None:
-        yield None
-        return
-    with LivePage(port) as page:
-        threading.Thread(target=page.serve_forever, args=[0.1], daemon=True).start()
-        try:
-            yield page
-        finally:
-            page.shutdown()

@@ -34,9 +34,10 @@ from vehicle_pf_tracker.offline.traffic_results import TrackFiles
 from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.session import TrackerError
-from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 _MOST_NOTICES = 20

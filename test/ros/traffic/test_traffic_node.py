@@ -16,7 +16,11 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from importlib.util import find_spec
+from urllib.error import URLError
+from urllib.request import ProxyHandler, build_opener
 
 import numpy as np
 import pytest
@@ -332,6 +336,25 @@ def test_a_road_gives_counts_in_kmh_and_may_change_without_losing_them(bench, tm
     assert rig.node.set_parameters_atomically(overrides(road__margin=1.0)).successful
     assert rig.vehicles.counter.plane is not before
     assert dict(rig.vehicles.counter.totals) == totals
+
+
+def test_a_page_shows_picture_and_counts_until_the_node_is_cleaned_up(bench):
+    rig, answers = TrafficRig(bench, overrides(page_port=0)), []
+    url, get = rig.node.stream.page.url, build_opener(ProxyHandler({})).open
+
+    def ask():
+        answers.append(get(f"{url}picture.jpg").read())
+
+    asking = threading.Thread(target=ask)
+    asking.start()
+    time.sleep(0.2)
+    rig.play(lanes(3))
+    asking.join()
+    assert answers[0].startswith(b"\xff\xd8")
+    assert b'"vehicles"' in get(f"{url}counts.json").read()
+    rig.node.cleanup()
+    with pytest.raises(URLError):
+        get(url)
 
 
 def test_pixels_may_have_a_frame_of_their_own(bench):

@@ -41,8 +41,8 @@ def frame(x=PLACE[0], y=PLACE[1], vehicle=VEHICLE):
     return picture
 
 
-def learnt(*, colour=True, penalty=0.1):
-    appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters(penalty=penalty, colour=colour))
+def learnt(*, penalty=0.1):
+    appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters(penalty=penalty))
     appearance.learn_first(appearance.patch(frame(), PLACE, SIZE))
     return appearance
 
@@ -83,10 +83,9 @@ def test_the_first_view_sets_what_is_usual():
     assert view_at(appearance, frame(), PLACE).response.max() == pytest.approx(1 / 1.05, rel=1e-4)
 
 
-@pytest.mark.parametrize("colour", [True, False])
 @pytest.mark.parametrize("offset", [(0, 0), (5, -3), (-12, 4), (15, 10)])
-def test_the_peak_is_where_the_target_is(colour, offset):
-    appearance = learnt(colour=colour)
+def test_the_peak_is_where_the_target_is(offset):
+    appearance = learnt()
     view = view_at(appearance, frame(), PLACE - offset)
     found, height = view.peak_near(PLACE, 6)
     assert found == pytest.approx(PLACE, abs=0.8)
@@ -181,10 +180,9 @@ def test_the_peak_is_sought_within_reach_only_and_inside_the_patch():
 
 
 @pytest.mark.parametrize("level", [0, 119, 255])
-@pytest.mark.parametrize("colour", [True, False])
-def test_an_image_without_any_contrast_gives_finite_responses(level, colour):
+def test_an_image_without_any_contrast_gives_finite_responses(level):
     blank = np.full((120, 160, 3), level, np.uint8)
-    appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters(colour=colour))
+    appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters())
     appearance.learn_first(appearance.patch(blank, np.array([80.0, 60.0]), SIZE))
     view = view_at(appearance, blank, (80, 60))
     assert np.isfinite(view.response).all()

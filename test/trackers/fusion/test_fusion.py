@@ -71,7 +71,7 @@ def test_reconfigured_while_hidden_it_still_recovers():
         street = Street(speed=2.0, hidden=(20, 30), seed=seed)
         tracker = fusion(seed=seed)
         follow(tracker, street, range(25))
-        changed = {"num_particles": 90, "filter.colour": seed % 2 == 0, "seed": seed}
+        changed = {"num_particles": 90, "filter.penalty": 0.1 + 0.1 * (seed % 2), "seed": seed}
         tracker.reconfigure(from_mapping(FusionParameters, changed))
         estimates = [tracker.step(street.frame(time)) for time in range(25, 50)]
         assert estimates[0].mode is Mode.OCCLUDED
@@ -83,9 +83,8 @@ def test_reconfigured_while_hidden_it_still_recovers():
 @pytest.mark.parametrize(
     "off",
     [
-        {"filter.colour": False}, {"motion.camera": False}, {"motion.perspective": False},
-        {"size.step": 0.0}, {"size.aspect_gain": 0.0}, {"size.points_gain": 0.0},
-        {"visibility.points_slope": 0.0}, {"num_particles": 1}, {"motion.turns": False},
+        {"motion.camera": False},
+        {"size.step": 0.0}, {"visibility.points_slope": 0.0}, {"num_particles": 1},
     ],
     ids=str,
 )  # fmt: skip
@@ -323,11 +322,10 @@ def test_calm_frames_share_the_work(parts, monkeypatch):
     street, tracker = Street(speed=2.0), fusion()
     follow(tracker, street, range(20))
     done = counted(parts, monkeypatch)
-    tracker.step(street.frame(20))
-    assert done == ["judge", "learn"]
-    done.clear()
-    tracker.step(street.frame(21))
-    assert done == ["track", "searched_size"]
+    for time in range(20, 24):
+        tracker.step(street.frame(time))
+    first, second = ["track", "searched_size"], ["judge", "learn"]
+    assert done in ([*first, *second] * 2, [*second, *first] * 2)
 
 
 def test_before_ten_frames_and_in_doubt_all_of_the_work_is_done_in_each(parts, monkeypatch):

@@ -88,15 +88,6 @@ def test_driving_without_noise_by_hand():
     assert driven.visible == pytest.approx([0.9])
 
 
-def test_narrowing_draws_positions_and_velocities_in_by_hand():
-    positions, velocities = np.array([[4.0, 8.0]]), np.array([[2.0, -6.0]])
-    wide = Hypotheses.around(positions, velocities, np.zeros(1), 0.9)
-    narrow = wide.narrowed(np.array([2.0, 4.0]), np.array([5.0, 1.0]), 0.5)
-    assert narrow.positions.tolist() == [[3.0, 6.0]]
-    assert narrow.velocities.tolist() == [[6.0, -2.0]]
-    assert narrow.visible.tolist() == [0.9]
-
-
 def test_noise_of_driving_has_the_deviations_asked_for():
     count = 20_000
     still = Hypotheses.around(np.zeros((count, 2)), np.zeros((count, 2)), np.zeros(count), 0.5)

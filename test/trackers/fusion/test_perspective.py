@@ -37,9 +37,9 @@ def course(motion, frames=20):
     return times, positions, np.array([80 * motion.scale_at(time) for time in times])
 
 
-def fit(times, positions, sizes, *, perspective=True):
+def fit(times, positions, sizes):
     """All sizes count alike."""
-    return fit_motion(times, positions, sizes, np.ones(len(times)), perspective=perspective)
+    return fit_motion(times, positions, sizes, np.ones(len(times)))
 
 
 @pytest.mark.parametrize(
@@ -70,12 +70,6 @@ def test_a_vehicle_that_passes_the_camera_does_not_grow_without_bound():
     for time in (25.0, 60.0, 1e4):
         assert motion.scale_at(time) <= 4
         assert np.isfinite(motion.position_at(time)).all()
-
-
-def test_without_perspective_the_size_stays():
-    found = fit(*course(moving(0.02)), perspective=False)
-    assert found.rate == 0
-    assert found.scale_at(30.0) == 1
 
 
 def test_few_sightings_tell_no_rate():
@@ -109,7 +103,7 @@ def test_only_clear_sightings_are_fitted():
         clear = time < 9
         position = np.array([10.0 + 3 * time, 50.0]) if clear else np.array([37.0, 50.0])
         sightings.add(position, np.array([30.0, 20.0]), CLEAR_RESPONSE + (0.1 if clear else -0.1))
-    motion, last = sightings.fit(perspective=True)
+    motion, last = sightings.fit()
     assert last.age == 3
     assert last.position == pytest.approx([34, 50])
     assert motion.velocity == pytest.approx([3, 0])
@@ -131,7 +125,7 @@ def growing(*, cut_from, response, camera=None):
 
 def test_sizes_that_an_occluder_begins_to_cut_do_not_count():
     def rate(cut_from, response):
-        return growing(cut_from=cut_from, response=response).fit(perspective=True)[0].rate
+        return growing(cut_from=cut_from, response=response).fit()[0].rate
 
     assert rate(40, 1.0) == pytest.approx(0.01)
     assert rate(32, 0.89) == pytest.approx(0.01)
@@ -145,7 +139,7 @@ def test_before_a_camera_that_moves_late_sizes_count_for_more():
     standing = growing(cut_from=24, response=1.0)
     moving = growing(cut_from=24, response=1.0, camera=moves)
     assert standing.are_steady and not moving.are_steady
-    rates = [each.fit(perspective=True)[0].rate for each in (standing, moving)]
+    rates = [each.fit()[0].rate for each in (standing, moving)]
     assert rates[1] < rates[0] - 0.003
 
 
@@ -163,16 +157,16 @@ def test_sightings_are_steady_when_the_camera_has_stood_for_as_long_as_they_are_
 
 def test_without_clear_sightings_there_is_nothing_to_fit():
     sightings = Sightings()
-    assert sightings.fit(perspective=True) is None
+    assert sightings.fit() is None
     sightings.add(np.zeros(2), np.ones(2), CLEAR_RESPONSE - 0.01)
-    assert sightings.fit(perspective=True) is None
+    assert sightings.fit() is None
 
 
 def test_sightings_move_with_the_camera_and_age():
     sightings = Sightings()
     sightings.add(np.array([10.0, 20.0]), np.array([8.0, 6.0]), 1.0)
     sightings.pass_time(2.0, CameraMotion(np.array([[0.0, -1.0], [1.0, 0.0]]), np.array([5, 1])))
-    _, last = sightings.fit(perspective=True)
+    _, last = sightings.fit()
     assert last.age == 2
     assert last.position == pytest.approx([-15, 11])
     assert last.size == pytest.approx([8, 6])
@@ -183,6 +177,6 @@ def test_old_sightings_are_discarded():
     sightings.add(np.zeros(2), np.ones(2), 1.0)
     for _ in range(60):
         sightings.pass_time(1.0, CameraMotion())
-    assert sightings.fit(perspective=True)[1].age == 60
+    assert sightings.fit()[1].age == 60
     sightings.pass_time(1.0, CameraMotion())
-    assert sightings.fit(perspective=True) is None
+    assert sightings.fit() is None

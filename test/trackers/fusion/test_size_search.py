@@ -25,7 +25,7 @@ SIZE = np.array([40.0, 20.0])
 
 
 def parameters(**values):
-    return SizeParameters(**{"step": 0.03, "gain": 0.7, "aspect_gain": 0.6, **values})
+    return SizeParameters(**{"step": 0.03, "gain": 0.7, **values})
 
 
 def response(best):
@@ -42,12 +42,12 @@ def test_both_sides_go_to_the_vertex_by_hand(turn):
 
 
 @pytest.mark.parametrize(("turn", "axis"), [(1, 0), (3, 1), (5, 0)])
-def test_one_side_goes_alone_by_the_gain_of_the_aspect(turn, axis):
+def test_one_side_goes_alone_in_every_second_turn(turn, axis):
     best = SIZE * np.exp([0.4 * STEP, -0.3 * STEP])
     peak = response(best)
     found = searched_size(SIZE, turn, peak, parameters())
     expected = SIZE.copy()
-    expected[axis] *= 1.03 ** (0.6 * (0.4, -0.3)[axis])
+    expected[axis] *= 1.03 ** (0.7 * (0.4, -0.3)[axis])
     assert found == pytest.approx(expected)
 
 
@@ -78,11 +78,9 @@ def test_repeated_it_converges_on_the_right_aspect():
     assert size == pytest.approx(best, rel=0.01)
 
 
-@pytest.mark.parametrize(
-    ("turn", "off"), [(0, {"step": 0.0}), (1, {"aspect_gain": 0.0}), (0, {"gain": 0.0})]
-)
-def test_what_is_switched_off_is_not_even_measured(turn, off):
+@pytest.mark.parametrize("off", ["step", "gain"])
+def test_what_is_switched_off_is_not_even_measured(off):
     def peak(size):
         raise AssertionError(size)
 
-    assert searched_size(SIZE, turn, peak, parameters(**off)) is SIZE
+    assert searched_size(SIZE, 1, peak, parameters(**{off: 0.0})) is SIZE

@@ -97,7 +97,7 @@ def test_the_prediction_begins_with_the_whole_vehicle():
     for position, size in zip(positions, sizes, strict=True):
         sightings.pass_time(1.0, CameraMotion())
         sightings.add(position, size, 1.0)
-    motion, last = sightings.fit(perspective=True)
+    motion, last = sightings.fit()
     assert last.cut
     assert last.size == pytest.approx(whole[1][-1])
     assert motion.velocity == pytest.approx([2.0, 0.0], abs=0.05)

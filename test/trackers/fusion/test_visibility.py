@@ -31,7 +31,7 @@ def visibility(**values):
 
 
 ROUND = visibility(
-    points_slope=4.0, points_middle=0.5, hiding_rate=0.02, return_rate=0.05, partial_slope=8.0,
+    points_slope=4.0, hiding_rate=0.02, return_rate=0.05, partial_slope=8.0,
     partial_middle=0.7,
 )  # fmt: skip
 
@@ -64,11 +64,6 @@ def test_half_a_vehicle_is_partial_within_three_frames_and_whole_again_as_fast()
         for _ in range(3):
             whole = wholeness(whole, share, 1.0, ROUND)
         assert (whole > 0.5) == likely
-
-
-def test_nothing_is_partial_without_a_slope():
-    off = visibility(partial_slope=0.0, hiding_rate=0.5, return_rate=1e-6)
-    assert wholeness(0.9, 0.0, 1.0, off) == 1.0
 
 
 @given(

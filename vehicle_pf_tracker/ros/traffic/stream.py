@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
@@ -33,6 +34,7 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.offline.detectors import PacedDetector
 from vehicle_pf_tracker.offline.drawing import Colour, draw_box, line_width
+from vehicle_pf_tracker.offline.live_page import LivePage
 from vehicle_pf_tracker.parameters.configuration import Configuration, NodeParameters
 from vehicle_pf_tracker.ros.messages import WAITING, detections_type, image_message, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
@@ -52,10 +54,11 @@ from vehicle_pf_tracker.ros.traffic.rates import Rates
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 _BY_PIXELS = "vehicles are followed by their pixels meanwhile"
 
@@ -133,11 +136,13 @@ class TrafficStream(NodeStream):
     ----------
     vehicles : Vehicles
         All vehicles.
+    page : LivePage or None
+        Page that shows them; whoever ends the stream closes it.
 
     Raises
     ------
     InputError
-        If the network, or the file of lines and zones, cannot be used.
+        If the network, the file of lines and zones, or the port of the page cannot be used.
     """
 
     def __init__(
@@ -154,6 +159,10 @@ class TrafficStream(NodeStream):
         self._detections: Detections | None = None
         self._events: list[str] = []
         self.tell_drawn_seed(self.vehicles.session.tracker.seed)
+        port = configuration.tracker.page_port
+        self.page = LivePage(port) if port >= 0 else None
+        if self.page is not None:
+            self.log.info(f"picture and counts are at {self.page.url}")
 
     @property
     def facts(self) -> Mapping[str, object]:
@@ -297,8 +306,7 @@ class TrafficStream(NodeStream):
             self._outputs.publish_counts(header, vehicles.counter, vehicles.latest)
         if selected is not None:
             self._outputs.publish_vehicle(in_pixels(header, own), selected, own, period)
-        if own.publish.overlay:
-            self._outputs.publish_overlay(header, frame, vehicles)
+        self._show(header, frame)
         mode = WAITING if selected is None else selected.mode.value
         values = {"reason": self._reason} if selected is None else scalars(selected)
         values |= {**vehicles.summary(), "step_ms": step_ms}
@@ -311,6 +319,13 @@ class TrafficStream(NodeStream):
         self.health.answered(mode, step_ms)
         self._note_rates(estimates)
         self.publish_mode(header, mode, values)
+
+    def _show(self, header: Header, frame: Frame) -> None:
+        """Draw the image for those who look at it."""
+        if self._configuration.node.publish.overlay:
+            self._outputs.publish_overlay(header, frame, self.vehicles)
+        if self.page is not None:
+            self.page.show(partial(self.vehicles.drawn, frame), self.vehicles.facts)
 
     def judge(self) -> str:
         """Name the rates that are not as usual; called once a second."""

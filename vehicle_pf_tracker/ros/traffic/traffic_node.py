@@ -104,6 +104,12 @@ class TrafficNode(ImageNode):
         if self.stream is not None:
             self.stream.drop_waiting()
 
+    def cleanup(self) -> None:
+        """Release all of it, the page too."""
+        if self.stream is not None and self.stream.page is not None:
+            self.stream.page.close()
+        super().cleanup()
+
     def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
         super()._on_image(message, info)
         if self.stream is not None:

@@ -152,7 +152,7 @@ class Appearance:
     size, learnt : (2,) arrays
         Width and height of the target in the first frame, and of the part that is learnt, px.
     options : FilterParameters
-        Penalty and colour.
+        The penalty.
     """
 
     def __init__(
@@ -162,7 +162,7 @@ class Appearance:
         self._side = _CELLS * CELL
         target = np.minimum(learnt * zoom, _LARGEST_SHARE * self._side)
         self._box = target * (size / learnt)
-        self._colour, self._kernels, self.first_size = options.colour, kernels, size
+        self._kernels, self.first_size = kernels, size
         self._filter = CorrelationFilter(_CELLS, target / CELL, options.penalty, kernels)
         self.usual_response = 0.0
         self._least_usual = 0.0
@@ -243,9 +243,7 @@ class Appearance:
         return transform(self._features(patch.image, patch.grey))
 
     def _features(self, image: Frame, grey: Grey) -> CellFeatures:
-        features = self._kernels.gradient_cells(grey, _COLOURS if self._colour else 0)
-        if not self._colour:
-            return features
+        features = self._kernels.gradient_cells(grey, _COLOURS)
         cells = features.shape[2], features.shape[1]
         small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
         lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
@@ -275,9 +273,7 @@ def searched_size(
         Response at a size.
     """
     direction = np.array(_DIRECTIONS[turn % len(_DIRECTIONS)])
-    together = direction.all()
-    gain = parameters.gain if together else parameters.aspect_gain
-    if not parameters.step or not gain:
+    if not parameters.step or not parameters.gain:
         return size
     factor = (1 + parameters.step) ** direction
     at_size, smaller, larger = peak(size), peak(size / factor), peak(size * factor)
@@ -286,4 +282,4 @@ def searched_size(
         steps = min(max(0.5 * (smaller - larger) / bend, -1.0), 1.0)
     else:
         steps = float(np.sign(larger - smaller))
-    return np.asarray(size * factor ** (gain * steps))
+    return np.asarray(size * factor ** (parameters.gain * steps))

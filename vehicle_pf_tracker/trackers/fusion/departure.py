@@ -148,7 +148,9 @@ class Departure:
         if float(view.response[row, column]) < self.response:
             return None
         if before is None or np.linalg.norm(found - before.latest) > _FARTHEST_STEP * extent:
-            if self._is_entry(found, extent):
+            # Seen for the first time, it is as near to the border as one that enters.
+            depth = float((found - self.position) @ self.way)
+            if self.reason == TOO_FAR or depth < _ENTERS_WITHIN * extent:
                 self._candidate = _Candidate(found, found, 1)
             return None
         self._candidate = candidate = _Candidate(before.first, found, before.frames + 1)
@@ -156,11 +158,6 @@ class Departure:
         if candidate.frames < _FRAMES or float(moved @ self.way) < _MOVED * extent:
             return None
         return found, moved / (candidate.frames - 1)
-
-    def _is_entry(self, position: Array, extent: float) -> bool:
-        """Test whether something seen for the first time is as near to the border as one enters."""
-        depth = float((position - self.position) @ self.way)
-        return self.reason == TOO_FAR or depth < _ENTERS_WITHIN * extent
 
 
 def is_too_far(size: Array, first: Array) -> bool:

@@ -22,14 +22,11 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.fusion.appearance import View, searched_size
-from vehicle_pf_tracker.trackers.fusion.hypotheses import (
-    DOUBT,
-    LARGEST_GROWTH,
-    hidden_hypotheses,
-)
+from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, hidden_hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
+from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
 from vehicle_pf_tracker.trackers.fusion.turning import Turned
 
 _STRONG = 0.8
@@ -68,16 +65,14 @@ def follow(state: State, seen: Observation, step: Step) -> State:
 
 def _entering_occlusion(state: State, step: Step) -> State:
     """Predict from the last clear sightings: the occluder has dragged later ones along."""
-    motion = step.parameters.motion
-    fitted = step.memory.sightings.fit(perspective=motion.perspective)
+    fitted = step.memory.sightings.fit()
     if fitted is None:
-        doubted = state.particles.all_visible(DOUBT)
-        return replace(state, particles=doubted, largest=LARGEST_GROWTH * state.size)
+        return replace(state, particles=state.particles.all_visible(DOUBT), measured=state.size)
     path, last = fitted
-    if motion.turns and not last.cut:
+    if not last.cut:
         step.memory.turning.begin(path, last)
     size = last.size * path.scale_at(last.age)
-    state = replace(state, size=size, largest=LARGEST_GROWTH * size)
+    state = replace(state, size=size, measured=size)
     count, sigma = step.parameters.num_particles, step.hidden_velocity_sigma
     particles = hidden_hypotheses(step.rng, path, last.age, count, state.extent, sigma)
     return replace(state, particles=particles)
@@ -121,10 +116,9 @@ def _sized(state: State, step: Step, *, again: bool) -> State:
         return memory.appearance.response_at(step.frame, state.position, size)
 
     if not again and options.step and memory.surface.share > _WHOLE:
-        size = size * np.exp(options.points_gain * memory.points.stretch)
-    searches = state.searches + 1
-    size = step.bounded(searched_size(size, searches, peak, options))
-    return replace(state, size=size, searches=searches)
+        size = size * np.exp(memory.points.stretch / 2)
+    size = searched_size(size, state.frames // 2, peak, options)
+    return replace(state, size=step.bounded(size))
 
 
 def _follow_outline(state: State, turned: Turned, step: Step) -> State:
@@ -155,10 +149,10 @@ def _learn_sighting(state: State, seen: Observation, step: Step) -> None:
         memory.points.restart()
     if _is_sure(state) and seen.response > CLEAR_RESPONSE:
         memory.surface.learn_usual()
-    if Work.SIZE in state.work and step.parameters.visibility.points_slope:
+    if Work.SIZE in state.work:
         memory.points.renew(state.position, state.size, whole=state.is_whole)
     _learn_appearance(state, seen, step)
-    if state.work != Work.SIZE | Work.TRAINING:  # in full view
+    if state.work is not Work.BOTH:  # in full view
         memory.appearance.remember(step.parameters.filter.memory, state.frames)
     if state.is_whole:
         memory.strangers.measure(seen.view, state.position, state.size)
@@ -170,8 +164,7 @@ def _learn_turn(state: State, view: View, position: Array, step: Step) -> None:
     """Learn fast what a vehicle that turns looks like now."""
     appearance, points = step.memory.appearance, step.memory.points
     points.restart()
-    if step.parameters.visibility.points_slope:
-        points.renew(state.position, state.size)
+    points.renew(state.position, state.size)
     response = min(max(view.at(position), _LEAST_LEVEL), 1.0)
     appearance.learn_usual(response, _TURNING_LEVEL_RATE)
     # Without a spectrum the cells are measured again, at the size that the outline tells.
@@ -188,7 +181,7 @@ def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
     if not turns and (response <= _LEAST_LEARNT or not state.is_whole):
         return
     visible = state.particles.probability_visible
-    appearance.learn_usual(response, max(options.level_rate, 1 / (state.frames + 1)) * visible)
+    appearance.learn_usual(response, max(USUAL_RATE, 1 / (state.frames + 1)) * visible)
     if Work.TRAINING not in state.work:
         return
     stiffness = options.stiffness / visible

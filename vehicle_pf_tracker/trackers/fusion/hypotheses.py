@@ -117,11 +117,6 @@ class Hypotheses:
             velocities=camera.apply_to_velocities(self.velocities),
         )
 
-    def narrowed(self, centre: Array, velocity: Array, share: float) -> Hypotheses:
-        """Narrow positions around `centre`, and velocities around `velocity`, to a share."""
-        positions = centre + share * (self.positions - centre)
-        return replace(self, positions=positions, velocities=velocity + share * self.velocities)
-
     def driven(
         self, rng: np.random.Generator, elapsed: float, sigmas: tuple[float, float],
         *, across: float = 1.0,

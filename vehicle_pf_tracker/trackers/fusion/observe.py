@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import functools
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -32,9 +31,10 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     ACROSS_LANES,
     DOUBT,
     HIDDEN_SCALES,
+    LARGEST_GROWTH,
     Hypotheses,
 )
-from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step
 
 _LARGEST_LOG_RATIO = 6.0
@@ -61,12 +61,11 @@ def predict(state: State, step: Step) -> State:
 
 def _moved_with_camera(state: State, step: Step) -> State:
     """Move everything that is known with the background; its zoom never changes the size."""
-    memory, motion, camera = step.memory, step.parameters.motion, CameraMotion()
-    if motion.camera:
+    memory, camera = step.memory, CameraMotion()
+    if step.parameters.motion.camera:
         small = small_grey(step.frame)
         camera = memory.camera.measure(small, state.box)
-        if motion.turns:
-            memory.turning.keep(small, still=camera.still)
+        memory.turning.keep(small, still=camera.still)
     memory.sightings.pass_time(step.elapsed, camera)
     memory.surface.move_with_camera(camera)
     if camera.still:
@@ -81,7 +80,10 @@ def _set_off(state: State, step: Step) -> State:
     move = step.memory.points.first_motion(patch, state.size)
     if move is None:
         return state
-    particles = state.particles.narrowed(state.position, move, _MEASURED_SPREAD)
+    particles, share = state.particles, _MEASURED_SPREAD
+    positions = state.position + share * (particles.positions - state.position)
+    velocities = move + share * particles.velocities
+    particles = replace(particles, positions=positions, velocities=velocities)
     return replace(state, particles=particles, sets_off=True)
 
 
@@ -92,9 +94,11 @@ def _driven(state: State, step: Step) -> State:
     seen = state.visibility.is_seen
     sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
     if not seen:
-        sigmas = motion.hidden_position_sigma * extent, step.hidden_velocity_sigma * extent
+        sigmas = 0.0, step.hidden_velocity_sigma * extent
         growth = float(particles.weights @ particles.growths)
-        size = step.bounded(np.minimum(size * np.exp(growth * elapsed), state.largest))
+        size = step.bounded(
+            np.minimum(size * np.exp(growth * elapsed), LARGEST_GROWTH * state.measured)
+        )
     across = 1.0 if seen else ACROSS_LANES
     driven = particles.driven(step.rng, elapsed, sigmas, across=across)
     driven = driven.passed(elapsed, rates.hiding_rate, rates.return_rate)
@@ -120,15 +124,6 @@ def observe(state: State, step: Step) -> tuple[State, Observation]:
     return state, Observation(view, step.inside(position), response, again)
 
 
-class _Look(NamedTuple):
-    """The hypotheses, judged by the response at one size; see `response_evidence`."""
-
-    view: View
-    positions: Array
-    log_ratios: Array
-    scale: float
-
-
 def _weighed(state: State, step: Step) -> tuple[State, View]:
     """Weigh the hypotheses by the response where they are, or close by.
 
@@ -136,16 +131,14 @@ def _weighed(state: State, step: Step) -> tuple[State, View]:
     is visible.
     """
     scales = (1.0,) if state.visibility.is_seen else HIDDEN_SCALES
-    looks = [_look(state, step, scale) for scale in scales]
-    look = max(looks, key=lambda look: state.particles.evidence(look.log_ratios))
-    particles = replace(state.particles, positions=look.positions).observed(look.log_ratios)
-    size = state.size
-    if particles.probability_visible > 0.5:
-        size = step.bounded(look.scale * size)
-    return replace(state, particles=particles, size=size), look.view
+    looks = [(*_look(state, step, scale), scale) for scale in scales]
+    view, positions, ratios, scale = max(looks, key=lambda it: state.particles.evidence(it[2]))
+    particles = replace(state.particles, positions=positions).observed(ratios)
+    size = step.bounded(scale * state.size) if particles.probability_visible > 0.5 else state.size
+    return replace(state, particles=particles, size=size), view
 
 
-def _look(state: State, step: Step, scale: float) -> _Look:
+def _look(state: State, step: Step, scale: float) -> tuple[View, Array, Array]:
     """Judge the hypotheses by the response to a vehicle `scale` times as large as believed."""
     particles, hidden = state.particles, not state.visibility.is_seen
     appearance, options = step.memory.appearance, step.parameters
@@ -153,8 +146,7 @@ def _look(state: State, step: Step, scale: float) -> _Look:
     patch = appearance.patch(step.frame, particles.mean, scale * state.size, wide=wide)
     view = appearance.view(patch, recall=hidden and options.filter.memory > 0)
     climb = STAY if state.sets_off else CLIMB_ON_PATH if hidden else CLIMB_FREELY
-    evidence = response_evidence(view, particles.positions, climb, options.visibility)
-    return _Look(view, *evidence, scale)
+    return view, *response_evidence(view, particles.positions, climb, options.visibility)
 
 
 def _observe_return(
@@ -166,13 +158,11 @@ def _observe_return(
     view = appearance.view(patch)
     returned = departure.returned(view, step.elapsed)
     if returned is None:
-        state = replace(state, particles=state.particles.all_visible(0.0))
         return state, Observation(view, departure.position, 0.0, again=True)
     position, velocity = returned
     particles = gathered(state, step, position, velocity, 1 - DOUBT)
-    return replace(state, particles=particles), Observation(
-        view, position, view.at(position), again=True
-    )
+    seen = Observation(view, position, view.at(position), again=True)
+    return replace(state, particles=particles), seen
 
 
 def gathered(
@@ -185,36 +175,23 @@ def gathered(
     return Hypotheses.around(step.inside(position + spread), velocities, np.zeros(count), visible)
 
 
-class Climb(NamedTuple):
-    """Neighbourhood within which a hypothesis is moved to a better place.
-
-    Attributes
-    ----------
-    reach : int
-        Places of the response to each side.
-    sigma : float
-        Standard deviation, in places, that a move is paid for with.
-    """
-
-    reach: int
-    sigma: float
-
-
-CLIMB_FREELY, CLIMB_ON_PATH, STAY = Climb(5, 3.0), Climb(3, 1.0), Climb(0, 1.0)
-"""Where the path is known better than the place it has to keep to it: while hidden, else all would
-gather at clutter. A measured first motion is kept to exactly: a standing part of the first box
-answers better than the vehicle, and the filter cannot tell which of them it was shown."""
+CLIMB_FREELY, CLIMB_ON_PATH, STAY = (5, 3.0), (3, 1.0), (0, 1.0)
+"""Places of the response to each side within which a hypothesis is moved to a better one, and
+standard deviation that a move is paid for with. Where the path is known better than the place it
+has to keep to it: while hidden, else all would gather at clutter. A measured first motion is kept
+to exactly: a standing part of the first box answers better than the vehicle, and the filter cannot
+tell which of them it was shown."""
 
 
 @functools.cache
-def _costs(climb: Climb) -> Array:
+def _costs(reach: int, sigma: float) -> Array:
     """Costs of all moves in reach, as log ratios, by [y, x]."""
-    offsets = np.arange(-climb.reach, climb.reach + 1) ** 2
-    return np.asarray(0.5 * (offsets[:, np.newaxis] + offsets) / climb.sigma**2)
+    offsets = np.arange(-reach, reach + 1) ** 2
+    return np.asarray(0.5 * (offsets[:, np.newaxis] + offsets) / sigma**2)
 
 
 def response_evidence(
-    view: View, positions: Array, climb: Climb, parameters: VisibilityParameters
+    view: View, positions: Array, climb: tuple[int, float], parameters: VisibilityParameters
 ) -> tuple[Array, Array]:
     """Judge hypotheses by the filter's response close by.
 
@@ -233,8 +210,8 @@ def response_evidence(
         Log-likelihood ratio there, less what the move costs.
     """
     seen = np.minimum(np.maximum(view.response, 0), np.float32(_HIGHEST_RESPONSE))
-    ratios = parameters.response_slope * (seen.astype(np.float64) - parameters.response_middle)
-    moves, log_ratios = climbed(ratios, view.places(positions), _costs(climb))
+    ratios = parameters.response_slope * (seen.astype(np.float64) - EVEN)
+    moves, log_ratios = climbed(ratios, view.places(positions), _costs(*climb))
     return positions + moves / view.steps, np.clip(
         log_ratios, -_LARGEST_LOG_RATIO, _LARGEST_LOG_RATIO
     )

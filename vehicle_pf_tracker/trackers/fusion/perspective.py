@@ -186,62 +186,51 @@ class Sightings:
     """The last sightings, carried along with time and with the camera."""
 
     def __init__(self) -> None:
-        self._ages = np.empty(0)
-        self._positions = np.empty((0, 2))
-        self._sizes = np.empty((0, 2))
-        self._responses = np.empty(0)
+        self._rows = np.empty((0, 6))  # age, position, size, response
         self._camera_stood = math.inf
 
     def add(self, position: Array, size: Array, response: float) -> None:
         """Add a sighting of the present frame."""
-        self._ages = np.append(self._ages, 0.0)
-        self._positions = np.vstack([self._positions, position])
-        self._sizes = np.vstack([self._sizes, size])
-        self._responses = np.append(self._responses, response)
+        self._rows = np.vstack([self._rows, [0.0, *position, *size, response]])
 
     def pass_time(self, elapsed: float, camera: CameraMotion) -> None:
         """Let `elapsed` frames pass and the camera move."""
-        first = int((self._ages >= KEPT_FRAMES).sum())  # the oldest stand first
-        self._ages = self._ages[first:] + elapsed
-        self._positions = self._positions[first:]
-        self._sizes, self._responses = self._sizes[first:], self._responses[first:]
+        self._rows = self._rows[self._rows[:, 0] < KEPT_FRAMES]
+        self._rows[:, 0] += elapsed
         self._camera_stood += elapsed
         if not camera.still:
             self._camera_stood = 0.0
-            self._positions = camera.apply(self._positions)
+            self._rows[:, 1:3] = camera.apply(self._rows[:, 1:3])
 
     @property
     def are_steady(self) -> bool:
         """True where the camera has stood for as long as sightings are kept."""
         return self._camera_stood > KEPT_FRAMES
 
-    def fit(self, *, perspective: bool) -> tuple[PerspectiveMotion, Sighting] | None:
+    def fit(self) -> tuple[PerspectiveMotion, Sighting] | None:
         """Fit the motion to clear sightings; also give the last of them, which is at time 0."""
-        clear = self._responses >= CLEAR_RESPONSE
+        ages, responses = self._rows[:, 0], self._rows[:, 5]
+        positions, sizes = self._rows[:, 1:3], self._rows[:, 3:5]
+        clear = responses >= CLEAR_RESPONSE
         if not clear.any():
             return None
-        whole = made_whole(self._ages, self._positions, self._sizes, self._responses)
-        positions, sizes = whole or (self._positions, self._sizes)
-        positions, sizes, ages = positions[clear], sizes[clear], self._ages[clear]
+        whole = made_whole(ages, positions, sizes, responses)
+        positions, sizes = whole or (positions, sizes)
+        positions, sizes, ages = positions[clear], sizes[clear], ages[clear]
         last = Sighting(float(ages[-1]), positions[-1], sizes[-1], whole is not None)
         times = last.age - ages
-        believed = self._responses[clear] >= _SIZE_RESPONSE
+        believed = responses[clear] >= _SIZE_RESPONSE
         if believed.sum() < _RATE_NEEDS:
             believed[:] = True
         weights = believed.astype(float)
         if not self.are_steady:
             weights *= np.exp(times / _MEMORY)
         extents = np.sqrt(sizes.prod(axis=1))
-        return fit_motion(times, positions, extents, weights, perspective=perspective), last
+        return fit_motion(times, positions, extents, weights), last
 
 
 def fit_motion(
-    times: Array,
-    positions: Array,
-    sizes: Array,
-    size_weights: Array,
-    *,
-    perspective: bool,
+    times: Array, positions: Array, sizes: Array, size_weights: Array
 ) -> PerspectiveMotion:
     """Fit to sightings, by weighted least squares over a grid of rates.
 
@@ -255,8 +244,6 @@ def fit_motion(
         Geometric means of the sides, px.
     size_weights : (N,) array
         Weight of each size.
-    perspective : bool
-        False holds the rate at 0: constant velocity and size in the image.
 
     Returns
     -------
@@ -264,7 +251,7 @@ def fit_motion(
         Its position is half way between the fitted and the last one: the fit averages noise, the
         last one knows of changes of speed.
     """
-    rates = _RATES if perspective and len(times) >= _RATE_NEEDS else np.zeros(1)
+    rates = _RATES if len(times) >= _RATE_NEEDS else np.zeros(1)
     weights = np.exp(times / _MEMORY)
     total = weights.sum()
     divisors = np.maximum(1.0 - rates[:, np.newaxis] * times, _LEAST_DIVISOR)

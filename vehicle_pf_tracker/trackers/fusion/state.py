@@ -60,6 +60,7 @@ class Work(Flag):
 
     SIZE = 1
     TRAINING = 2
+    BOTH = SIZE | TRAINING
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,12 +81,10 @@ class State:
         Frames since the first one.
     work : Work
         Tasks of this frame.
-    searches : int
-        Searches for the size so far, which try its sides in turns.
-    growth, grown : float
-        Rate at which a partly hidden vehicle grows, and logarithm of its growth since it became so.
-    largest : (2,) array
-        Bound of the size of a hidden vehicle, px.
+    measured : (2,) array
+        Size when it was measured last, before the vehicle was partly or wholly hidden, px.
+    growth : float
+        Rate at which a partly hidden vehicle grows.
     turned : Turned or None
         Outline of a vehicle that turns.
     departure : Departure or None
@@ -99,14 +98,12 @@ class State:
     particles: Hypotheses
     position: Array
     size: Array
+    measured: Array
     visibility: Visibility = Visibility.VISIBLE
     whole: float = 0.99
     frames: int = 0
-    work: Work = Work.SIZE | Work.TRAINING
-    searches: int = 0
+    work: Work = Work.BOTH
     growth: float = 0.0
-    grown: float = 0.0
-    largest: Array = field(default_factory=lambda: np.full(2, np.inf))
     turned: Turned | None = None
     departure: Departure | None = None
     left_image: bool = False

@@ -47,7 +47,7 @@ _REACH = 0.45
 """Outermost points from the centre, of the size: the box's rim is background."""
 _REFINED = 5
 """Iterations of the flow's smoothing (Brox et al. 2004): plain surfaces move with their edges."""
-_USUAL_RATE = 0.05
+USUAL_RATE = 0.05
 """Rate per frame at which the usual share follows the present one in clear frames."""
 _LEAST_USUAL = 0.3
 """Usual share below which flow tells nothing: a vehicle of a few px, or motion blur."""
@@ -95,10 +95,6 @@ class SurfaceFlow:
     def restart(self) -> None:
         """Discard all patches, but not the usual share."""
         self._kept: deque[_Kept] = deque(maxlen=_KEPT)
-        self.forget_share()
-
-    def forget_share(self) -> None:
-        """Take all of the surface to move with the vehicle until it is judged again."""
         self.share, self.tells = 1.0, False
 
     def move_with_camera(self, camera: CameraMotion) -> None:
@@ -140,7 +136,7 @@ class SurfaceFlow:
     def learn_usual(self) -> None:
         """Count the present share as one of a clear frame."""
         if len(self._kept) >= _LEAST_KEPT:
-            self._usual += _USUAL_RATE * (self._latest - self._usual)
+            self._usual += USUAL_RATE * (self._latest - self._usual)
 
     def _earlier(self, position: Array, zoom: Array) -> tuple[_Kept, float]:
         """Choose a patch to compare with, and tell how far vehicle and background came apart."""

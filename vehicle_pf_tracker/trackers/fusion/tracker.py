@@ -77,7 +77,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
         positions = np.asarray(position + spread[0] * motion.position_sigma)
         particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - DOUBT)
-        self._state, self._memory = State(particles, position, size), Memory()
+        self._state, self._memory = State(particles, position, size, size), Memory()
         return positions
 
     def _learn(self) -> None:
@@ -91,14 +91,11 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     def reconfigure(self, parameters: FusionParameters) -> None:
         """Take new parameters; see `BaseTracker.reconfigure`."""
-        recoloured = parameters.filter.colour != self.parameters.filter.colour
         super().reconfigure(parameters)
         if self._target is not None:
             self._memory.appearance.use_kernels(self.kernels)
             particles = self._state.particles.resampled(self._rng, parameters.num_particles)
             self._state = replace(self._state, particles=particles)
-            if recoloured:
-                self._learn()
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         _ = self.target  # says what is wrong before the start

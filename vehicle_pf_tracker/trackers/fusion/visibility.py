@@ -23,16 +23,17 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from vehicle_pf_tracker.trackers.fusion.departure import Departure, is_too_far
-from vehicle_pf_tracker.trackers.fusion.hypotheses import FASTEST_GROWTH
-from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 
 _LARGEST_PARTIAL_LOG_RATIO = 3.0
 """Bound of a frame's log ratio of whole against partial, 20 to 1: errors of flow last over
 frames."""
-_CALM_RESPONSE, _CALM_SHARE = 0.9, 0.9
+_CALM = 0.9
 """Response, and share of the surface, above which a frame is calm: the size is followed in one,
 flow judged and appearance learnt in the next. That saves a quarter of the time and, over 633 runs,
 costs nothing else that could be seen (laboratory/notes/fusion_tried.md)."""
@@ -55,7 +56,7 @@ def judge(state: State, seen: Observation, step: Step) -> State:
     if departure is not None:
         visibility = Visibility.GONE
     elif (turned := turning.follow(step.elapsed, seen.view)) is not None:
-        visibility, state = Visibility.TURNING, replace(state, work=Work.SIZE | Work.TRAINING)
+        visibility = Visibility.TURNING
     elif not visible:
         visibility = Visibility.HIDDEN
     else:
@@ -67,19 +68,17 @@ def judge(state: State, seen: Observation, step: Step) -> State:
 
 
 def _work(state: State, response: float, surface: SurfaceFlow) -> Work:
-    """Choose the tasks of a frame: all but where the vehicle is in view, and moves as it did."""
-    known = state.visibility.is_seen and surface.tells and state.frames > _SETTLED
-    if not (known and response > _CALM_RESPONSE and surface.share > _CALM_SHARE):
-        return Work.SIZE | Work.TRAINING
-    return Work.SIZE if state.frames % 2 else Work.TRAINING
+    """Choose the tasks of a frame: all of them, but in calm frames in turns."""
+    whole = state.visibility is Visibility.VISIBLE and state.frames > _SETTLED
+    known = whole and surface.tells and surface.share > _CALM
+    if not (known and response > _CALM):
+        return Work.BOTH
+    return Work.TRAINING if state.work is Work.SIZE else Work.SIZE
 
 
 def _witnessed(state: State, seen: Observation, step: Step) -> State:
     """Take the share of the surface that moves with the vehicle as evidence on visibility."""
     evidence, surface = step.parameters.visibility, step.memory.surface
-    if not evidence.points_slope:
-        surface.forget_share()
-        return state
     patch = step.memory.appearance.usual_patch(seen.view.patch)
     if Work.SIZE in state.work:
         step.memory.points.track(patch, seen.position, state.size)
@@ -93,7 +92,7 @@ def _witnessed(state: State, seen: Observation, step: Step) -> State:
 
 def points_evidence(share: float, parameters: VisibilityParameters) -> float:
     """Log-likelihood ratio by the share of the surface's points that move with the vehicle."""
-    return parameters.points_slope * (min(share, 1.0) - parameters.points_middle)
+    return parameters.points_slope * (min(share, 1.0) - EVEN)
 
 
 def _departure(state: State, step: Step, *, visible: bool) -> Departure | None:
@@ -125,16 +124,15 @@ def _judged_whole(state: State, step: Step, *, again: bool) -> State:
         whole = wholeness(whole, share, step.elapsed, step.parameters.visibility)
     if whole > 0.5:
         return replace(state, whole=whole)
-    growth = state.growth
+    growth, measured = state.growth, state.measured
     if state.is_whole:
-        fitted = step.memory.sightings.fit(perspective=step.parameters.motion.perspective)
-        rate = 0.0 if fitted is None else fitted[0].rate
-        growth = min(max(rate, -FASTEST_GROWTH), FASTEST_GROWTH)
-    before = 0.0 if state.is_whole or again else state.grown
-    bound = math.log(_LARGEST_PARTIAL)
-    grown = min(max(before + growth * step.elapsed, -bound), bound)
-    size = step.bounded(state.size * math.exp(grown - before))
-    return replace(state, whole=whole, growth=growth, grown=grown, size=size)
+        fitted = step.memory.sightings.fit()
+        growth = 0.0 if fitted is None else fitted[0].rate
+    if state.is_whole or again:
+        measured = state.size
+    grown = state.size * math.exp(growth * step.elapsed)
+    grown = np.clip(grown, measured / _LARGEST_PARTIAL, measured * _LARGEST_PARTIAL)
+    return replace(state, whole=whole, growth=growth, measured=measured, size=step.bounded(grown))
 
 
 def wholeness(
@@ -145,8 +143,6 @@ def wholeness(
     *Whole* and *partial* are a Markov chain. Covering begins and ends as often as occlusions do; an
     occluder shows in the share while response and position do not yet fall.
     """
-    if not parameters.partial_slope:
-        return 1.0
     covered = 1 - (1 - parameters.hiding_rate) ** elapsed
     uncovered = 1 - (1 - parameters.return_rate) ** elapsed
     before = before * (1 - covered) + (1 - before) * uncovered

@@ -291,6 +291,9 @@ _REACH = 1.0
 """Distance from the prediction, in widths, within which a vehicle can reappear at once; ..."""
 _REACH_GROWTH = 1 / 30
 """... and its growth per nominal period, of itself: roads bend, drivers brake."""
+_TWIN = 0.5
+"""The same, in reaches, for one that was confirmed as another vehicle: beside a lorry that hides a
+car there is another one more often."""
 _SIZE_RATIO = 2.0
 """Largest ratio of areas: a vehicle reappears part by part. At 4, boxes of two merged vehicles were
 taken for one of them (of three seeds of `traffic-forty` with `poor`, IDF1 lower by 0.5 on
@@ -317,6 +320,8 @@ def _cost(track: Track, other: Track) -> float | None:
     """Distance in reaches; None where it cannot be the same vehicle."""
     if other is track or not other.confirmed or other.undetected < _MISSED_FOR:
         return None
+    if track.confirmed and other.undetected <= track.age:  # there were two of them
+        return None
     if other.visible < _IN_SIGHT:
         return None
     new, old = track.state.box, other.state.box
@@ -327,6 +332,10 @@ def _cost(track: Track, other: Track) -> float | None:
     width = math.sqrt(new.width * old.width)
     distance = math.hypot(x - u, y - v) / width / (_REACH * (1 + _REACH_GROWTH * other.undetected))
     fall = other.usual_similarity - similarity(other.colours, track.colours)
-    if distance > 1 or fall > _LARGEST_FALL or not np.any(track.colours):
+    if (
+        distance > (_TWIN if track.confirmed else 1)
+        or fall > _LARGEST_FALL
+        or not np.any(track.colours)
+    ):
         return None
     return distance

@@ -65,6 +65,8 @@ class TrackEstimate:
         Identity of the vehicle that hides it, `SCENE`, or None where it is in sight.
     serial : int
         Number of its track, the same before and after it is confirmed.
+    joined : int
+        Serial of the track as which it was found again after it was hidden; 0 if of none.
     is_likely : bool
         Of a `TENTATIVE` one: its way and size are those of a vehicle, but do not prove it yet.
     """
@@ -79,6 +81,7 @@ class TrackEstimate:
     age: float
     hidden_by: int | str | None
     serial: int = 0
+    joined: int = 0
     is_likely: bool = False
 
     @property

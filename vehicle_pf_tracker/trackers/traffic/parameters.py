@@ -182,6 +182,12 @@ class TrafficParameters:
         "counted.",
         read_only=True,
     )  # fmt: skip
+    page_port: int = parameter(
+        -1,
+        "Port of a page with picture and counts, for browsers of this machine; 0: any free one, "
+        "-1: no page.",
+        bounds=(-1, 65535), read_only=True,
+    )  # fmt: skip
     detector: DetectorParameters = group(DetectorParameters)
 
     def validate(self) -> None:

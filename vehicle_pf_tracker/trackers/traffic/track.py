@@ -80,6 +80,8 @@ class Track:
         Its way shows that it is no part of the scene.
     given : bool
         It was given by hand: that no detector finds it does not refute it.
+    joined : int
+        Number of the track as which it was found again; 0 if of none.
     score : float
         Score of its detection in this frame; NaN without one.
     age, unseen, undetected : float
@@ -116,6 +118,7 @@ class Track:
     is_likely: bool = False
     has_driven: bool = False
     given: bool = False
+    joined: int = 0
     score: float = math.nan
     age: float = 0.0
     unseen: float = 0.0
@@ -162,7 +165,7 @@ class Track:
 
     def resume(self, track: Track) -> None:
         """Go on where the new track is that this hidden vehicle turned out to be."""
-        self.state, self.before = track.state, track.before
+        self.state, self.before, self.joined = track.state, track.before, track.serial
         self.score = track.score
         for label, votes in track.votes.items():
             self.votes[label] = self.votes.get(label, 0.0) + votes
@@ -295,6 +298,7 @@ class Track:
         return TrackEstimate(
             identity=self.identity,
             serial=self.serial,
+            joined=self.joined,
             box=state.box,
             velocity=state.velocity,
             mode=mode,

@@ -227,6 +227,7 @@ class TrafficTracker:
             [one for one in self._tracks if one.confirmed and not one.undetected], found
         )
         self._match_tentative([one for one in self._tracks if not one.confirmed], found)
+        self._merge_twins()
         self._existence.fade(self._tracks, elapsed)
         self._drop_inside([one for one in self._tracks if one.confirmed], found, either=True)
         for index in found.free:
@@ -268,6 +269,20 @@ class TrafficTracker:
                     track.growth.add(found.edges[index])
             if self._existence.detected(track, found, index, fit):
                 self._confirm(track)
+
+    def _merge_twins(self) -> None:
+        """Merge vehicles that were born a second time with the ones that they are."""
+        missed = [one for one in self._tracks if one.confirmed and one.undetected]
+        if not (missed and self.parameters.returning):
+            return
+        longest = max(one.undetected for one in missed)
+        for track in self._tracks.copy():
+            if not track.confirmed or track.undetected or track.age >= longest or track.given:
+                continue
+            if (twin := former(track, missed)) is not None:
+                twin.resume(track)
+                self._tracks.remove(track)
+                missed.remove(twin)
 
     def _confirm(self, track: Track, *, given: bool = False) -> None:
         """Give a new vehicle its number, unless it is one that was hidden."""
