@@ -25,7 +25,6 @@ from small_recordings import COUNT, TARGET, frame_folder, frame_of, record, writ
 
 from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.cli.tracking_options import parse_target
 from vehicle_pf_tracker.offline import pictures
 
 HOLD = """
@@ -45,7 +44,8 @@ PAIRS = [word for pair in CORNERS for word in ("--pair", pair)]
 def here(tmp_path, monkeypatch):
     """A working folder with a recording, a video, and a folder of images."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(pick, "ask", lambda *_: [parse_target(f"van@1:{TARGET}")])
+    drawn = {"targets": [{"name": "van", "box": list(map(int, TARGET.split(",")))}]}
+    monkeypatch.setattr(pick, "ask", lambda *_: drawn)
     record(tmp_path / "bag")
     write_video(tmp_path / "clip.mp4", map(frame_of, range(COUNT)), codec="mp4v")
     frame_folder(tmp_path / "frames")

@@ -23,8 +23,8 @@ import pytest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.traffic_results import track_files
-from vehicle_pf_tracker.trackers.traffic.counting import Crossing
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 SEEN = TrackEstimate(
     identity=7,
@@ -36,12 +36,13 @@ SEEN = TrackEstimate(
     score=0.4,
     age=12.0,
     hidden_by=None,
+    serial=7,
 )
 HIDDEN = replace(
-    SEEN, identity=8, mode=TrackMode.OCCLUDED, confidence=0.8, score=math.nan, hidden_by=7
+    SEEN, identity=8, serial=8, mode=TrackMode.OCCLUDED, confidence=0.8, score=math.nan, hidden_by=7
 )
 TENTATIVE = replace(SEEN, identity=0, serial=9, mode=TrackMode.TENTATIVE)
-LOST = replace(SEEN, identity=10, mode=TrackMode.LOST, hidden_by=SCENE)
+LOST = replace(SEEN, identity=10, serial=10, mode=TrackMode.LOST, hidden_by=SCENE)
 ALL = (SEEN, HIDDEN, TENTATIVE, LOST)
 
 
@@ -63,6 +64,18 @@ def test_a_vehicle_has_its_number_from_its_first_detection_on(tmp_path):
         files.write(3, 300, [confirmed])
     rows = (tmp_path / "tracks.txt").read_text().splitlines()
     assert [row.split(",")[:2] for row in rows] == [["1", "5"], ["2", "5"], ["3", "5"]]
+
+
+def test_a_vehicle_found_again_has_the_boxes_of_the_track_that_it_was(tmp_path):
+    ghost, seen = replace(HIDDEN, hidden_by=SCENE), replace(TENTATIVE, box=Box(90, 20, 30, 40))
+    with track_files(tmp_path) as files:
+        files.write(1, 100, [HIDDEN])
+        files.write(2, 200, [ghost, seen])
+        files.write(3, 300, [replace(SEEN, identity=8, serial=8, joined=9)])
+    rows = (tmp_path / "tracks.txt").read_text().splitlines()
+    assert [row.split(",")[:3] for row in rows] == [
+        ["1", "8", "10.12"], ["2", "8", "90.00"], ["3", "8", "10.12"],
+    ]  # fmt: skip
 
 
 def test_visible_only_leaves_predicted_ones_out(tmp_path):
@@ -87,7 +100,9 @@ def test_the_table_has_every_estimate_with_all_digits(tmp_path):
 
 
 def test_crossings_are_rows_of_counts(tmp_path):
-    crossing = Crossing(95, "north, left", "in", 7, "car", TrackMode.OCCLUDED, 123.456, None)
+    crossing = Crossing(
+        95, "north, left", "in", 7, "car", TrackMode.OCCLUDED, 123.456, None, (9.0, 8.0), "twice"
+    )
     with track_files(tmp_path, counting=True) as files:
         files.write(3, 100, ALL, [crossing])
     with (tmp_path / "counts.csv").open() as file:
@@ -95,6 +110,7 @@ def test_crossings_are_rows_of_counts(tmp_path):
     assert row == {
         "frame": "3", "stamp_ns": "95", "place": "north, left", "direction": "in", "id": "7",
         "label": "car", "mode": "OCCLUDED", "speed_px_s": "123.46", "speed_kmh": "",
+        "doubt": "twice",
     }  # fmt: skip
 
 

@@ -19,7 +19,7 @@ import pytest
 from traffic_samples import vehicle
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.offline import traffic_drawing
+from vehicle_pf_tracker.offline import drawing
 from vehicle_pf_tracker.offline.drawing import draw_box
 from vehicle_pf_tracker.offline.traffic_drawing import (
     NEUTRAL,
@@ -88,7 +88,7 @@ def test_a_trail_is_drawn_behind_a_vehicle_until_it_is_lost():
 def test_a_speed_is_written_where_the_road_is_known(monkeypatch):
     written = []
     say = lambda _, words, *rest: written.append(words)  # noqa: E731
-    monkeypatch.setattr(traffic_drawing, "write_words", say)
+    monkeypatch.setattr(drawing, "write_words", say)
     corners = ((0.0, 0.0), (320.0, 0.0), (320.0, 240.0), (0.0, 240.0))
     pairs = [Pair((x, y), (x / 10, y / 10)) for x, y in corners]
     for plane, said in (

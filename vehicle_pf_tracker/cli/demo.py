@@ -44,7 +44,7 @@ class Request(OverwriteOption):
     """Request of `demo`."""
 
     output: Path = option(
-        "-o", type=Path, default=Path("results/demo"), metavar="DIR",
+        "-o", default=Path("results/demo"), metavar="DIR",
         help="folder for recording, estimates, video and scores (default: results/demo)",
     )  # fmt: skip
 

@@ -30,13 +30,11 @@ class Request(OverwriteOption, TruthOptions):
     """Request of `import`."""
 
     source: Path = positional(
-        type=Path, metavar="SRC",
+        metavar="SRC",
         help="video file, or folder of images with the truth that lies beside them",
     )  # fmt: skip
-    out: Path = positional(type=Path, metavar="OUT", help="rosbag2 folder to write")
-    fps: float | None = option(
-        type=float, metavar="HZ", help="frame rate, instead of the one that SRC states"
-    )
+    out: Path = positional(metavar="OUT", help="rosbag2 folder to write")
+    fps: float | None = option(metavar="HZ", help="frame rate, instead of the one that SRC states")
     format: str | None = option(
         choices=FORMATS,
         help="how images are stored (default: JPEG files as they are, videos as JPEG, PNG raw)",

@@ -55,18 +55,11 @@ PAIR_FORM = "{pixel: [u, v], road: [x, y]}, …"
 TARGETS, PAIRS = "targets", "pairs"
 USES: Mapping[str, str] = {
     TARGETS: "run --targets",
-    "lines": "traffic --lines",
-    "zones": "traffic --lines",
-    "roi": "traffic --lines",
+    **dict.fromkeys(("lines", "zones", "roi"), "traffic --lines"),
     PAIRS: "road calibrate --pairs",
 }
 """Verb and option that read a section of the file."""
 _TEXT = "text/plain; charset=utf-8"
-_FILES = {
-    "": ("text/html; charset=utf-8", "pick.html"),
-    "pick.js": ("text/javascript; charset=utf-8", "pick.js"),
-}
-"""Kind and file of the page and of its script, by their path."""
 _LONGEST = 1 << 20
 """Bytes of an answer: ten thousand boxes, and no more memory than that for a stray request."""
 
@@ -176,12 +169,12 @@ class Editor(PageServer):
 
     def content(self, what: str) -> Content | None:
         """Return the page, a frame, or what there is to know."""
-        if what in _FILES:
-            kind, name = _FILES[what]
-            return kind, resources.files(__package__).joinpath(name).read_bytes()
+        if what in {"", "pick.js"}:
+            kind = f"text/{'javascript' if what else 'html'}; charset=utf-8"
+            return kind, resources.files(__package__).joinpath(what or "pick.html").read_bytes()
         if what == "info":
             facts = {**self._facts, "frames": self._frames.count}
-            return "application/json", json.dumps(facts).encode()
+            return "application/json", json.dumps(facts, default=str).encode()
         if not what.startswith("frame/") or not what[6:].isdecimal():
             return None
         number = int(what[6:][:9])
@@ -251,17 +244,13 @@ class Request(SourceOptions, OverwriteOption):
         type=positive, default=1, metavar="N", help="frame to begin with (default: 1)"
     )
     output: Path | None = option(
-        "-o", type=Path, metavar="FILE",
-        help="write what was drawn to FILE, for run --targets, traffic --lines and road calibrate "
-        "--pairs; otherwise it is printed",
+        "-o", help="file for run --targets, traffic --lines and road calibrate --pairs; without "
+        "it, what was drawn is printed",
     )  # fmt: skip
-    edit: Path | None = option(
-        type=Path, metavar="FILE",
-        help="begin with what such a file has, and write it there again, or to -o",
-    )  # fmt: skip
+    edit: Path | None = option(help="change such a file, or with -o a copy of it")
     road: bool = switch(help="only points of the road, four or more, with their x and y in metres")
     grid: Path | None = option(
-        type=Path, metavar="PNG",
+        metavar="PNG",
         help="no page: write the frame with a grid labelled in px to PNG, to read boxes off",
     )  # fmt: skip
 

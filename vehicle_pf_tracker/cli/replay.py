@@ -91,7 +91,7 @@ def _absolute(topic: str) -> str:
 class Request(RosOptions, TopicOption, OverwriteOption):
     """Request of `replay`, with options named as the rosbag2 player's where it has them."""
 
-    recording: Path = positional(type=Path, help="rosbag2 folder or MCAP file")
+    recording: Path = positional(metavar="REC", help="rosbag2 folder or MCAP file")
     rate: float | None = option(
         "-r", type=positive_number, metavar="X", help="speed, 1.0 is as recorded"
     )
@@ -137,7 +137,7 @@ class Request(RosOptions, TopicOption, OverwriteOption):
         help="neither set the nodes' targets nor reset them",
     )  # fmt: skip
     output: Path | None = option(
-        "-o", type=Path, metavar="DIR",
+        "-o", metavar="DIR",
         help="write what the nodes answered: estimates.csv, in a folder for each of several nodes",
     )  # fmt: skip
 
@@ -186,25 +186,17 @@ def options_of(request: Request) -> ReplayOptions:
     return ReplayOptions(**{**shared, "remap": dict(request.remap)})
 
 
-def write_answers(folder: Path, nodes: Sequence[NodeReport]) -> list[Path]:
+def write_answers(folder: Path, nodes: Sequence[NodeReport]) -> None:
     """Write ``estimates.csv`` into `folder`, or for several nodes into a folder for each.
-
-    Returns
-    -------
-    list of Path
-        The files, in the order of `nodes`.
 
     Raises
     ------
     InputError
         If one cannot be written.
     """
-    paths = []
     for node in nodes:
         place = folder if len(nodes) == 1 else folder / node.name.strip("/").replace("/", "_")
-        paths.append(make_folder(place) / "estimates.csv")
-        write_estimates(paths[-1], node.rows, node.road)
-    return paths
+        write_estimates(make_folder(place) / "estimates.csv", node.rows, node.road)
 
 
 def summary(report: ReplayReport) -> str:

@@ -21,13 +21,13 @@ import functools
 import inspect
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from vehicle_pf_tracker.core.clock import MAX_DIFF
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.recordings.footage import Footage
@@ -85,14 +85,22 @@ def positional(**settings: Any) -> Any:
     return field(metadata={"settings": settings})
 
 
+_KINDS: Mapping[str, Mapping[str, Any]] = {
+    "Path": {"type": Path, "metavar": "FILE"}, "int": {"type": int}, "float": {"type": float},
+}  # fmt: skip
+"""Settings that follow from a field's type, where it does not say others."""
+
+
 def add_options(parser: argparse.ArgumentParser, kind: type[VerbRequest]) -> None:
     """Add the options that the fields of a request are read from."""
     declared = {one.name: one.metadata for one in fields(kind) if one.metadata}
     for base in reversed(kind.__mro__):
         heading = vars(base).get("GROUP")
         place: Any = parser.add_argument_group(heading) if heading else parser
-        for name in filter(declared.__contains__, inspect.get_annotations(base)):
-            settings = dict(declared[name]["settings"])
+        annotations = inspect.get_annotations(base)
+        for name in filter(declared.__contains__, annotations):
+            settings = _KINDS.get(annotations[name].removesuffix(" | None"), {})
+            settings = {**settings, **declared[name]["settings"]}
             if "type" in settings:
                 settings["type"] = _telling_why(settings["type"])
             if "flags" in declared[name]:
@@ -124,6 +132,16 @@ def request_of(kind: type[RequestT], args: argparse.Namespace) -> RequestT:
     """Make a request of a parsed command line."""
     values = {one.name: getattr(args, one.name) for one in fields(kind)}
     return kind(**{name: tuple(v) if isinstance(v, list) else v for name, v in values.items()})
+
+
+def names_in(text: str, known: Collection[str], what: str) -> tuple[str, ...]:
+    """Read some of the names that are known, with commas."""
+    names = tuple(dict.fromkeys(text.split(",")))
+    for name in names:
+        if name not in known:
+            choice = f"{suggestion(name, known)}; choose from {', '.join(sorted(known))}"
+            raise InputError(f"{name!r} is not {what}{choice}")
+    return names
 
 
 def positive(text: str) -> int:
@@ -173,7 +191,7 @@ class MaxDiffOption(VerbRequest):
     """Request that associates estimates and truth."""
 
     max_diff: float = option(
-        type=float, default=MAX_DIFF, metavar="S",
+        default=MAX_DIFF, metavar="S",
         help=f"largest time between an image and its truth (default: {MAX_DIFF:g} s)",
     )  # fmt: skip
 
@@ -208,7 +226,7 @@ class SourceOptions(TopicOption):
         "stream",
     )  # fmt: skip
     fps: float | None = option(
-        type=float, metavar="HZ", help="frame rate, instead of the one that SOURCE states"
+        metavar="HZ", help="frame rate, instead of the one that SOURCE states"
     )
 
     def open_source(self, **truth: Any) -> Recording | Footage:
@@ -222,9 +240,7 @@ class SourceOptions(TopicOption):
 class IdOption(VerbRequest):
     """Request that reads truth of several targets."""
 
-    id: int | None = option(
-        type=int, metavar="N", help="number of the vehicle, where the truth has several"
-    )
+    id: int | None = option(metavar="N", help="number of the vehicle, where the truth has several")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,7 +248,6 @@ class TruthOptions(IdOption):
     """Request that reads the truth of videos and folders."""
 
     truth: Path | None = option(
-        type=Path, metavar="FILE",
         help="truth of a video or a folder (default: what lies beside a folder's images); "
         "docs/evaluation.md lists the formats",
     )  # fmt: skip

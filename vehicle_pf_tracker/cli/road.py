@@ -64,9 +64,7 @@ class Request(SourceOptions, OverwriteOption, _Action):
         help="a pixel and the point of the road that it shows, px and m; repeatable; without pairs "
         "a page is served on which to click them",
     )  # fmt: skip
-    file: Path | None = option(
-        "--pairs", type=Path, metavar="FILE", help=f"YAML file with pairs: [{pick.PAIR_FORM}]"
-    )
+    file: Path | None = option("--pairs", help=f"YAML file with pairs: [{pick.PAIR_FORM}]")
     intrinsics: str = option(
         default="", metavar="FX,FY,CX,CY",
         help="focal lengths and principal point of the camera, px, as in CameraInfo",
@@ -79,12 +77,10 @@ class Request(SourceOptions, OverwriteOption, _Action):
         default="road", metavar="NAME", help="the road's frame in ROS (default: road)"
     )
     grid: Path | None = option(
-        type=Path, metavar="PNG",
+        metavar="PNG",
         help="picture with the road's lines; `pick --grid` writes one with pixel coordinates",
     )  # fmt: skip
-    output: Path | None = option(
-        "-o", type=Path, metavar="YAML", help="parameter file for nodes and `run`"
-    )
+    output: Path | None = option("-o", metavar="YAML", help="parameter file for nodes and `run`")
 
 
 def run(request: Request) -> int:

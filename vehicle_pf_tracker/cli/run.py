@@ -59,15 +59,15 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
         default="fusion",
         choices=Names(VARIANTS),
         metavar="NAME",
-        help=f"one of: {', '.join(VARIANTS)} (default: fusion)",
+        help=f"one of: {', '.join(VARIANTS)}, or a plug-in (default: fusion)",
     )
     output: Path | None = option(
-        "-o", type=Path, metavar="DIR",
+        "-o", metavar="DIR",
         help="folder for estimates.csv, run.json, summary.png, and metrics.json where there is "
         "truth (default: results/ and the source's name)",
     )  # fmt: skip
     recording: Path | None = option(
-        type=Path, metavar="OUT",
+        metavar="OUT",
         help="write images (JPEG), truth, estimates and Foxglove's annotations to the rosbag2 "
         "folder OUT",
     )  # fmt: skip
@@ -167,6 +167,6 @@ def _write(
         return
     (found,) = rows.values()
     metrics = measure(score_frames(found, source.truth(), request.max_diff))
-    folder.write_metrics(metrics.to_json())
     if metrics.frames_scored:
+        folder.write_metrics(metrics.to_json())
         print_rows(["", request.variant], run_rows(metrics))

@@ -52,12 +52,12 @@ class Request(OverwriteOption):
         help=f"one of: {', '.join((*SCENES, *TRAFFIC_SCENES))}",
     )  # fmt: skip
     out: Path | None = positional(
-        nargs="?", type=Path, metavar="OUT",
+        nargs="?", metavar="OUT",
         help="rosbag2 folder to write; or a video, NAME.mp4, with its truth in NAME.csv; the "
         "scenes traffic-* are written as MOTChallenge folders",
     )  # fmt: skip
     list: bool = switch(help="list the scenes and their settings")
-    seed: int = option(type=int, default=0, help="changes textures, noise and traffic (default: 0)")
+    seed: int = option(default=0, help="changes textures, noise and traffic (default: 0)")
     settings: Sequence[str] = option(
         "--set", action="append", default=[], metavar="NAME=VALUE",
         help="set a setting of the scene; repeatable",

@@ -44,9 +44,7 @@ _OF_ROS_PREFIX = "qos_overrides."
 class StartOptions(VerbRequest):
     """Options that choose parameters to start from."""
 
-    params: Path | None = option(
-        type=Path, metavar="FILE", help="file of parameters, as the verb params prints it"
-    )
+    params: Path | None = option(help="file of parameters, as the verb params prints it")
     assignments: Sequence[str] = option(
         "--set", action="append", default=[], metavar="NAME=VALUE",
         help="set a parameter, over the file; repeatable",
@@ -57,9 +55,7 @@ class StartOptions(VerbRequest):
 class ParameterOptions(StartOptions):
     """Options that choose parameters."""
 
-    seed: int | None = option(
-        type=int, help="seed of the random numbers; -1 draws one and run.json keeps it"
-    )
+    seed: int | None = option(help="seed of the random numbers; -1 draws one and run.json keeps it")
 
 
 def parse_box(text: str) -> Box:
@@ -244,10 +240,8 @@ class TrackingRequest(SourceOptions, ParameterOptions, OverwriteOption):
         "in FRAME; repeatable, for several vehicles or to correct one later; run starts on the "
         "first true box otherwise, and traffic follows these beside those that it detects",
     )  # fmt: skip
-    targets: Path | None = option(type=Path, metavar="FILE", help="targets that `pick` wrote")
-    video: Path | None = option(
-        type=Path, metavar="FILE", help="write the frames with all that is followed to FILE, an mp4"
-    )
+    targets: Path | None = option(help="targets that `pick` wrote")
+    video: Path | None = option(help="write the frames with all that is followed to FILE, an mp4")
 
     @property
     def inputs(self) -> tuple[str | Path | None, ...]:

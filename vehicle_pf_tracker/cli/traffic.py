@@ -48,15 +48,7 @@ if TYPE_CHECKING:
 
 PICTURE = "summary.png"
 HEAT = "heat.png"
-_LAST_PORT = 65535
 PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE, HEAT)
-
-
-def _port(text: str) -> int:
-    """Read a port of a command line."""
-    if not text.isdecimal() or int(text) > _LAST_PORT:
-        raise InputError(f"{text!r} is not a port, 0 to {_LAST_PORT}")
-    return int(text)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,12 +56,11 @@ class Request(TrackingRequest):
     """Request of `traffic`."""
 
     output: Path | None = option(
-        "-o", type=Path, metavar="DIR",
+        "-o", metavar="DIR",
         help="folder for tracks.csv, tracks.txt, counts.csv, run.json, summary.png and heat.png "
         "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
     detections: Path | None = option(
-        type=Path, metavar="FILE",
         help="detections as MOTChallenge has them, det.txt, instead of a detector",
     )  # fmt: skip
     detector: str | None = option(
@@ -80,13 +71,9 @@ class Request(TrackingRequest):
     model: str | None = option(
         metavar="FILE", help="the network, .onnx, or its URL: YOLOX, YOLOv8 or SSD"
     )
-    lines: Path | None = option(
-        type=Path,
-        metavar="FILE",
-        help="lines, zones and regions of interest, lines.yaml",
-    )
+    lines: Path | None = option(help="lines, zones and regions of interest, lines.yaml")
     serve: int | None = option(
-        type=_port, nargs="?", const=0, metavar="PORT",
+        type=int, nargs="?", const=0, metavar="PORT",
         help="show picture and counts meanwhile on a page for this machine's browsers; without "
         "PORT at any free one",
     )  # fmt: skip

@@ -74,6 +74,8 @@ def write_words(
 Colour = tuple[int, int, int]
 """Red, green, blue."""
 
+LETTER = 14
+"""Height of a line of words, in line widths."""
 _DASH = 6
 """Length of a dash and of a gap, in line widths."""
 _FAR = 20_000
@@ -94,6 +96,21 @@ def draw_box(picture: Frame, box: Box, colour: Colour, width: int, *, dashed: bo
     for ends in dashes(corners, _DASH * width):
         start, end = pixels_at(ends)
         cv2.line(picture, start, end, colour, width)
+
+
+def draw_path(
+    picture: Frame, points: Iterable[Position], colour: Colour, *, closed: bool = False
+) -> None:
+    """Draw lines from point to point, px, as wide as suits the picture."""
+    pixels = np.array(pixels_at(np.array(list(points)).reshape(-1, 2)), np.int32)
+    path = pixels.reshape(-1, 1, 2)
+    cv2.polylines(picture, [path], closed, colour, line_width(picture), cv2.LINE_AA)
+
+
+def write_above(picture: Frame, words: str, box: Box, colour: Colour) -> None:
+    """Write words above a box, in the picture."""
+    width, ((x, y),) = line_width(picture), pixels_at(np.array([[box.x, box.y]]))
+    write_words(picture, words, (max(x, 0), max(y - 3 * width, LETTER * width)), colour, width)
 
 
 def dashes(corners: Sequence[Position], dash: float) -> Iterator[Array]:
@@ -150,15 +167,11 @@ class Annotator:
         if self._shows_particles:
             for centre in pixels_at(estimate.particles):
                 cv2.circle(picture, centre, width, _PARTICLE, -1)
-        path = np.array(pixels_at(np.asarray(self._path).reshape(-1, 2)), np.int32).reshape(
-            -1, 1, 2
-        )
-        cv2.polylines(picture, [path], False, colour, width, cv2.LINE_AA)
+        draw_path(picture, self._path, colour)
         is_predicted = estimate.mode is Mode.OCCLUDED
         draw_box(picture, estimate.box, colour, width, dashed=is_predicted)
         if self.name:
-            x, y = pixels_at(np.asarray(estimate.box.corners))[0]
-            write_words(picture, self.name, (x, max(y - 3 * width, 14 * width)), colour, width)
+            write_above(picture, self.name, estimate.box, colour)
 
 
 def estimate_words(name: str, row: EstimateRow) -> str:

@@ -21,17 +21,19 @@ import functools
 from collections import deque
 from collections.abc import Iterable
 
-import cv2
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.offline.drawing import (
+    LETTER,
     NEUTRAL,
     Colour,
     draw_box,
+    draw_path,
     line_width,
-    pixels_at,
+    write_above,
     write_words,
 )
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, reference_point
@@ -43,8 +45,6 @@ _GOLDEN = 0.6180339887498949
 """Golden ratio: multiples of it modulo 1 stay apart as far as their number allows."""
 _TRAIL = 60
 """Positions of a trail: two seconds of 30 Hz, about a car's way through the picture."""
-_LETTER = 14
-"""Height of a line of words, in line widths."""
 
 
 @functools.lru_cache(maxsize=1024)
@@ -87,15 +87,11 @@ def draw_vehicle(
         draw_box(picture, estimate.box, NEUTRAL, width)
         return
     colour, is_hidden = identity_colour(estimate.identity), estimate.mode is TrackMode.OCCLUDED
-    if points := pixels_at(np.array(list(trail)).reshape(-1, 2)):
-        line = np.array(points, np.int32).reshape(-1, 1, 2)
-        cv2.polylines(picture, [line], False, colour, width, cv2.LINE_AA)
+    draw_path(picture, trail, colour)
     draw_box(picture, estimate.box, colour, width, dashed=is_hidden)
-    ((x, y),) = pixels_at(np.array([[estimate.box.x, estimate.box.y]]))
     words = [str(estimate.identity), estimate.label, "" if kmh is None else f"{kmh:.0f} km/h"]
     words += [estimate.mode.value] if is_hidden else []
-    above = max(x, 0), max(y - 3 * width, _LETTER * width)
-    write_words(picture, " ".join(filter(None, words)), above, colour, width)
+    write_above(picture, " ".join(filter(None, words)), estimate.box, colour)
 
 
 def draw_counts(picture: Frame, counter: Counter, scale: float = 1.0) -> None:
@@ -110,20 +106,18 @@ def draw_counts(picture: Frame, counter: Counter, scale: float = 1.0) -> None:
     scale : float
         Pixels of `picture` per pixel of the images.
     """
-    width = line_width(picture)
     for line in counter.plan.lines:
-        start, end = pixels_at(np.array([line.start, line.end]) * scale)
-        cv2.line(picture, start, end, _PLAN, width, cv2.LINE_AA)
+        ends = np.array([line.start, line.end]) * scale
+        draw_path(picture, ends, _PLAN)
         counts = ", ".join(f"{counter.count(line.name, to)} {to}" for to in line.directions)
-        _write_at(picture, f"{line.name}: {counts}", start)
+        _write_at(picture, f"{line.name}: {counts}", ends[0])
     for zone in counter.plan.zones:
-        corners = pixels_at(np.array(zone.corners) * scale)
-        outline = np.array(corners, np.int32).reshape(-1, 1, 2)
-        cv2.polylines(picture, [outline], True, _PLAN, width, cv2.LINE_AA)
+        corners = np.array(zone.corners) * scale
+        draw_path(picture, corners, _PLAN, closed=True)
         entries, exits = (counter.count(zone.name, to) for to in (ENTRY, EXIT))
         there = counter.occupancy[zone.name]
         words = f"{zone.name}: {there} ({entries} entered, {exits} left)"
-        _write_at(picture, words, min(corners, key=lambda corner: corner[1]))
+        _write_at(picture, words, corners[corners[:, 1].argmin()])
 
 
 def annotated(
@@ -144,10 +138,10 @@ def annotated(
     return picture
 
 
-def _write_at(picture: Frame, words: str, point: tuple[int, int]) -> None:
+def _write_at(picture: Frame, words: str, point: Array) -> None:
     """Write words above a point, moved into the picture where it is outside."""
     width, (height, across) = line_width(picture), picture.shape[:2]
     x = min(max(point[0] + 3 * width, 0), 0.8 * across)
     # Not in the topmost line, which has the time.
-    y = min(max(point[1] - 3 * width, 2.3 * _LETTER * width), height - 3 * width)
+    y = min(max(point[1] - 3 * width, 2.3 * LETTER * width), height - 3 * width)
     write_words(picture, words, (int(x), int(y)), _PLAN, width)

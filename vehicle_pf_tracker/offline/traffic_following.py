@@ -34,9 +34,10 @@ from vehicle_pf_tracker.offline.traffic_results import TrackFiles
 from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.session import TrackerError
-from vehicle_pf_tracker.trackers.traffic.counting import Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 _MOST_NOTICES = 20
@@ -138,7 +139,8 @@ class TrafficRun(CountedVehicles):
                 files.write(number, found.stamp_ns, estimates, crossings)
                 self.summary.add(estimates, self.counter.occupancy)
                 self.paths.add(found.frame, estimates)
-                self.heat.add(found.frame, estimates, self.session.tracker.frame_period)
+                period = self.session.tracker.frame_period
+                self.heat.add(found.frame, estimates, found.stamp_ns, period)
                 elapsed = clock_words(found.stamp_ns - start_ns)
                 draw = partial(self.drawn, found.frame, f"{elapsed}  frame {number}  ")
                 take((), draw, found.frame, found.stamp_ns)

@@ -30,10 +30,10 @@ from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles, session
 from vehicle_pf_tracker.offline.traffic_results import mot_numbers
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.counting import Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 DetectionsT = TypeVar("DetectionsT")
 

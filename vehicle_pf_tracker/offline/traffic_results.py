@@ -27,8 +27,9 @@ from typing import Any, TextIO
 
 from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.offline.output_files import replacing
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 TRACKS, MOT_TRACKS, COUNTS = "tracks.csv", "tracks.txt", "counts.csv"
 
@@ -40,6 +41,7 @@ TRACK_COLUMNS = (
 per nominal frame period, which is also the unit of age."""
 COUNT_COLUMNS = (
     "frame", "stamp_ns", "place", "direction", "id", "label", "mode", "speed_px_s", "speed_kmh",
+    "doubt",
 )  # fmt: skip
 """Columns of `counts.csv`: the stamp is that of the crossing, the frame the one it counted in."""
 
@@ -50,6 +52,7 @@ threshold of a half leaves no predicted box."""
 
 IN_TRACKS = frozenset({TrackMode.TENTATIVE, *CONFIRMED})
 """Modes of numbered vehicles that `tracks.txt` has."""
+_SEEN = frozenset({TrackMode.TENTATIVE, TrackMode.TRACKING})
 _HELD_FRAMES = 90
 """Frames that are held back at most until their tentative vehicles are known: 3 s at 30 Hz."""
 FrameEstimates = tuple[int, int, Sequence[TrackEstimate]]
@@ -60,7 +63,8 @@ Frames = Iterator[FrameEstimates]
 class Backdating:
     """Holds frames back until it is known which of their tentative vehicles are confirmed.
 
-    These get their numbers from their first detection on; the others are left out.
+    These get their numbers from their first detection on; the others are left out. A hidden vehicle
+    that was found again has the boxes of the track that it turned out to be, not its prediction.
     """
 
     def __init__(self) -> None:
@@ -70,7 +74,9 @@ class Backdating:
     def add(self, frame: int, stamp_ns: int, estimates: Sequence[TrackEstimate]) -> Frames:
         """Take the next frame, and return those that are known, in order."""
         self._held.append((frame, stamp_ns, estimates))
-        self._numbers.update({one.serial: one.identity for one in estimates if one.identity})
+        known = [one for one in estimates if one.identity]
+        self._numbers.update({one.serial: one.identity for one in known})
+        self._numbers.update({one.joined: one.identity for one in known if one.joined})
         open_ones = {one.serial for one in estimates if not one.identity}
         while self._held and (
             len(self._held) > _HELD_FRAMES
@@ -86,11 +92,13 @@ class Backdating:
     def _known(
         self, frame: int, stamp_ns: int, estimates: Sequence[TrackEstimate]
     ) -> FrameEstimates:
-        numbered = [
-            one if one.identity else replace(one, identity=self._numbers.get(one.serial, 0))
-            for one in estimates
-        ]
-        return frame, stamp_ns, [one for one in numbered if one.identity]
+        by_number: dict[int, TrackEstimate] = {}
+        for one in estimates:
+            number = self._numbers.get(one.serial, 0)
+            other = by_number.get(number)
+            if number and (other is None or other.mode not in _SEEN):
+                by_number[number] = one if one.identity == number else replace(one, identity=number)
+        return frame, stamp_ns, list(by_number.values())
 
 
 class TrackFiles:
@@ -202,7 +210,7 @@ def _count_row(frame: int, crossing: Crossing) -> list[Any]:
     return [
         frame, crossing.stamp_ns, crossing.place, crossing.direction, crossing.identity,
         crossing.label, crossing.mode.value,
-        *("" if speed is None else f"{speed:.2f}" for speed in speeds),
+        *("" if speed is None else f"{speed:.2f}" for speed in speeds), crossing.doubt,
     ]  # fmt: skip
 
 

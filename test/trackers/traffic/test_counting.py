@@ -15,6 +15,7 @@
 """Counting at lines and in zones, with paths whose crossings are known."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -291,3 +292,60 @@ def test_random_walks_count_as_an_independent_count_says():
                     expected.append(name)
                 side = now
         assert got == expected
+
+
+def passing(counter, first, paths, score=0.9):
+    """Feed the paths (x, bottoms) of vehicles, numbered from `first`; return the doubts."""
+    found = []
+    for number, (x, bottoms) in enumerate(paths, start=first):
+        for index, bottom in enumerate(bottoms):
+            stamp_ns = LATE + (1000 * number + index) * PERIOD_NS
+            found += counter.update([replace(vehicle(number, x, bottom), score=score)], stamp_ns)
+    return [one.doubt for one in found]
+
+
+DOWN, UP = [80, 88, 96, 104, 112, 120], [120, 112, 104, 96, 88, 80]
+
+
+def test_a_crossing_far_faster_than_all_others_is_marked_and_not_counted():
+    counter = line_counter()
+    passing(counter, 1, [(100, DOWN)] * 5)
+    assert passing(counter, 6, [(100, [0, 33, 66, 99, 132, 165])]) == ["faster"]
+    assert passing(counter, 7, [(100, [70, 82, 94, 106, 118, 130])]) == [""]
+    assert counter.count("across", "in") == 6
+    assert passing(line_counter(), 1, [(100, [0, 33, 66, 99, 132, 165])]) == [""]  # nothing known
+
+
+def test_a_crossing_against_all_others_counts_if_the_vehicle_was_detected():
+    counter = line_counter()
+    passing(counter, 1, [(100, DOWN)] * 5)
+    assert passing(counter, 6, [(100, UP)]) == [""]  # a driver the wrong way is what one looks for
+    assert passing(counter, 7, [(100, DOWN)] * 5) == [""] * 5
+    counter = line_counter()
+    passing(counter, 1, [(100, DOWN)] * 5)
+    assert passing(counter, 6, [(100, UP)], score=math.nan) == ["against"]  # by its pixels
+    assert passing(counter, 7, [(250, UP)], score=math.nan) == [""]  # in another lane
+    assert counter.count("across", "out") == 1
+
+
+def test_a_vehicle_born_again_beside_its_prediction_counts_once():
+    counter = line_counter()
+    doubts = []
+    for index in range(8):
+        known = vehicle(1, 100, 80 + 6 * index, MODES["T" if index < 2 else "O"])
+        again = [vehicle(2, 104, 76 + 6 * index)] if index > 2 else []
+        found = counter.update([known, *again], LATE + index * PERIOD_NS)
+        doubts += [(one.identity, one.doubt) for one in found]
+    assert doubts == [(1, ""), (2, "twice")]
+    assert counter.count("across", "in") == 1
+
+
+def test_a_hidden_vehicle_that_joins_a_track_goes_on_where_that_one_was():
+    counter = line_counter()
+    drive(counter, [60, 70, 75], "TTT")
+    for index, bottom in enumerate([90, 96, 104, 112], start=3):  # a new one, not yet confirmed
+        new = replace(vehicle(2, 100, bottom, MODES["t"]), identity=0)
+        old = vehicle(1, 100, 76, MODES["O"])
+        assert counter.update([old, new], LATE + index * PERIOD_NS) == ()
+    (crossing,) = counter.update([replace(vehicle(1, 100, 118), joined=2)], LATE + 7 * PERIOD_NS)
+    assert (crossing.identity, crossing.stamp_ns) == (1, LATE + 4 * PERIOD_NS + PERIOD_NS // 2)

@@ -50,3 +50,12 @@ def test_a_vehicle_that_reappears_a_little_off_is_the_hidden_one():
 def test_others_are_not_taken_for_it(other):
     new = confirmed(2, 130.0)
     assert former(new, [other, new]) is None
+
+
+def test_a_vehicle_confirmed_a_second_time_is_the_first_unless_there_were_two():
+    ghost, born = confirmed(1, 100.0, undetected=20.0), confirmed(2, 115.0, age=12.0)
+    assert former(born, [ghost, born]) is ghost
+    assert former(confirmed(2, 115.0, age=21.0), [ghost]) is None  # detected beside it
+    assert former(confirmed(2, 140.0, age=12.0), [ghost]) is None  # near, not beside it
+    ghost.resume(born)
+    assert (ghost.estimate().identity, ghost.estimate().joined) == (1, 2)

@@ -232,7 +232,7 @@ def _crossings(sequence: TrafficSequence, tracks: Array, line: CountingLine) -> 
         now = rows[rows[:, 0] == frame]
         estimates = [_estimate(row) for row in now.tolist()]
         crossings = counter.update(estimates, round(frame * 1e9 / sequence.frame_rate))
-        total += sum(one.stamp_ns >= _SETTLED_NS for one in crossings)
+        total += sum(one.stamp_ns >= _SETTLED_NS and not one.doubt for one in crossings)
     return total
 
 

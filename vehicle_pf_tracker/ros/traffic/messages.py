@@ -43,9 +43,10 @@ from vehicle_pf_tracker.ros.messages import (
     packed,
     status,
 )
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 CODES: Mapping[TrackMode, int] = MappingProxyType(
     {mode: code for code, mode in enumerate(TrackMode)}

@@ -54,10 +54,11 @@ from vehicle_pf_tracker.ros.traffic.rates import Rates
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, Crossing
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 _BY_PIXELS = "vehicles are followed by their pixels meanwhile"
 
@@ -338,7 +339,8 @@ class TrafficStream(NodeStream):
             found, seconds = detector.found, detector.seconds
         known = [one.identity for one in estimates if one.mode in CONFIRMED]
         visible = sum(one.mode is TrackMode.TRACKING for one in estimates)
-        self._rates.note(known, found, visible, seconds)
+        cluttered = self.vehicles.session.tracker.cluttered_places
+        self._rates.note(known, found, visible, seconds, cluttered)
 
     @property
     def _reason(self) -> str:

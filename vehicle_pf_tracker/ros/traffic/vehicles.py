@@ -29,9 +29,9 @@ from vehicle_pf_tracker.core.frame import CodedFrame, Frame
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.trackers.traffic.counting import Crossing
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 NONE = 0
 """Number that ends a selection; vehicles have numbers from 1."""
@@ -162,7 +162,8 @@ class Vehicles(CountedVehicles):
             If the image cannot be used; all vehicles are kept.
         """
         for crossing in self.follow(image, stamp_ns, detections):
-            self.latest[crossing.place] = crossing
+            if not crossing.doubt:
+                self.latest[crossing.place] = crossing
         self._is_shown, self._added = True, 0
         return [*self.session.events, *self._add_waiting()]
 

@@ -41,7 +41,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     clipped,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.track import PLAIN_SIGHT, Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
 
 GATE = 30.0
@@ -283,14 +283,13 @@ def _log_density(residuals: Array, covariances: Array) -> Array:
 
 _MISSED_FOR = 5.0
 """Nominal periods without a detection after which a vehicle may be hidden."""
-_IN_SIGHT = 0.5
-"""Share of its prediction that is in sight, below which it is where it is thought to be, behind
-another one: what appears near by is not it. Without this a car that comes out behind a lorry is
-taken for the one that the lorry hides."""
 _REACH = 1.0
 """Distance from the prediction, in widths, within which a vehicle can reappear at once; ..."""
 _REACH_GROWTH = 1 / 30
 """... and its growth per nominal period, of itself: roads bend, drivers brake."""
+_TWIN = 0.5
+"""The same, in reaches, for one that was confirmed as another vehicle: beside a lorry that hides a
+car there is another one more often."""
 _SIZE_RATIO = 2.0
 """Largest ratio of areas: a vehicle reappears part by part. At 4, boxes of two merged vehicles were
 taken for one of them (of three seeds of `traffic-forty` with `poor`, IDF1 lower by 0.5 on
@@ -317,7 +316,9 @@ def _cost(track: Track, other: Track) -> float | None:
     """Distance in reaches; None where it cannot be the same vehicle."""
     if other is track or not other.confirmed or other.undetected < _MISSED_FOR:
         return None
-    if other.visible < _IN_SIGHT:
+    if track.confirmed and other.undetected <= track.age:  # there were two of them
+        return None
+    if other.visible < PLAIN_SIGHT:
         return None
     new, old = track.state.box, other.state.box
     ratio = new.area / old.area
@@ -327,6 +328,10 @@ def _cost(track: Track, other: Track) -> float | None:
     width = math.sqrt(new.width * old.width)
     distance = math.hypot(x - u, y - v) / width / (_REACH * (1 + _REACH_GROWTH * other.undetected))
     fall = other.usual_similarity - similarity(other.colours, track.colours)
-    if distance > 1 or fall > _LARGEST_FALL or not np.any(track.colours):
+    if (
+        distance > (_TWIN if track.confirmed else 1)
+        or fall > _LARGEST_FALL
+        or not np.any(track.colours)
+    ):
         return None
     return distance

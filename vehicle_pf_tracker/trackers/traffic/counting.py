@@ -19,6 +19,7 @@ A vehicle is where the middle of its box's lower edge is: that point touches the
 
 from __future__ import annotations
 
+import math
 from collections import Counter as Tally
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -27,6 +28,7 @@ from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing, Life, Plausibility
 from vehicle_pf_tracker.trackers.traffic.watches import (
     ENTRY,
     EXIT,
@@ -44,42 +46,6 @@ CONFIRMED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
 """Modes of vehicles that count."""
 
 
-@dataclass(frozen=True, slots=True)
-class Crossing:
-    """Passage of one vehicle over a line, or into or out of a zone.
-
-    Attributes
-    ----------
-    stamp_ns : int
-        Time at which it crossed, between the images before and after it, ns.
-    place : str
-        Name of the line or zone.
-    direction : str
-        Name of the line's direction; ``entry`` or ``exit`` of a zone.
-    identity : int
-        Number of the vehicle.
-    label : str
-        Class of the vehicle; "" where it is unknown.
-    mode : TrackMode
-        Claim about it when it crossed: where that is `OCCLUDED`, its path was predicted; where it
-        is `LOST`, it was seen before and after, and its path is taken to be straight.
-    speed_px : float or None
-        Speed of the lower edge's middle over the last half second, px/s; None where it was not
-        followed for long enough.
-    speed_kmh : float or None
-        The same on the road, km/h; None without a road, or outside its calibrated area.
-    """
-
-    stamp_ns: int
-    place: str
-    direction: str
-    identity: int
-    label: str
-    mode: TrackMode
-    speed_px: float | None
-    speed_kmh: float | None
-
-
 @dataclass(slots=True)
 class _Vehicle:
     """Memory of one vehicle."""
@@ -88,8 +54,19 @@ class _Vehicle:
     zones: list[ZoneWatch]
     speed: PassageSpeed
     last_ns: int
+    life: Life
     is_confirmed: bool = False
     waiting: list[Crossing] = field(default_factory=list)
+    counted: set[tuple[str, str]] = field(default_factory=set)
+
+    def join(self, other: _Vehicle) -> None:
+        """Go on as the track that this vehicle turned out to be after it was hidden."""
+        for own, line in zip(self.lines, other.lines, strict=True):
+            line.join(own)
+        self.lines, self.zones, self.speed = other.lines, other.zones, other.speed
+        self.waiting = [
+            one for one in other.waiting if (one.place, one.direction) not in self.counted
+        ]
 
 
 class Counter:
@@ -97,7 +74,8 @@ class Counter:
 
     A vehicle has crossed a line when it has gone from clearly before it to clearly behind it, so
     that one which shakes on the line counts once. Crossings under an occluder count at the time
-    that is predicted; those of a tentative vehicle count when it is confirmed.
+    that is predicted; those of a tentative vehicle count when it is confirmed. An implausible
+    crossing is marked, and left out of the totals.
 
     Parameters
     ----------
@@ -109,7 +87,7 @@ class Counter:
     Attributes
     ----------
     totals : Counter of (str, str, str)
-        Crossings by place, direction and class.
+        Crossings by place, direction and class, but those in doubt.
     plane : RoadPlane or None
         The road, for vehicles that come from now on.
     """
@@ -119,6 +97,7 @@ class Counter:
         self.totals: Tally[tuple[str, str, str]] = Tally()
         self.plane = plane
         self.vehicles: dict[int, _Vehicle] = {}  # by their tracks
+        self._plausibility = Plausibility()
         self._occupancy = {zone.name: 0 for zone in plan.zones}
         self._last_ns: int | None = None
         self._before_ns: int | None = None
@@ -150,6 +129,7 @@ class Counter:
         self.vehicles.clear()
         self._occupancy = {zone.name: 0 for zone in self.plan.zones}
         self._last_ns = None
+        self._plausibility = Plausibility()
 
     def reset(self) -> None:
         """Begin anew, all totals at 0."""
@@ -169,7 +149,7 @@ class Counter:
         Returns
         -------
         tuple of Crossing
-            Those that are counted with this image.
+            Those that are known with this image, also those in doubt.
         """
         if self._last_ns is not None and stamp_ns < self._last_ns:
             self.forget_vehicles()
@@ -177,7 +157,8 @@ class Counter:
         self._occupancy = {zone.name: 0 for zone in self.plan.zones}
         counted = [one for estimate in estimates for one in self._follow(estimate, stamp_ns)]
         for one in counted:
-            self.totals[one.place, one.direction, one.label] += 1
+            if not one.doubt:
+                self.totals[one.place, one.direction, one.label] += 1
         self._drop_old(stamp_ns)
         return tuple(counted)
 
@@ -191,7 +172,14 @@ class Counter:
         elif vehicle.last_ns != self._before_ns:  # back after it was lost
             vehicle.speed.clear()
             mode = TrackMode.LOST
+        if estimate.joined in self.vehicles:
+            vehicle.join(self.vehicles.pop(estimate.joined))
         vehicle.last_ns = stamp_ns
+        if mode is not TrackMode.OCCLUDED:
+            vehicle.life.seen_ns = stamp_ns
+        vehicle.life.side = max(estimate.box.width, estimate.box.height)
+        vehicle.life.images += 1
+        vehicle.life.detected += not math.isnan(estimate.score)
         place = Place(reference_point(estimate.box), stamp_ns, estimate.box.height, mode)
         vehicle.speed.add(place.point, stamp_ns)
         vehicle.is_confirmed = vehicle.is_confirmed or estimate.mode in CONFIRMED
@@ -201,10 +189,13 @@ class Counter:
         for zone in vehicle.zones:
             self._occupancy[zone.zone.name] += zone.is_inside
         counted, vehicle.waiting = vehicle.waiting, []
-        return [
-            replace(one, identity=estimate.identity, label=estimate.label or one.label)
-            for one in counted
-        ]
+        vehicle.counted.update((one.place, one.direction) for one in counted)
+        return [self._judged(one, estimate, vehicle.life) for one in counted]
+
+    def _judged(self, one: Crossing, estimate: TrackEstimate, life: Life) -> Crossing:
+        """Return a crossing by what is known of its vehicle now."""
+        one = replace(one, identity=estimate.identity, label=estimate.label or one.label)
+        return replace(one, doubt=self._plausibility.doubt(one, life))
 
     def _passed(self, vehicle: _Vehicle, place: Place, estimate: TrackEstimate) -> list[Crossing]:
         """Return what the vehicle passed with the step to `place`."""
@@ -222,14 +213,15 @@ class Counter:
         speeds = vehicle.speed.pixels(), vehicle.speed.kmh()
         identity, label = estimate.identity, estimate.label
         return [
-            Crossing(at.stamp_ns, name, direction, identity, label, at.mode, *speeds)
+            Crossing(at.stamp_ns, name, direction, identity, label, at.mode, *speeds, at.point)
             for name, direction, at in found
         ]
 
     def _made(self, stamp_ns: int) -> _Vehicle:
         lines = [LineWatch(line) for line in self.plan.lines]
         zones = [ZoneWatch(zone) for zone in self.plan.zones]
-        return _Vehicle(lines, zones, PassageSpeed(self.plane), stamp_ns)
+        life = Life(stamp_ns, stamp_ns)
+        return _Vehicle(lines, zones, PassageSpeed(self.plane), stamp_ns, life)
 
     def _drop_old(self, stamp_ns: int) -> None:
         old = [

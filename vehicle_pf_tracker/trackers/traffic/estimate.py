@@ -65,8 +65,8 @@ class TrackEstimate:
         Identity of the vehicle that hides it, `SCENE`, or None where it is in sight.
     serial : int
         Number of its track, the same before and after it is confirmed.
-    is_likely : bool
-        Of a `TENTATIVE` one: its way and size are those of a vehicle, but do not prove it yet.
+    joined : int
+        Serial of the track as which it was found again after it was hidden; 0 if of none.
     """
 
     identity: int
@@ -79,7 +79,7 @@ class TrackEstimate:
     age: float
     hidden_by: int | str | None
     serial: int = 0
-    is_likely: bool = False
+    joined: int = 0
 
     @property
     def id(self) -> int:

@@ -105,6 +105,10 @@ class LineWatch:
             self._is_predicted = False
         return passage
 
+    def join(self, before: LineWatch) -> None:
+        """Go on from the track of the same vehicle before it was hidden."""
+        self._done |= before._done
+
     def _note_crossing(self, last: Place, place: Place, distance: float) -> None:
         """Keep the point at which the path last crossed the line, None where it went past it."""
         before = self.line.distance(last.point)
