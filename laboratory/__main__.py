@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The command line of the laboratory: ``python -m laboratory stress REC… -o DIR``.
+"""The command line of the laboratory: ``python -m laboratory VERB``, ``stress`` or ``faults``.
 
 The programs beside it that fit and score have command lines of their own:
 ``python -m laboratory.fusion_fit --help``.
@@ -24,6 +24,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from laboratory.faults import command as faults
 from laboratory.stress import command as stress
 from vehicle_pf_tracker.cli.console import USAGE
 from vehicle_pf_tracker.cli.main import exit_status
@@ -41,14 +42,18 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _run(words: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(prog=PROGRAM, description="Experiments on the trackers.")
     verbs = parser.add_subparsers(metavar="VERB", required=True)
-    verb = verbs.add_parser("stress", help="run systems over difficult cases made of recordings")
-    add_options(verb, stress.Request)
-    verb.set_defaults(command=[PROGRAM, *words])
+    for module, kind, name, purpose in (
+        (stress, stress.Request, "stress", "run systems over difficult cases made of recordings"),
+        (faults, faults.Request, "faults", "give nodes and commands faults of all kinds"),
+    ):
+        verb = verbs.add_parser(name, help=purpose)
+        add_options(verb, kind)
+        verb.set_defaults(command=[PROGRAM, *words], verb=module, kind=kind)
     try:
         args = parser.parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say
         return ended.code if isinstance(ended.code, int) else USAGE
-    return stress.run(request_of(stress.Request, args))
+    return int(args.verb.run(request_of(args.kind, args)))
 
 
 if __name__ == "__main__":

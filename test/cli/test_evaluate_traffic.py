@@ -70,7 +70,7 @@ def test_a_comparison_is_written_and_shown(folder, tmp_path, monkeypatch, capsys
     [
         (["--traffic", "{folder}", "--write", "otb"], 2, "--write does not go with --traffic"),
         (["{folder}", "--detections", "good"], 2, "--detections does not go without --traffic"),
-        (["--traffic", "{folder}", "--detections", "god"], 1, "there are no detections 'god' (did"),
+        (["--traffic", "{folder}", "--detections", "god"], 1, "'god' is not a file of det/ (did"),
         (["--traffic", "{folder}", "--set", "lost=1"], 1, "lost"),
         (["--traffic", "{folder}/img1"], 1, "is not a MOTChallenge folder: it has no seqinfo.ini"),
     ],

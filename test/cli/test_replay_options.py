@@ -13,7 +13,6 @@
 # limitations under the License.
 
 import argparse
-from pathlib import Path
 
 import pytest
 
@@ -127,14 +126,12 @@ def test_summary_counts_frames_and_answers_of_each_node():
 
 def test_one_node_writes_into_the_folder_itself(tmp_path):
     nodes = report(1).nodes
-    assert replay.write_answers(tmp_path / "out", nodes) == [tmp_path / "out" / "estimates.csv"]
+    replay.write_answers(tmp_path / "out", nodes)
     assert read_estimates(tmp_path / "out" / "estimates.csv") == list(nodes[0].rows)
 
 
 def test_several_nodes_have_folders_of_their_own(tmp_path):
-    paths = replay.write_answers(tmp_path, report(1, 1).nodes)
-    assert paths == [
-        Path(tmp_path, "ns_0_tracker", "estimates.csv"),
-        Path(tmp_path, "ns_1_tracker", "estimates.csv"),
-    ]
+    replay.write_answers(tmp_path, report(1, 1).nodes)
+    paths = sorted(tmp_path.glob("*/estimates.csv"))
+    assert [path.parent.name for path in paths] == ["ns_0_tracker", "ns_1_tracker"]
     assert [read_estimates(path)[0].mode for path in paths] == ["MODE0", "MODE1"]

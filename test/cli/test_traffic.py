@@ -310,7 +310,7 @@ def test_targets_given_by_hand_are_followed_from_their_frame(run):
         (["--start", "99"], True, "no frame lies between", 1),
         (["--lines", "none.yaml"], True, "cannot read the counting lines none.yaml", 1),
         (["--detector", "nothing"], False, "invalid choice", 2),
-        (["--serve", "70000"], True, "'70000' is not a port, 0 to 65535", 2),
+        (["--serve", "70000"], True, "page_port must be from -1 to 65535", 1),
     ],
 )  # fmt: skip
 def test_a_mistake_is_one_sentence(run, tmp_path, capsys, words, detections, said, status):

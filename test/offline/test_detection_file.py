@@ -99,9 +99,9 @@ def test_boxes_that_are_none_are_left_out_and_counted(read, row):
 
 
 def test_what_is_no_text_or_not_there_is_one_sentence(read, tmp_path):
-    with pytest.raises(InputError, match="are not text"):
+    with pytest.raises(InputError, match="is not text"):
         read(b"\xff\xfe\x00\x01")
     with pytest.raises(InputError, match=r"cannot read the detections .*No such file"):
         DetectionFile(tmp_path / "none.txt")
-    with pytest.raises(InputError, match="cannot read the detections"):
+    with pytest.raises(InputError, match="is not a regular file"):
         DetectionFile(tmp_path)

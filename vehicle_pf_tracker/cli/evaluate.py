@@ -35,9 +35,15 @@ from vehicle_pf_tracker.cli.console import (
     tell_notices,
 )
 from vehicle_pf_tracker.cli.report import ReportParts
-from vehicle_pf_tracker.cli.requests import IdOption, MaxDiffOption, TopicOption, option, switch
+from vehicle_pf_tracker.cli.requests import (
+    IdOption,
+    MaxDiffOption,
+    TopicOption,
+    names_in,
+    option,
+    switch,
+)
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
-from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.grid.cells import Plan, shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
@@ -126,14 +132,7 @@ def _sources(request: TrafficRequest, sequences: Sequence[TrafficSequence]) -> l
     if request.detections is None:
         return None
     known = {MOTION, *(name for sequence in sequences for name in sequence.detections)}
-    names = list(dict.fromkeys(request.detections.split(",")))
-    for name in names:
-        if name not in known:
-            raise InputError(
-                f"there are no detections {name!r}{suggestion(name, known)}; choose from "
-                f"{', '.join(sorted(known))}"
-            )
-    return names
+    return list(names_in(request.detections, known, "a file of det/"))
 
 
 _SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "failures")

@@ -55,18 +55,11 @@ PAIR_FORM = "{pixel: [u, v], road: [x, y]}, …"
 TARGETS, PAIRS = "targets", "pairs"
 USES: Mapping[str, str] = {
     TARGETS: "run --targets",
-    "lines": "traffic --lines",
-    "zones": "traffic --lines",
-    "roi": "traffic --lines",
+    **dict.fromkeys(("lines", "zones", "roi"), "traffic --lines"),
     PAIRS: "road calibrate --pairs",
 }
 """Verb and option that read a section of the file."""
 _TEXT = "text/plain; charset=utf-8"
-_FILES = {
-    "": ("text/html; charset=utf-8", "pick.html"),
-    "pick.js": ("text/javascript; charset=utf-8", "pick.js"),
-}
-"""Kind and file of the page and of its script, by their path."""
 _LONGEST = 1 << 20
 """Bytes of an answer: ten thousand boxes, and no more memory than that for a stray request."""
 
@@ -176,12 +169,12 @@ class Editor(PageServer):
 
     def content(self, what: str) -> Content | None:
         """Return the page, a frame, or what there is to know."""
-        if what in _FILES:
-            kind, name = _FILES[what]
-            return kind, resources.files(__package__).joinpath(name).read_bytes()
+        if what in {"", "pick.js"}:
+            kind = f"text/{'javascript' if what else 'html'}; charset=utf-8"
+            return kind, resources.files(__package__).joinpath(what or "pick.html").read_bytes()
         if what == "info":
             facts = {**self._facts, "frames": self._frames.count}
-            return "application/json", json.dumps(facts).encode()
+            return "application/json", json.dumps(facts, default=str).encode()
         if not what.startswith("frame/") or not what[6:].isdecimal():
             return None
         number = int(what[6:][:9])

@@ -186,25 +186,17 @@ def options_of(request: Request) -> ReplayOptions:
     return ReplayOptions(**{**shared, "remap": dict(request.remap)})
 
 
-def write_answers(folder: Path, nodes: Sequence[NodeReport]) -> list[Path]:
+def write_answers(folder: Path, nodes: Sequence[NodeReport]) -> None:
     """Write ``estimates.csv`` into `folder`, or for several nodes into a folder for each.
-
-    Returns
-    -------
-    list of Path
-        The files, in the order of `nodes`.
 
     Raises
     ------
     InputError
         If one cannot be written.
     """
-    paths = []
     for node in nodes:
         place = folder if len(nodes) == 1 else folder / node.name.strip("/").replace("/", "_")
-        paths.append(make_folder(place) / "estimates.csv")
-        write_estimates(paths[-1], node.rows, node.road)
-    return paths
+        write_estimates(make_folder(place) / "estimates.csv", node.rows, node.road)
 
 
 def summary(report: ReplayReport) -> str:

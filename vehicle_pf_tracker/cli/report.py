@@ -16,32 +16,17 @@
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import stages, tell_notices
-from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional
+from vehicle_pf_tracker.cli.requests import VerbRequest, names_in, option, positional
 from vehicle_pf_tracker.core.outputs import Products, claimed
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.report import Report
-
-
-def _several(*known: str) -> Callable[[str], tuple[str, ...]]:
-    """Return what reads some of `known`, with commas."""
-
-    def read(text: str) -> tuple[str, ...]:
-        names = tuple(dict.fromkeys(text.split(",")))
-        for name in names:
-            if name not in known:
-                choice = f"choose from {', '.join(known)}"
-                raise argparse.ArgumentTypeError(f"{name!r} is not a format; {choice}")
-        return names
-
-    return read
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,12 +38,14 @@ class ReportParts(VerbRequest):
         help="leave the stills of the recordings out of report.html",
     )  # fmt: skip
     figures: tuple[str, ...] = option(
-        type=_several("pdf", "svg", "png"), default=(), metavar="FORMATS",
+        type=partial(names_in, known=("pdf", "svg", "png"), what="a format"),
+        default=(), metavar="FORMATS",
         help="write every figure to DIR/figures, sized for a paper of two columns; FORMATS are "
         "pdf, svg or png, several with commas",
     )  # fmt: skip
     write: tuple[str, ...] = option(
-        type=_several("otb", "vot", "mot"), default=(), metavar="TOOLKITS",
+        type=partial(names_in, known=("otb", "vot", "mot"), what="a toolkit"),
+        default=(), metavar="TOOLKITS",
         help="write every run to DIR/results as other toolkits read it; TOOLKITS are otb, vot or "
         "mot, several with commas",
     )  # fmt: skip

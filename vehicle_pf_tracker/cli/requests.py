@@ -21,13 +21,13 @@ import functools
 import inspect
 import math
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from vehicle_pf_tracker.core.clock import MAX_DIFF
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.recordings.footage import Footage
@@ -132,6 +132,16 @@ def request_of(kind: type[RequestT], args: argparse.Namespace) -> RequestT:
     """Make a request of a parsed command line."""
     values = {one.name: getattr(args, one.name) for one in fields(kind)}
     return kind(**{name: tuple(v) if isinstance(v, list) else v for name, v in values.items()})
+
+
+def names_in(text: str, known: Collection[str], what: str) -> tuple[str, ...]:
+    """Read some of the names that are known, with commas."""
+    names = tuple(dict.fromkeys(text.split(",")))
+    for name in names:
+        if name not in known:
+            choice = f"{suggestion(name, known)}; choose from {', '.join(sorted(known))}"
+            raise InputError(f"{name!r} is not {what}{choice}")
+    return names
 
 
 def positive(text: str) -> int:

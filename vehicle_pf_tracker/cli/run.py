@@ -59,7 +59,7 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
         default="fusion",
         choices=Names(VARIANTS),
         metavar="NAME",
-        help=f"one of: {', '.join(VARIANTS)} (default: fusion)",
+        help=f"one of: {', '.join(VARIANTS)}, or a plug-in (default: fusion)",
     )
     output: Path | None = option(
         "-o", metavar="DIR",

@@ -171,7 +171,7 @@ class EvaluationRequest(WorkersOption):
     first_seed: int = option(type=natural, default=0, metavar="S", help="the first of the seeds")
     variants: str = option(
         default=ALL, metavar="NAME,…",
-        help=f"what to compare: {', '.join(VARIANTS)}; {BASELINE}NAME of OpenCV's "
+        help=f"what to compare: {', '.join(VARIANTS)}, or a plug-in; {BASELINE}NAME of OpenCV's "
         f"{', '.join(MODELS)}; {ALL} (default) for all variants, {ALL_BASELINES} for "
         f"{', '.join(_BASELINES_WITHOUT_MODELS)}",
     )  # fmt: skip
@@ -229,14 +229,9 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
 
 
 def _words(text: str) -> list[str]:
-    words: list[str] = []
-    for word in text.split(","):
-        if word == ALL:
-            words += VARIANTS
-        elif word == ALL_BASELINES:
-            words += [f"{BASELINE}{name}" for name in _BASELINES_WITHOUT_MODELS]
-        elif word:
-            words.append(word)
+    baselines = [f"{BASELINE}{name}" for name in _BASELINES_WITHOUT_MODELS]
+    several = {ALL: list(VARIANTS), ALL_BASELINES: baselines, "": []}
+    words = [one for word in text.split(",") for one in several.get(word, [word])]
     if not words:
         raise UsageError(f"--variants names none; choose of {', '.join([*VARIANTS, ALL])}")
     return list(dict.fromkeys(words))

@@ -48,15 +48,7 @@ if TYPE_CHECKING:
 
 PICTURE = "summary.png"
 HEAT = "heat.png"
-_LAST_PORT = 65535
 PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE, HEAT)
-
-
-def _port(text: str) -> int:
-    """Read a port of a command line."""
-    if not text.isdecimal() or int(text) > _LAST_PORT:
-        raise InputError(f"{text!r} is not a port, 0 to {_LAST_PORT}")
-    return int(text)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +73,7 @@ class Request(TrackingRequest):
     )
     lines: Path | None = option(help="lines, zones and regions of interest, lines.yaml")
     serve: int | None = option(
-        type=_port, nargs="?", const=0, metavar="PORT",
+        type=int, nargs="?", const=0, metavar="PORT",
         help="show picture and counts meanwhile on a page for this machine's browsers; without "
         "PORT at any free one",
     )  # fmt: skip

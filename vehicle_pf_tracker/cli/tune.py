@@ -139,7 +139,10 @@ def _tune(
     best = _find_best(what, output, request)
     lines = _compare(what, best, recordings, output / EVALUATION, request)
     told = verdict(lines, what.objective)
-    file = _write_best(configuration.updated(best.values), variant, what, output)
+    names = ", ".join(source.name for source in what.sources)
+    title = f"{variant.name}: tuned by `vehicle-pf-tracker tune` on {names}."
+    values = configuration.updated(best.values).to_mapping()
+    write_text(output / f"{BEST}.yaml", to_yaml(configuration.specs(), values, title))
     head = f"# {variant.name}, tuned for {what.objective.description}\n\n"
     write_text(output / "tuning.md", f"{head}{markdown(*texts(lines))}\n{told}\n")
     document = {
@@ -154,7 +157,7 @@ def _tune(
     }
     write_json(output / "tuning.json", document)
     print_rows(*texts(lines))
-    print(f"{told}\nthe parameters are {file}")
+    print(f"{told}\nthe parameters are {output / BEST}.yaml")
     return 0
 
 
@@ -203,13 +206,3 @@ def _compare(
     held_out = [source.name for source, _ in recordings if source not in what.sources]
     metrics = dict.fromkeys([what.objective.metric, "rmse_px"])
     return compare(report.evaluation, held_out, list(metrics))
-
-
-def _write_best(
-    configuration: Configuration, variant: Variant, what: SearchTask, output: Path
-) -> Path:
-    names = ", ".join(source.name for source in what.sources)
-    title = f"{variant.name}: tuned by `vehicle-pf-tracker tune` on {names}."
-    path = output / f"{BEST}.yaml"
-    write_text(path, to_yaml(configuration.specs(), configuration.to_mapping(), title))
-    return path

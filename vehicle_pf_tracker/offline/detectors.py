@@ -28,7 +28,7 @@ from typing import TypeAlias
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.offline.model_files import Progress, model_file, silent
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
@@ -112,8 +112,8 @@ class PacedDetector:
     ----------
     detector : Detector
         The detector.
-    every : int
-        k; 0 chooses the smallest that keeps the rate of the images.
+    wanted : callable
+        Returns k, which may change; 0 chooses the smallest that keeps the rate of the images.
     run : callable
         Calls the detector.
 
@@ -129,10 +129,12 @@ class PacedDetector:
         See `Detector`.
     """
 
-    def __init__(self, detector: Detector, every: int = 1, run: Run = call) -> None:
+    def __init__(
+        self, detector: Detector, wanted: Callable[[], int] = lambda: 1, run: Run = call
+    ) -> None:
         self._detector, self._run = detector, run
-        self._is_chosen = every == 0
-        self.every = max(every, 1)
+        self._wanted = wanted
+        self.every = 1
         self.found, self.seconds = 0, 0.0
         self.disturbed = self.is_blind = False
         self._images, self._others = 0, 0.0
@@ -140,6 +142,7 @@ class PacedDetector:
     def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
         """Find vehicles, if it is this image's turn; see `Detector`."""
         self._images += 1
+        self.every = self._wanted() or self.every
         self.disturbed, self.is_blind = False, self._images > 1 and self._images <= self.every
         if self.is_blind:
             return Detections.make([], [])
@@ -154,11 +157,11 @@ class PacedDetector:
         """Take the time that the last image cost in all, and the images' period, s."""
         others = seconds - (self.seconds if self._images == 1 else 0.0)
         self._others += (others - self._others) * (_RECENT if self._others else 1.0)
-        if self._is_chosen:
+        if self._wanted() == 0:
             most = max(round(_LONGEST / period), 1)
             left = _SHARE * period - self._others
-            wanted = math.ceil(self.seconds / left) if left > 0 else most
-            self.every = min(max(wanted, 1), most)
+            least = math.ceil(self.seconds / left) if left > 0 else most
+            self.every = min(max(least, 1), most)
 
 
 _COLUMNS = ("frame", "id", "left", "top", "width", "height", "score")
@@ -212,15 +215,9 @@ class DetectionFile:
 def _read_rows(path: Path) -> Array:
     """Return frame, left, top, width, height and score of every row, shape (N, 6)."""
     numbers = array("d")  # 48 bytes per row: a list of a million rows would take ten times as much
-    try:
-        with path.open(encoding="utf-8-sig") as file:
-            for number, line in enumerate(file, start=1):
-                if line.strip() and not line.lstrip().startswith("#"):
-                    numbers.extend(_row(line, f"row {number} of the detections {path}"))
-    except OSError as error:
-        raise InputError(f"cannot read the detections {path}: {error.strerror}") from error
-    except UnicodeDecodeError:
-        raise InputError(f"the detections {path} are not text") from None
+    for number, line in enumerate(read_text(path, "the detections").splitlines(), start=1):
+        if line.strip() and not line.lstrip().startswith("#"):
+            numbers.extend(_row(line, f"row {number} of the detections {path}"))
     return np.frombuffer(numbers, np.float64).reshape(-1, 6)
 
 

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.offline.traffic_results import COUNTS, TRACKS
 
 _INTEGERS = {"frame", "stamp_ns", "id"}
@@ -58,13 +58,12 @@ def read_counts(folder: str | Path, *, pandas: bool = False) -> Any:
 
 
 def _read(path: Path, as_frame: bool) -> Any:
+    names, *rows = csv.reader(read_text(path, "the table").splitlines())
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            names, *rows = csv.reader(file)
         columns = {
             name: _column(name, [row[index] for row in rows]) for index, name in enumerate(names)
         }
-    except (OSError, ValueError, IndexError) as error:
+    except (ValueError, IndexError) as error:
         raise InputError(f"cannot read the table {path}: {error}") from None
     if not as_frame:
         kinds = [(name, column.dtype) for name, column in columns.items()]

@@ -139,7 +139,8 @@ class TrafficRun(CountedVehicles):
                 files.write(number, found.stamp_ns, estimates, crossings)
                 self.summary.add(estimates, self.counter.occupancy)
                 self.paths.add(found.frame, estimates)
-                self.heat.add(found.frame, estimates, self.session.tracker.frame_period)
+                period = self.session.tracker.frame_period
+                self.heat.add(found.frame, estimates, found.stamp_ns, period)
                 elapsed = clock_words(found.stamp_ns - start_ns)
                 draw = partial(self.drawn, found.frame, f"{elapsed}  frame {number}  ")
                 take((), draw, found.frame, found.stamp_ns)

@@ -106,6 +106,8 @@ class PathPicture:
 _STANDING = 0.2
 """Speed in widths per s below which a vehicle stands: a third of a metre per s, slower than anybody
 drives, and what the noise of a standing vehicle's box leaves of its speed."""
+_LONGEST_GAP = 1.0
+"""Longest time in s that a frame stands for; over a longer one nobody knows who was there."""
 _FOOTPRINT = 0.3
 """Lower part of a box, as a share of its height, that is taken for the road below the vehicle."""
 _DROVE, _STOOD = (40, 160, 255), (255, 60, 30)
@@ -118,9 +120,14 @@ class HeatPicture:
 
     def __init__(self) -> None:
         self._seconds = np.zeros((2, 0, 0), np.float32)
+        self._last_ns = 0
 
-    def add(self, frame: Frame, estimates: Sequence[TrackEstimate], period: float) -> None:
-        """Take the next frame, `period` s after the one before; another size begins anew."""
+    def add(
+        self, frame: Frame, estimates: Sequence[TrackEstimate], stamp_ns: int, period: float
+    ) -> None:
+        """Take the next frame and the nominal period in s; another size begins anew."""
+        gap, self._last_ns = (stamp_ns - self._last_ns) * 1e-9, stamp_ns
+        seconds = gap if 0 < gap < _LONGEST_GAP else period
         if self._seconds.shape[1:] != frame.shape[:2]:
             self._seconds = np.zeros((2, *frame.shape[:2]), np.float32)
         width, height = frame_size(frame)
@@ -134,7 +141,7 @@ class HeatPicture:
                     np.round(ends), 0, [[width], [height]]
                 ).astype(int)
                 stands = int(speed < _STANDING * box.width)
-                self._seconds[stands, top:bottom, left:right] += period
+                self._seconds[stands, top:bottom, left:right] += seconds
 
     def write(self, path: Path, ground: Frame) -> None:
         """Write the picture, over `ground` in grey.

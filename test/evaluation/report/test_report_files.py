@@ -94,4 +94,4 @@ def test_frames_before_the_start_and_lost_ones_are_marked_or_left_out(written):
 
 def test_an_unknown_format_is_named(tmp_path, capsys):
     assert main(["report", str(tmp_path), "--figures", "pdf,eps"]) == 2
-    assert "'eps' is not a format; choose from pdf, svg, png" in capsys.readouterr().err
+    assert "'eps' is not a format; choose from pdf, png, svg" in capsys.readouterr().err

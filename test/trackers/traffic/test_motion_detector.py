@@ -14,14 +14,10 @@
 
 """Detection of what moves before a standing camera."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from traffic_samples import vehicle
 
 from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 
 GROUND = np.random.default_rng(0).integers(90, 120, (120, 160, 3))
@@ -46,17 +42,21 @@ def test_a_moving_vehicle_is_one_box_where_it_is():
     assert found[-1].boxes == pytest.approx(np.array([[42, 60, 36, 24]]), abs=3)
 
 
-@pytest.mark.parametrize("likely", [False, True])
-def test_a_blob_is_divided_by_tentative_vehicles_that_are_likely(likely):
+def test_a_shadow_is_cut_off_and_a_dark_vehicle_is_not():
     detector = MotionDetector()
     *before, last = frames(30)
     for frame in before:
         detector.detect(frame)
-    # One behind the other, and one blob.
-    last[36:84, 60:90] = np.vstack([PAINT, PAINT])[:, :30]
-    both = [vehicle(0, 75, bottom, TrackMode.TENTATIVE, size=(30.0, 24.0)) for bottom in (60, 84)]
-    found = detector.detect(last, [replace(one, is_likely=likely) for one in both])
-    assert len(found) == (2 if likely else 1)
+    last[60:84, 60:76] = last[60:84, 60:76] * 0.7  # of the paint, to its right
+    last[60:84, 24:60] = PAINT
+    dark = last[20:44, 100:136]
+    dark[:] = dark * 0.8
+    for top, bottom in ((3, 9), (16, 21)):  # its window and bumper
+        dark[top:bottom, 3:33] = dark[top:bottom, 3:33] * 0.7
+    found = detector.detect(last).boxes
+    assert found[np.argsort(found[:, 0])] == pytest.approx(
+        np.array([[24, 60, 36, 24], [100, 20, 36, 24]]), abs=4
+    )
 
 
 def test_masks_repeat_whatever_else_the_process_draws():
@@ -132,6 +132,19 @@ def test_vehicles_whose_corners_touch_are_divided():
     assert len(edges) == 2
     assert edges[np.argsort(edges[:, 0])] == pytest.approx(
         np.array([[20, 20, 50, 44], [48, 43, 78, 67]]), abs=3
+    )
+
+
+def test_vehicles_that_overlap_are_divided_once_the_size_of_one_is_known():
+    both = mask((20, 20, 50, 50), (46, 35, 76, 65))
+    reader = BlobReader()
+    assert len(reader.read(both, np.empty((0, 4)))[0]) == 1
+    for index in range(60):
+        alone = np.array([[20 + index, 20 + index // 2, 50 + index, 50 + index // 2]])
+        reader.read(mask(*alone.tolist()), alone.astype(float))
+    edges, _ = reader.read(both, np.empty((0, 4)))
+    assert edges[np.argsort(edges[:, 0])] == pytest.approx(
+        np.array([[20, 20, 50, 50], [46, 35, 76, 65]]), abs=10
     )
 
 

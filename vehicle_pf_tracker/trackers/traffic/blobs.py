@@ -15,7 +15,7 @@
 """Boxes of vehicles from a mask of what moves.
 
 What touches in the mask need not be one vehicle, and one vehicle need not be of one piece: the
-predictions of the vehicles that are followed tell.
+predictions of the vehicles that are followed tell, and the size that vehicles have there.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
 )
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
+Pixels: TypeAlias = npt.NDArray[np.bool_]
 
 _LEAST_AREA = 0.0003
 """Smallest area of a vehicle, of the image: 23 px in 320 x 240."""
@@ -69,11 +70,15 @@ _SHAPED = 100
 """Least area in px of a blob that has a shape."""
 _FULLNESS, _FULLNESS_SPREAD = np.log(0.8), 0.2
 """Usual logarithm of a vehicle's share of its box, to start from, and its standard deviation."""
-_NECK = 0.6
-"""Depth of a blob's parts, of the deepest place, below which they hang together by a neck only: two
-vehicles of one size whose corners touch."""
-_SECOND = 0.7
-"""Least depth of the other parts, of the deepest: mirrors and shadows are shallower."""
+_SIZE_SPREAD, _MOST_SIZE_COST = 0.2, 4.0
+"""Standard deviation of the logarithm of a car's size, and most cost of another size: a lorry is
+twice as large, and has to stay whole."""
+_SIZES_NEEDED, _SIZE_MEMORY = 50, 0.998
+"""Least boxes that a usual size is taken from: of one vehicle that has driven through; and weight
+of those before each: some minutes."""
+_SCALE, _SINGULAR = 400.0, 1e-4
+"""Largest width of a mask in px; and least singular value, of the largest one's, that tells: while
+all vehicles have driven on one line, the size beside it is taken to be the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +87,35 @@ class Piece:
 
     edges: Array
     area: float
+
+
+class UsualSize:
+    """Size of vehicles by where they stand: on a plane it is an affine function of the image."""
+
+    def __init__(self) -> None:
+        self._squares, self._sums, self._count = np.zeros((3, 3)), np.zeros(3), 0
+
+    def learn(self, edges: Array) -> None:
+        """Add the box (4,) of one vehicle; all count alike, near and far ones."""
+        size, place = _size_and_place(edges)
+        self._squares = _SIZE_MEMORY * self._squares + np.outer(place, place) / size**2
+        self._sums = _SIZE_MEMORY * self._sums + place / size
+        self._count += 1
+
+    def cost(self, edges: Array) -> float:
+        """Squared standard deviations of a box (4,) from the usual size; 0 while none is known."""
+        if self._count < _SIZES_NEEDED:
+            return 0.0
+        size, place = _size_and_place(edges)
+        usual = float(place @ np.linalg.lstsq(self._squares, self._sums, rcond=_SINGULAR)[0])
+        return float(min((np.log(size / max(usual, 1.0)) / _SIZE_SPREAD) ** 2, _MOST_SIZE_COST))
+
+
+def _size_and_place(edges: Array) -> tuple[float, Array]:
+    """Geometric mean of a box's sides, and the middle of its lower edge with a 1 beside it."""
+    left, top, right, bottom = edges.tolist()
+    place = np.array([(left + right) / 2 / _SCALE, bottom / _SCALE, 1.0])
+    return float(np.sqrt((right - left) * (bottom - top))), place
 
 
 class BlobReader:
@@ -97,6 +131,7 @@ class BlobReader:
         self._numbers = numbers
         self._aspect = float(_ASPECT)
         self._fullness = float(_FULLNESS)
+        self._sizes = UsualSize()
 
     def read(self, mask: Mask, predicted: Array) -> tuple[Array, Array]:
         """Find vehicles.
@@ -123,7 +158,7 @@ class BlobReader:
             if self._is_divided(box, predicted, members):
                 found += _divided(part, box, predicted[members])
                 continue
-            for piece in self._apart(part, box):
+            for piece in self._apart(part, *box[:2].astype(int).tolist()):
                 self._learn_shape(piece, mask.shape, len(members))
                 inside = intersections(piece.edges, predicted)
                 if len(inside) and inside.max() > _PIECE * areas(piece.edges):
@@ -137,25 +172,17 @@ class BlobReader:
         area = np.array([piece.area for piece in found])
         return edges, area / areas(edges)
 
-    def _apart(self, part: npt.NDArray[np.bool_], box: Array) -> list[Piece]:
-        """Divide a blob at its necks, if its parts look more like vehicles than the whole."""
-        x, y = box[:2].astype(int).tolist()
+    def _apart(self, part: Pixels, x: int, y: int) -> list[Piece]:
+        """Divide a blob again and again, while its parts look more like vehicles than the whole."""
         whole = _piece(part, x, y)
-        cores = _cores(part)
-        if len(cores) < 2:
+        if whole.area < _SHAPED:
             return [whole]
-        rows, columns = np.nonzero(part)
-        points = np.column_stack([columns, rows]) + 0.5
-        owners = np.argmin(
-            [((points - centre) ** 2).sum(axis=1) / area for centre, area in cores], axis=0
-        )
-        parts = []
-        for owner in range(len(cores)):
-            own = np.zeros_like(part)
-            own[rows[owners == owner], columns[owners == owner]] = True
-            if own.any():
-                parts.append(_piece(own, x, y))
-        return parts if self._are_several(parts, whole) else [whole]
+        cuts = [_cut(part, axis) for axis in (0, 1)]
+        pieces = [[_piece(half, x + u, y + v) for half, u, v in halves] for halves in cuts]
+        best = min((0, 1), key=lambda axis: self._worst(pieces[axis]))
+        if not self._are_several(pieces[best], whole):
+            return [whole]
+        return [piece for half, u, v in cuts[best] for piece in self._apart(half, x + u, y + v)]
 
     def _grouped(self, pieces: list[Piece]) -> list[Piece]:
         """Join the pieces in one prediction, unless they look like vehicles of their own."""
@@ -169,14 +196,16 @@ class BlobReader:
         """Test whether parts of a blob look more like vehicles than the whole does."""
         if min(one.area for one in parts) < _OWN * whole.area or whole.area < _SHAPED:
             return False
-        apart = max(self._shape_cost(one) for one in parts)
-        return apart + self._numbers.apart < self._shape_cost(whole)
+        return self._worst(parts) + self._numbers.apart < self._shape_cost(whole)
+
+    def _worst(self, parts: list[Piece]) -> float:
+        return max(self._shape_cost(one) for one in parts)
 
     def _shape_cost(self, piece: Piece) -> float:
-        """Squared standard deviations of aspect and fullness from the usual ones."""
+        """Squared standard deviations of aspect, fullness and size from the usual ones."""
         aspect = self._aspect_cost(piece.edges[np.newaxis])[0]
         fullness = np.log(piece.area / areas(piece.edges)) - self._fullness
-        return float(aspect + (fullness / _FULLNESS_SPREAD) ** 2)
+        return float(aspect + (fullness / _FULLNESS_SPREAD) ** 2 + self._sizes.cost(piece.edges))
 
     def _is_divided(self, box: Array, predicted: Array, members: npt.NDArray[np.intp]) -> bool:
         """Test for several vehicles in a blob: none fits alone, and the aspects suggest it."""
@@ -195,16 +224,17 @@ class BlobReader:
         if members == 1 and free and sides.min() > _ASPECT_SIDE:
             aspect = float(_log_aspect(box[np.newaxis])[0])
             self._aspect += _ASPECT_RATE * (aspect - self._aspect)
+            self._sizes.learn(box)
             fullness = float(np.log(piece.area / areas(box)))
             self._fullness += _ASPECT_RATE * (fullness - self._fullness)
 
 
-def _piece(part: npt.NDArray[np.bool_], x: int, y: int) -> Piece:
+def _piece(part: Pixels, x: int, y: int) -> Piece:
     """Make a piece of the pixels of a mask whose corner is at (x, y)."""
     return Piece(_trimmed(part, x, y), float(part.sum()))
 
 
-def _components(mask: Mask) -> Iterator[tuple[npt.NDArray[np.bool_], Array]]:
+def _components(mask: Mask) -> Iterator[tuple[Pixels, Array]]:
     """Divide a mask into what hangs together: pixels within a box (4,), and this box."""
     count, labels, stats, _ = cv2.connectedComponentsWithStats(mask)
     for index in range(1, count):
@@ -214,22 +244,25 @@ def _components(mask: Mask) -> Iterator[tuple[npt.NDArray[np.bool_], Array]]:
             yield part, np.array([x, y, x + width, y + height], dtype=np.float64)
 
 
-def _cores(part: npt.NDArray[np.bool_]) -> list[tuple[Array, float]]:
-    """Find the parts that hang together by necks only: centre in px from the corner, and area."""
-    if min(part.shape) < _ASPECT_SIDE:
-        return []
-    padded = cv2.copyMakeBorder(part.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
-    contours, _ = cv2.findContours(padded, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    cv2.drawContours(padded, contours, -1, 1, cv2.FILLED)
-    depth = cv2.distanceTransform(padded, cv2.DIST_L2, 3)
-    count, labels, stats, centres = cv2.connectedComponentsWithStats(
-        (depth > _NECK * depth.max()).astype(np.uint8)
-    )
-    return [
-        (centres[index] - 0.5, float(stats[index, cv2.CC_STAT_AREA]))
-        for index in range(1, count)
-        if depth[labels == index].max() > _SECOND * depth.max()
-    ]
+def _cut(part: Pixels, axis: int) -> list[tuple[Pixels, int, int]]:
+    """Cut a blob between two rows, or columns, where the boxes of its parts have the least area.
+
+    Each part comes with its left and upper end in the blob, whose borders all have pixels.
+    """
+    lines = part if axis == 0 else part.T
+    full, length = lines.any(axis=1), lines.shape[1]
+    low = np.where(full, lines.argmax(axis=1), length)
+    high = np.where(full, length - lines[:, ::-1].argmax(axis=1), 0)
+    before = np.maximum.accumulate(high) - np.minimum.accumulate(low)
+    behind = (np.maximum.accumulate(high[::-1]) - np.minimum.accumulate(low[::-1]))[::-1]
+    counts = np.arange(1, len(lines))
+    sums = before[:-1] * counts + behind[1:] * (len(lines) - counts)
+    first = np.indices(part.shape)[axis] <= (sums.argmin() if len(sums) else 0)
+    halves = []
+    for half in (part & first, part & ~first):
+        u, v, width, height = cv2.boundingRect(half.astype(np.uint8))
+        halves.append((half[v : v + height, u : u + width], u, v))
+    return halves
 
 
 def _log_aspect(edges: Array) -> Array:
@@ -237,7 +270,7 @@ def _log_aspect(edges: Array) -> Array:
     return np.asarray(np.log(sides[:, 1] / sides[:, 0]))
 
 
-def _divided(part: npt.NDArray[np.bool_], box: Array, predicted: Array) -> list[Piece]:
+def _divided(part: Pixels, box: Array, predicted: Array) -> list[Piece]:
     """Give each pixel of a blob to the prediction that it is nearest to, in its half sizes."""
     rows, columns = np.nonzero(part)
     points = np.column_stack([columns, rows]) + box[:2] + 0.5
@@ -254,7 +287,7 @@ def _divided(part: npt.NDArray[np.bool_], box: Array, predicted: Array) -> list[
     return pieces
 
 
-def _trimmed(part: npt.NDArray[np.bool_], x: int, y: int) -> Array:
+def _trimmed(part: Pixels, x: int, y: int) -> Array:
     """Edges of a blob without its thin rim."""
     by_column, by_row = part.sum(axis=0), part.sum(axis=1)
     columns = np.flatnonzero(by_column >= _TRIMMED * by_column.max())

@@ -67,8 +67,6 @@ class TrackEstimate:
         Number of its track, the same before and after it is confirmed.
     joined : int
         Serial of the track as which it was found again after it was hidden; 0 if of none.
-    is_likely : bool
-        Of a `TENTATIVE` one: its way and size are those of a vehicle, but do not prove it yet.
     """
 
     identity: int
@@ -82,7 +80,6 @@ class TrackEstimate:
     hidden_by: int | str | None
     serial: int = 0
     joined: int = 0
-    is_likely: bool = False
 
     @property
     def id(self) -> int:

@@ -55,6 +55,11 @@ _SHADE = 20.0
 """Largest distance in colour of a shadow from the darkened background."""
 _COMPARED = 3
 """Every this many of the samples make the background that shadows are told by: a mean is enough."""
+_EDGE = 0.04
+"""Largest change per px of the brightness, of the background's, inside a shadow: noise is half of
+it. At .03 noisy shadows are vehicles; at .06 half the dark cars of a cloudy day are shadows."""
+_RIM = np.ones((5, 5), np.uint8)
+"""Surroundings of a change's pixel that have to have changed, too, for an edge there to count."""
 _SPARSE = (slice(None, None, 4), slice(None, None, 4))
 """Pixels that the camera's gain is taken from."""
 _LIT = 60
@@ -109,10 +114,7 @@ class Background:
             difference = cv2.transform(cv2.absdiff(image, sample), _SUM)
             agreeing += difference < self._numbers.colour_threshold
         changed = agreeing < _AGREEING
-        known = [sample[changed] for sample in self._samples[::_COMPARED]]
-        background = np.asarray(np.mean(known, axis=0), np.float64)
-        changed[changed] = ~self._is_shadow(image[changed].astype(np.float64), background)
-        return changed
+        return np.asarray(changed & ~self._shadows(image, changed))
 
     def learn(self, image: Colours, changed: Pixels, held: Pixels) -> None:
         """Renew samples, but where something has changed lately or is held."""
@@ -146,13 +148,28 @@ class Background:
         few = self._noise[start : start + size] < 256 * _SAMPLES // _RENEWED
         return np.asarray(few.reshape(shape))
 
-    def _is_shadow(self, colours: Array, background: Array) -> Pixels:
-        """Find colours (N, 3) that are the background's, but darker."""
-        power = np.maximum((background * background).sum(axis=1), 1.0)
-        share = (colours * background).sum(axis=1) / power
-        apart = ((share[:, np.newaxis] * background - colours) ** 2).sum(axis=1)
-        dark = (share >= self._numbers.shadow) & (share <= 1)
-        return np.asarray(dark & (apart < (_SHADE * share) ** 2))
+    def _shadows(self, image: Colours, changed: Pixels) -> Pixels:
+        """Find pixels that have the background's colour, but darker, and none of their own edges.
+
+        The inside of a shadow shows the road as it is, at one brightness; a dark vehicle has
+        windows, lights and edges. The rim of a change has an edge in either case.
+        """
+        background = np.zeros(image.shape, np.float32)
+        for sample in self._samples[::_COMPARED]:
+            cv2.accumulate(sample, background)
+        background /= len(self._samples[::_COMPARED])
+        colours = image.astype(np.float32)
+        power = np.maximum(cv2.transform(background * background, _SUM), 1)
+        share = cv2.transform(colours * background, _SUM) / power
+        apart = cv2.transform(colours * colours, _SUM) - share * share * power
+        dark = (share >= self._numbers.shadow) & (share <= 1) & (apart < (_SHADE * share) ** 2)
+        smooth = cv2.blur(share, (3, 3))
+        slope = cv2.magnitude(
+            cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=1 / 8),
+            cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=1 / 8),
+        )
+        inner = cv2.erode(changed.astype(np.uint8), _RIM) > 0
+        return np.asarray(dark & ~(inner & (slope > _EDGE)))
 
 
 def _give(image: Colours, chosen: Pixels, sample: Colours, rng: np.random.Generator) -> None:
@@ -174,6 +191,8 @@ _WIDEST = 400
 """Width in px above which the image is halved: finer says nothing more about vehicles."""
 _CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
 """Holes and gaps up to this size are closed: windscreens show the sky."""
+_FOLLOWED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
+"""Modes of vehicles that divide blobs; tentative ones may be pieces of a lorry."""
 _ALL_MOVES = 0.5
 """Share of moving pixels above which the camera moves, or the light was switched."""
 
@@ -227,7 +246,7 @@ class MotionDetector:
             self._restart()
         # Estimates are of the image before, and so is where the camera then was.
         tracked = [one for one in tracks if one.mode is TrackMode.TRACKING]
-        followed = [one for one in tracks if _is_followed(one)]
+        followed = [one for one in tracks if one.mode in _FOLLOWED]
         covered = self._steadier.to_reference(_edges(tracked) * zoom)
         predicted = self._steadier.to_reference(_predicted(followed) * zoom)
         small, seen = self._steadier.steady(small)
@@ -254,13 +273,6 @@ class MotionDetector:
     def _restart(self) -> None:
         self._background = Background(self._shape, self._seed, self._numbers)
         self._steadier = Steadier()
-
-
-def _is_followed(track: TrackEstimate) -> bool:
-    """Tell whether a track divides blobs: waiting for its proof, it would stay in a merged one."""
-    if track.mode is TrackMode.TENTATIVE:
-        return track.is_likely
-    return track.mode is not TrackMode.LOST
 
 
 def _covered(boxes: Array, image: Colours) -> Pixels:

@@ -21,15 +21,13 @@ import random
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 from geometry_msgs.msg import Point32, PointStamped, PolygonStamped
 from sensor_msgs.msg import Image, RegionOfInterest
 from std_msgs.msg import Header
 
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.encodings import ENCODINGS
-from vehicle_pf_tracker.ros.messages import image_message
-
-Frame = npt.NDArray[np.uint8]
+from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 
 WIDTH, HEIGHT = 64, 48
 TARGET = (4.0, 18.0, 12.0, 10.0)
@@ -49,49 +47,28 @@ def header_at(nanoseconds: int, frame_id: str = "camera") -> Header:
 
 
 class Drive:
-    """Good images for ever: a vehicle that drives to and fro over noise.
+    """Good images for ever: a vehicle that drives to and fro over noise."""
 
-    Parameters
-    ----------
-    width, height : int
-        Size in px; the vehicle stays in the top left part of `WIDTH` x `HEIGHT`.
-    """
-
-    def __init__(self, width: int = WIDTH, height: int = HEIGHT) -> None:
-        noise = np.random.default_rng(7).integers(90, 130, (height, width, 3), np.uint8)
+    def __init__(self) -> None:
+        noise = np.random.default_rng(7).integers(90, 130, (HEIGHT, WIDTH, 3), np.uint8)
         self._frames = [self._frame(noise, offset) for offset in range(_TURN)]
-        self._empty = noise
 
     def frame(self, number: int) -> Frame:
         """Frame of the image `number`."""
-        return self._frames[_offset(number)]
+        place = number % (2 * _TURN - 2)
+        return self._frames[min(place, 2 * _TURN - 2 - place)]
 
-    def image(self, number: int, *, is_hidden: bool = False) -> Image:
-        """Make the image `number`, with the vehicle or with the road alone."""
-        frame = self._empty if is_hidden else self.frame(number)
-        return image_message(header_at(FIRST_NS + number * PERIOD_NS), frame)
-
-    def target(self, number: int) -> PolygonStamped:
-        """Make the target that the vehicle of the image `number` is."""
-        made = PolygonStamped(header=header_at(0, "camera"))
-        x, y, width, height = TARGET
-        left, right = x + _offset(number), x + _offset(number) + width
-        made.polygon.points = [Point32(x=left, y=y), Point32(x=right, y=y + height)]
-        return made
+    def image(self, number: int) -> Image:
+        """Make the image `number`."""
+        return image_message(header_at(FIRST_NS + number * PERIOD_NS), self.frame(number))
 
     @staticmethod
     def _frame(noise: Frame, offset: int) -> Frame:
-        frame = noise.copy()
+        frame: Frame = noise.copy()
         x, y, width, height = (int(value) for value in TARGET)
         frame[y : y + height, x + offset : x + offset + width] = (200, 40, 30)
         frame[y : y + height // 2, x + offset : x + offset + width] = (30, 60, 210)
         return frame
-
-
-def _offset(number: int) -> int:
-    """How far the vehicle has driven in the image `number`, in px."""
-    place = number % (2 * _TURN - 2)
-    return min(place, 2 * _TURN - 2 - place)
 
 
 class Faults:
@@ -99,10 +76,17 @@ class Faults:
 
     What looks like a real change of the stream, another size or another time, is not drawn twice
     between good images: two that agree are believed, as they have to be.
+
+    Parameters
+    ----------
+    draw : callable
+        Makes the good image of a number, which may be changed.
+    seed : int
+        Seed of what is drawn.
     """
 
-    def __init__(self, drive: Drive, seed: int) -> None:
-        self._drive = drive
+    def __init__(self, draw: Callable[[int], Image], seed: int) -> None:
+        self._draw = draw
         self._random = random.Random(seed)
         self._kinds: list[Callable[[Image], None]] = [
             self._encoding, self._cut, self._no_size, self._huge, self._step, self._pixels,
@@ -112,8 +96,8 @@ class Faults:
 
     def image(self, number: int) -> Image:
         """Draw a faulty image that comes between the good ones `number` - 1 and `number`."""
-        image = self._drive.image(number)
-        image.header = header_at(FIRST_NS + number * PERIOD_NS - PERIOD_NS // 2)
+        image = self._draw(number)
+        image.header = header_at(stamp_ns(image.header) - PERIOD_NS // 2)
         last = len(self._kinds) - (2 if self._looks_real else 0)
         kind = self._random.randrange(last)
         self._looks_real = self._looks_real or kind >= len(self._kinds) - 2

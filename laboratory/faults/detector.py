@@ -29,11 +29,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from lanes import Sighting
-from node_process import NodeProcess
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
+
+from laboratory.faults.lanes import Sighting
+from laboratory.faults.node_process import Tester
+from vehicle_pf_tracker.core.array import Array
 
 CONFIRMED = (1, 2, 3)
 """Modes in ~/tracks of vehicles that have had enough evidence."""
@@ -53,13 +55,13 @@ UNUSABLE = {
     "huge": (-HUGE, 5.0, HUGE, 9.0),
 }
 
-Fault = Callable[[Header, np.ndarray], object]
+Fault = Callable[[Header, Array], object]
 
 
 def vision(folder: Path) -> Any:
     """Import vision_msgs.msg, built in `folder` from its definitions where it is not installed."""
     if find_spec("vision_msgs") is None:
-        sys.path.append(str(Path(__file__).resolve().parents[1] / "ros"))
+        sys.path.append(str(Path(__file__).resolve().parents[2] / "test" / "ros"))
         built = import_module("built_messages")
         with contextlib.redirect_stdout(io.StringIO()):  # each file that is written
             path = str(built.build("vision_msgs", built.VISION, folder))
@@ -92,8 +94,8 @@ class Detector:
 
     Parameters
     ----------
-    node : NodeProcess
-        The node.
+    tester : Tester
+        Publishes them.
     messages : module
         vision_msgs.msg.
     rate : int
@@ -105,9 +107,9 @@ class Detector:
         Ways to fail; each is called with an image's header and the right boxes.
     """
 
-    def __init__(self, node: NodeProcess, messages: Any, rate: int) -> None:
+    def __init__(self, tester: Tester, messages: Any, rate: int) -> None:
         self._messages, self._rate, self._turn = messages, rate, 0
-        self._topic = node.publisher(messages.Detection2DArray, "detections")
+        self._topic = tester.publisher(messages.Detection2DArray, "detections")
         self.faults: dict[str, Fault] = {
             "10 000 boxes, once a second": self._flood(10_000),
             "1 500 boxes, once a second": self._flood(1_500),
@@ -117,7 +119,7 @@ class Detector:
             "no detections any more": lambda header, boxes: None,
         }
 
-    def right(self, header: Header, boxes: np.ndarray) -> None:
+    def right(self, header: Header, boxes: Array) -> None:
         """Publish boxes (left, top, width, height) of an image."""
         self._topic.publish(self.message(header, boxes))
 
@@ -125,7 +127,7 @@ class Detector:
         rows = np.random.default_rng(3).uniform(0, 150, (count, 4))
         serialized = bytearray(serialize_message(self.message(Header(), rows, LOW)))
 
-        def flood(header: Header, boxes: np.ndarray) -> None:
+        def flood(header: Header, boxes: Array) -> None:
             stamp = header.stamp
             self._turn += 1
             if self._turn % self._rate:
@@ -139,12 +141,12 @@ class Detector:
     def _bad(self, row: tuple[float, float, float, float]) -> Fault:
         return lambda header, boxes: self.right(header, np.concatenate([boxes, [row]]))
 
-    def _stray(self, header: Header, boxes: np.ndarray) -> None:
+    def _stray(self, header: Header, boxes: Array) -> None:
         other = Header(frame_id=header.frame_id)
         other.stamp.sec, other.stamp.nanosec = header.stamp.sec, header.stamp.nanosec ^ 1
         self.right(other, boxes)
 
-    def message(self, header: Header, boxes: np.ndarray, score: float = 0.8) -> Any:
+    def message(self, header: Header, boxes: Array, score: float = 0.8) -> Any:
         """Make detections (left, top, width, height)."""
         made = self._messages.Detection2DArray(header=header)
         for x, y, width, height in boxes.tolist():

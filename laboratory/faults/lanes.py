@@ -22,6 +22,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.frame import Frame
+
 FOREIGN = 0.2
 """Share of its images from which on a number that is on another vehicle has been handed on."""
 
@@ -58,14 +61,14 @@ class Road:
     missed: float = 0.03
     false: float = 0.02
 
-    def empty(self) -> np.ndarray:
+    def empty(self) -> Frame:
         """Make the image without vehicles."""
         shape = self.height, self.width, 3
-        return np.random.default_rng(1).integers(96, 112, shape, np.uint8)
+        return np.asarray(np.random.default_rng(1).integers(96, 112, shape, np.uint8), np.uint8)
 
-    def painted(self, empty: np.ndarray, corners: Corners) -> np.ndarray:
+    def painted(self, empty: Frame, corners: Corners) -> Frame:
         """Paint each vehicle in a colour of its own."""
-        frame = empty.copy()
+        frame: Frame = empty.copy()
         width, height = self.size
         for number, (x, y) in corners.items():
             columns = slice(max(int(x), 0), max(int(x + width), 0))
@@ -87,14 +90,14 @@ class Traffic:
 
     Attributes
     ----------
-    begun : int
-        Vehicles that have come.
+    begun, total : int
+        Vehicles that have come, and that will have come.
     """
 
     def __init__(self, road: Road, total: int, seed: int) -> None:
         self.begun = 0
         self._road = road
-        self._total = total
+        self.total = total
         self._rng = np.random.default_rng(seed)
         self._there: dict[int, tuple[int, float]] = {}
 
@@ -107,7 +110,7 @@ class Traffic:
                 self._there[number] = lane, moved
             else:
                 del self._there[number]
-        while self.begun < self._total and image >= self.begun * road.every:
+        while self.begun < self.total and image >= self.begun * road.every:
             x = -road.size[0] + float(self._rng.uniform(0, 2))
             self._there[self.begun] = self.begun % road.lanes, x
             self.begun += 1
@@ -120,9 +123,9 @@ class Traffic:
     @property
     def is_over(self) -> bool:
         """True once all have come and gone."""
-        return self.begun == self._total and not self._there
+        return self.begun == self.total and not self._there
 
-    def detect(self, corners: Corners) -> np.ndarray:
+    def detect(self, corners: Corners) -> Array:
         """Detect them: noisy, some missed, and now and then what is not there."""
         width, height = self._road.size
         rows = []

@@ -12,13 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The long runs of test/robustness/, kept short."""
+"""`python -m laboratory faults`, kept short: what it gives, and that the nodes hold."""
 
 from __future__ import annotations
 
 import re
 from importlib.util import find_spec
-from pathlib import Path
 
 import pytest
 
@@ -28,51 +27,46 @@ from built_messages import missing
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
-ROBUSTNESS = Path(__file__).resolve().parents[1] / "robustness"
+without_vision = find_spec("vision_msgs") is None and missing()
+needs_vision = pytest.mark.skipif(
+    bool(without_vision), reason=f"vision_msgs is not there and cannot be built: {without_vision}"
+)
 
 
-def run(start_process, script: str, *words: str, timeout: float = 120.0) -> str:
-    process = start_process(str(ROBUSTNESS / script), *words)
+def give(start_process, *words: str, timeout: float = 120.0) -> str:
+    process = start_process("-m", "laboratory", "faults", *words)
     status = process.wait(timeout)
     assert status == 0, process.output
+    assert process.output.count("| yes |") == sum(word.isalpha() for word in words)
     return process.output
 
 
-def test_fuzzed_messages_cost_no_good_image_its_estimate(start_process):
-    told = run(start_process, "fuzz_node.py", "--messages", "300", "--seed", "5")
+def test_messages_and_files_end_in_a_sentence_or_in_the_truth(start_process):
+    told = give(start_process, "messages", "parameters", "recordings", "--count", "100")
     assert "faulty: REJECTED" in told
     assert "targets " in told
+    assert "parameters: 100 files" in told
+    assert "recordings: 100 files" in told
 
 
-def test_fuzzed_files_end_in_a_sentence_or_in_the_truth(start_process):
-    told = run(start_process, "fuzz_files.py", "--parameters", "60", "--recordings", "60")
-    assert "parameters: 60 files" in told
-    assert "recordings: 60 files" in told
-
-
-def test_a_short_soak(start_process):
-    told = run(start_process, "soak.py", "--minutes", "0.05")
-    assert "good images without an answer: 0" in told
-    assert "MB at most" in told
-
-
-@pytest.mark.parametrize("detector", ["topic", "motion"])
-def test_a_few_vehicles_come_and_go_before_the_node(start_process, detector):
-    if detector == "topic" and find_spec("vision_msgs") is None and (reason := missing()):
-        pytest.skip(f"vision_msgs is not installed, and cannot be built: {reason}")
-    told = run(
-        start_process, "traffic_node_soak.py", "--vehicles", "60", "--minutes", "0.4",
-        "--detector", detector,
-    )  # fmt: skip
-    assert "images without an answer: 0" in told
+@needs_vision
+def test_a_short_soak_of_two_nodes(start_process):
+    told = give(start_process, "soak", "--minutes", "0.4")
+    assert told.count("images answered, 0 lost in transit") == 2
+    assert told.count("second answers: 0; wrong answers: 0") == 2
+    assert "detector: 10 000 boxes, once a second 1" in told
     assert "; twice: 0" in told
-    assert "MB at most" in told
+    assert told.count("MB at most") == 2
 
 
+def test_a_camera_that_moves_before_a_node_that_detects_motion(start_process):
+    told = give(start_process, "detector", "--motion", "--seconds", "4")
+    assert "the light was switched" in told
+
+
+@needs_vision
 def test_each_fault_of_a_detector_in_turn(start_process):
-    if find_spec("vision_msgs") is None and (reason := missing()):
-        pytest.skip(f"vision_msgs is not installed, and cannot be built: {reason}")
-    told = run(start_process, "traffic_faults.py", "--seconds", "4", timeout=500)
+    told = give(start_process, "detector", "--seconds", "4", timeout=500)
     row = re.compile(r"^\| (.*?) \| \d+ of \d+ \| (\d+) of (\d+) \| (.*)", re.MULTILINE)
     rows = row.findall(told)
     told = {fault: sentences for fault, _, _, sentences in rows}

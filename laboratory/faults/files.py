@@ -12,19 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Fuzz parameter files and recordings.
-
-    python test/robustness/fuzz_files.py --parameters 10000 --recordings 10000
+"""Parameter files and recordings that were damaged, read by commands and by a node.
 
 A parameter file must be refused with a sentence, or give exactly the values that it names, both to
 the command line and to a node. A recording must be refused with one line and status 1, or tracked
-with a row for each of its images, and with a word about what is missing. Anything else, an
-exception, or a file that takes longer than half a minute ends this with status 1, and is kept.
+with a row for each of its images, and with a word about what is missing.
 """
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import csv
 import faulthandler
@@ -34,18 +30,20 @@ import random
 import shutil
 import tempfile
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 import rclpy
-from faulty_messages import FIRST_NS, PERIOD_NS, TARGET, Drive
+from mcap.writer import CompressionType
 
+from laboratory.faults.faulty_messages import FIRST_NS, PERIOD_NS, TARGET, Drive
+from laboratory.faults.node_process import FaultError
 from vehicle_pf_tracker.cli.main import main as command
 from vehicle_pf_tracker.cli.params import default_yaml
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.parameters.files import read_yaml
+from vehicle_pf_tracker.parameters.files import check_yaml_file, read_yaml
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.ros.rclpy_internals import (
@@ -105,10 +103,6 @@ def spoil_bytes(data: bytes, draw: random.Random) -> bytes:
     return bytes(made)
 
 
-class WrongError(Exception):
-    """What must not come of a file."""
-
-
 def try_parameters(path: Path, _: Path) -> str:
     """Read a parameter file as `run` does, then as a node does; return what came of it."""
     told = _in_python(path)
@@ -124,20 +118,21 @@ def _in_python(path: Path) -> str:
         return "refused"
     wrong = {name: one for name, one in values.items() if name in given and given[name] != one}
     if wrong:
-        raise WrongError(f"taken for other values: {wrong}")
+        raise FaultError(f"taken for other values: {wrong}")
     return "taken"
 
 
 def _in_node(path: Path) -> str:
     context, node = rclpy.Context(), None
     try:
+        check_yaml_file(path, "parameter file")  # as the node's program does first
         with _quiet():
             rclpy.init(args=["--ros-args", "--params-file", str(path)], context=context)
             node = TrackerNode(VARIANT, context=context)
         given = {name: one.value for name, one in node.get_parameters_by_prefix("").items()}
         wrong = {n: v for n, v in node.overrides.items() if n in given and given[n] != v}
         if wrong:
-            raise WrongError(f"the node has other values than {wrong}")
+            raise FaultError(f"the node has other values than {wrong}")
     except (InputError, RCLError, UnknownROSArgsError):
         return "refused"
     else:
@@ -160,23 +155,23 @@ def try_recording(path: Path, folder: Path) -> str:
     if status == 1 and complaint.strip() and "Traceback" not in complaint:
         return "refused"
     if status != 0:
-        raise WrongError(f"status {status}: {complaint}")
+        raise FaultError(f"status {status}: {complaint}")
     with (out / "estimates.csv").open() as file:
         rows = list(csv.DictReader(file))
     if not rows or (len(rows) != FRAMES and not complaint.strip()):
-        raise WrongError(f"{len(rows)} rows of {FRAMES} without a word: {told.getvalue()}")
+        raise FaultError(f"{len(rows)} rows of {FRAMES} without a word: {told.getvalue()}")
     return "tracked whole" if len(rows) == FRAMES else "tracked in part, and said so"
 
 
 @contextlib.contextmanager
-def _captured():
+def _captured() -> Iterator[tuple[io.StringIO, io.StringIO]]:
     told, errors = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(told), contextlib.redirect_stderr(errors):
         yield told, errors
 
 
 @contextlib.contextmanager
-def _quiet():
+def _quiet() -> Iterator[None]:
     """Keep what C libraries write from the terminal."""
     kept = os.dup(2)
     nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -189,7 +184,7 @@ def _quiet():
         os.close(nowhere)
 
 
-def recording(folder: Path, compression: str) -> bytes:
+def recording(folder: Path, compression: CompressionType) -> bytes:
     """Make a small recording; return its MCAP file."""
     drive = Drive()
     with RecordingWriter(folder, compression=compression) as writer:
@@ -198,23 +193,17 @@ def recording(folder: Path, compression: str) -> bytes:
     return next(folder.glob("*.mcap")).read_bytes()
 
 
-def fuzz(
-    name: str,
-    count: int,
-    seed: int,
-    make: Callable[[random.Random], bytes],
-    judge: Callable[[Path, Path], str],
-) -> None:
-    """Judge `count` files, and print what came of them.
+def give_files(kind: str, count: int, seed: int) -> bool:
+    """Give damaged files of a kind, ``parameters`` or ``recordings``; print what came of them.
 
     Raises
     ------
-    SystemExit
-        If one of them is not dealt with as it should be.
+    FaultError
+        At the first that is not dealt with as it should be; that file is kept.
     """
     draw, results = random.Random(seed), Counter[str]()
-    suffix = {"parameters": ".yaml", "recordings": ".mcap"}[name]
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(prefix="faults_") as folder:
+        make, judge, suffix = _kinds(Path(folder))[kind]
         path = Path(folder, f"fuzzed{suffix}")
         for number in range(count):
             path.write_bytes(make(draw))
@@ -224,30 +213,21 @@ def fuzz(
             except BaseException as error:
                 kept = Path(tempfile.gettempdir(), f"fuzzed_{number}{suffix}")
                 shutil.copy(path, kept)
-                raise SystemExit(f"{kept}: {type(error).__name__}: {error}") from error
+                raise FaultError(f"{kept}: {type(error).__name__}: {error}") from error
             faulthandler.cancel_dump_traceback_later()
-    print(f"{name}: {count} files, seed {seed}")
+    print(f"{kind}: {count} files, seed {seed}")
     for result, times in results.most_common():
         print(f"  {result}: {times}")
+    return True
 
 
-def main() -> None:
-    """Fuzz as asked."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--parameters", type=int, default=0, metavar="COUNT")
-    parser.add_argument("--recordings", type=int, default=0, metavar="COUNT")
-    parser.add_argument("--seed", type=int, default=0)
-    args = parser.parse_args()
-    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+def _kinds(
+    folder: Path,
+) -> dict[str, tuple[Callable[[random.Random], bytes], Callable[[Path, Path], str], str]]:
+    """Return how files of each kind are made and judged, and how their names end."""
     text = default_yaml(VARIANT)
-    with tempfile.TemporaryDirectory() as folder:
-        whole = [recording(Path(folder, kind), kind) for kind in ("none", "lz4", "zstd")]
-    fuzz("parameters", args.parameters, args.seed, lambda d: spoil_text(text, d), try_parameters)
-    fuzz(
-        "recordings", args.recordings, args.seed,
-        lambda draw: spoil_bytes(draw.choice(whole), draw), try_recording,
-    )  # fmt: skip
-
-
-if __name__ == "__main__":
-    main()
+    whole = [recording(folder / kind.name, kind) for kind in CompressionType]
+    return {
+        "parameters": (lambda draw: spoil_text(text, draw), try_parameters, ".yaml"),
+        "recordings": (lambda draw: spoil_bytes(draw.choice(whole), draw), try_recording, ".mcap"),
+    }

@@ -1,0 +1,73 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""`python -m laboratory faults`: options, and the table of what held."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, positive, switch
+
+KINDS = ("messages", "parameters", "recordings", "detector", "soak")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request(VerbRequest):
+    """Request of the faults."""
+
+    kinds: tuple[str, ...] = positional(
+        nargs="*", choices=(*KINDS, []), metavar="KIND",
+        help=f"faults to give: {', '.join(KINDS)} (default: all of them)",
+    )  # fmt: skip
+    count: int = option(
+        type=positive, default=300, metavar="N",
+        help="messages, and files of each kind (default: 300)",
+    )  # fmt: skip
+    variant: str = option(default="pf", help="node that gets the messages (default: pf)")
+    seconds: float = option(
+        type=float, default=6.0, help="length of each fault of a detector (default: 6)"
+    )
+    only: str = option(default="", help="only faults of a detector with this in their name")
+    nodes: str = option(
+        default="traffic,fusion", metavar="NAME,…",
+        help="nodes of the soak, which get the same images (default: traffic,fusion)",
+    )  # fmt: skip
+    minutes: float = option(type=float, default=1.0, help="length of the soak (default: 1)")
+    rate: float = option(type=float, default=15.0, help="its images per second (default: 15)")
+    share: float = option(
+        type=float, default=0.3,
+        help="its faulty images per good one (default: 0.3); with 0 its detector never fails",
+    )  # fmt: skip
+    every: float = option(
+        type=float, default=9.0, help="its images from one vehicle to the next (default: 9)"
+    )
+    motion: bool = switch(help="traffic detects motion; else it gets detections by a topic")
+    best_effort: bool = switch(help="the soak's images may get lost, as those of a camera")
+    seed: int = option(type=int, default=0, help="seed of all that is drawn (default: 0)")
+
+
+def run(request: Request) -> int:
+    """Give the faults, and print what held; return 1 where something did not."""
+    from laboratory.faults.giving import give  # noqa: PLC0415 - needs ROS
+
+    rows = []
+    with tempfile.TemporaryDirectory(prefix="faults_") as folder:
+        for kind in request.kinds or KINDS:
+            print(f"## {kind}", flush=True)
+            rows.append(f"| {kind} | {'yes' if give(kind, request, Path(folder)) else 'no'} |")
+    print("\n".join(["| faults | all held |", "| --- | --- |", *rows]))
+    return 0 if all(row.endswith("yes |") for row in rows) else 1

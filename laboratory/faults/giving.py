@@ -1,0 +1,63 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The faults that a request asks for, given one kind after the other."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from laboratory.faults.detector import vision
+from laboratory.faults.detector_faults import give_detector_faults
+from laboratory.faults.files import give_files
+from laboratory.faults.messages import give_messages
+from laboratory.faults.node_process import FaultError, Tester
+from laboratory.faults.soak import Soak
+
+if TYPE_CHECKING:
+    from laboratory.faults.command import Request
+
+
+def give(kind: str, request: Request, folder: Path) -> bool:
+    """Give the faults of a kind and print what came of them; return whether all held."""
+    tester = Tester()
+    give_kind = {
+        "messages": partial(_messages, tester, request),
+        "detector": partial(_detector, tester, request, folder),
+        "soak": partial(_soak, tester, request, folder),
+    }.get(kind, partial(give_files, kind, request.count, request.seed))
+    try:
+        return give_kind()
+    except FaultError as error:
+        print(error)
+        return False
+    finally:
+        tester.close()
+
+
+def _messages(tester: Tester, request: Request) -> bool:
+    return give_messages(tester, request.variant, request.count, request.seed)
+
+
+def _detector(tester: Tester, request: Request, folder: Path) -> bool:
+    messages = None if request.motion else vision(folder)
+    return give_detector_faults(tester, messages, request.seconds, request.only)
+
+
+def _soak(tester: Tester, request: Request, folder: Path) -> bool:
+    soak = Soak(tester, request, folder)
+    soak.run()
+    return soak.report()

@@ -1,0 +1,61 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Faulty images and targets for a running node, each in lock-step through Fast DDS."""
+
+from __future__ import annotations
+
+import random
+import time
+
+from laboratory.faults.faulty_messages import TARGET, Drive, Faults
+from laboratory.faults.ledger import Ledger
+from laboratory.faults.node_process import NodeProcess, Tester
+
+
+def give_messages(tester: Tester, variant: str, count: int, seed: int) -> bool:
+    """Send messages, half of them good images; return whether all held.
+
+    The others are faulty images, and targets that may be anything. Every image has to be answered
+    once, and a good one to have an estimate.
+
+    Raises
+    ------
+    FaultError
+        At the first that is not.
+    """
+    drive, draw = Drive(), random.Random(seed)
+    faults = Faults(drive.image, seed)
+    sides = zip(("x", "y", "width", "height"), TARGET, strict=True)
+    words = [f"target.{name}:={value}" for name, value in sides]
+    node = NodeProcess(tester, variant, "queue_depth:=50", "num_particles:=50", *words)
+    ledger = Ledger(node)
+    ledger.begin(tester, drive.image(0))
+    weighed = 0.0
+    for number in range(1, count + 1):
+        kind = draw.choices(["good", "faulty", "target"], [5, 4, 1])[0]
+        if kind == "target":
+            node.give_target(faults.target())
+            ledger.counts["targets"] += 1
+            continue
+        is_good = kind == "good"
+        image = drive.image(number) if is_good else faults.image(number)
+        ledger.take(tester, image, is_good=is_good)
+        if is_good:
+            faults.good()
+        if time.monotonic() >= weighed + 1:
+            weighed = time.monotonic()
+            ledger.weigh()
+    ledger.close()
+    return ledger.report()

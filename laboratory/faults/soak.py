@@ -1,0 +1,252 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Nodes at a camera's rate for hours, with faults mixed in, which have to stay as they were."""
+
+from __future__ import annotations
+
+import itertools
+import random
+import re
+import time
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from geometry_msgs.msg import Point32, PolygonStamped
+from sensor_msgs.msg import Image, PointCloud2
+
+from laboratory.faults.detector import Detector, Fault, sightings, vision
+from laboratory.faults.faulty_messages import FIRST_NS, Faults, header_at
+from laboratory.faults.lanes import Corners, Numbers, Road, Traffic
+from laboratory.faults.ledger import Ledger
+from laboratory.faults.node_process import NodeProcess, Tester
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
+from vehicle_pf_tracker.trackers.registry import TRAFFIC, find_node
+
+if TYPE_CHECKING:
+    from laboratory.faults.command import Request
+
+WIDTH, HEIGHT = 320, 180
+BRIDGE = slice(150, 180)
+"""Columns under the bridge: a vehicle of 32 px is hidden for a few images."""
+LEAST = 3.0
+"""Least width in px that the detector sees of a vehicle that enters."""
+LINE = 260
+"""Column of the line at which vehicles are counted, px."""
+FAULT_EVERY, LASTS = 20.0, 2.0
+"""Seconds between two failures of the detector, and how long one lasts."""
+TARGET_EVERY = CHANGE_EVERY = 5.0
+"""Seconds between two targets, and between two changes of a parameter."""
+ALIKE = re.compile(r"^.*?\]: |\d+")
+"""Parts in which sentences of one kind differ."""
+_DEPTH, _LONG_DEPTH = 10, 100
+"""Images that wait for a node: two thirds of a second of a camera, and more than any pause."""
+CHANGES: list[tuple[str, object]] = [
+    ("num_particles", 300),
+    ("histogram_bits", 4),  # of the reference's effect "relearns"
+    ("lost_after", 1.0),
+    ("seed", 5),
+    ("publish.velocity", False),
+    ("num_particles", 100),
+    ("window.width", 14.0),
+    ("histogram_bits", 3),
+    ("publish.velocity", True),
+    ("evidence.clear_above", 0.85),
+    ("seed", 6),
+    ("window.width", 0.0),
+    ("lost_after", 5.0),
+    ("evidence.clear_above", 0.8),
+    ("num_particles", 200),
+]
+
+
+class Scene:
+    """Vehicles that drive through in lanes, under a bridge.
+
+    Parameters
+    ----------
+    total : int
+        Number of vehicles.
+    every : float
+        Images from one vehicle to the next.
+    rate : float
+        Images per second.
+    """
+
+    def __init__(self, total: int, every: float, rate: float) -> None:
+        self.road = Road(WIDTH, HEIGHT, lanes=6, size=(32.0, 20.0), speed=4.0, every=every)
+        self.traffic = Traffic(self.road, total, 0)
+        self.corners: Corners = {}
+        self._period_ns = round(1e9 / rate)
+        self._empty = self.road.empty()
+        self._empty[:, BRIDGE] = 60
+        self._frame = self._empty
+
+    def step(self, number: int) -> Image:
+        """Drive on to the image `number`."""
+        self.corners = self.traffic.step(number)
+        self._frame = self.road.painted(self._empty, self.corners)
+        self._frame[:, BRIDGE] = 60
+        return self.image(number)
+
+    def image(self, number: int) -> Image:
+        """Make the image `number` of where the vehicles are now."""
+        return image_message(header_at(FIRST_NS + number * self._period_ns), self._frame)
+
+    def detect(self) -> Array:
+        """Detect the vehicles that no bridge hides."""
+        boxes = self.traffic.detect(self.corners)
+        middle = boxes[:, 0] + boxes[:, 2] / 2
+        is_hidden = (middle >= BRIDGE.start) & (middle < BRIDGE.stop)
+        return boxes[~is_hidden & (boxes[:, 2] >= LEAST)]
+
+    def target(self) -> PolygonStamped | None:
+        """Return a vehicle that has just come; None where there is none."""
+        for x, y in self.corners.values():
+            if 0 < x < BRIDGE.start / 2:
+                made = PolygonStamped(header=header_at(0))
+                width, height = self.road.size
+                made.polygon.points = [Point32(x=x, y=y), Point32(x=x + width, y=y + height)]
+                return made
+        return None
+
+
+class Soak:
+    """Images for several nodes at a rate, and their answers.
+
+    Parameters
+    ----------
+    tester : Tester
+        Sends and hears.
+    request : Request
+        Nodes, rate, length and faults.
+    folder : Path
+        Folder for messages that are built, and the line at which vehicles are counted.
+    """
+
+    def __init__(self, tester: Tester, request: Request, folder: Path) -> None:
+        total = max(1, round(request.minutes * 60 * request.rate / request.every))
+        self._tester, self._rate, self._share = tester, request.rate, request.share
+        self._scene = scene = Scene(total, request.every, request.rate)
+        self._faults, self._random = Faults(scene.image, request.seed), random.Random(request.seed)
+        names = request.nodes.split(",")
+        lines = folder / "lines.yaml"
+        lines.write_text(f"lines: {{exit: {{from: [{LINE}, {HEIGHT}], to: [{LINE}, 0]}}}}\n")
+        has_detector = TRAFFIC.name in names and not request.motion
+        self._detector = (
+            Detector(tester, vision(folder), round(self._rate)) if has_detector else None
+        )
+        kind = "topic" if has_detector else "motion"
+        of_traffic = [f"detector.kind:={kind}", f"lines:={lines}"]
+        self._ledgers = {}
+        for name in names:
+            words = list(of_traffic) if name == TRAFFIC.name else []
+            # Reliable images wait in the queue while another process has the processor.
+            words += [f"queue_depth:={_DEPTH if request.best_effort else _LONG_DEPTH}"]
+            node = NodeProcess(tester, name, *words, is_reliable=not request.best_effort)
+            self._ledgers[name] = Ledger(node, may_wait=True)
+        self._changes = {
+            name: [one for one in CHANGES if one[0] in Configuration.of(find_node(name)).specs()]
+            for name in names
+            if name != TRAFFIC.name
+        }
+        self._ways = itertools.cycle(self._detector.faults.items() if self._detector else ())
+        self._fault: Fault | None = None
+        self._tracks = tester.collect(PointCloud2, f"/{TRAFFIC.executable}/tracks")
+        self._numbers = Numbers(scene.road, total)
+        self._corners: dict[int, Corners] = {}
+
+    def run(self) -> None:
+        """Show images until all vehicles have gone, and wait for the last answers."""
+        first = self._scene.step(0)
+        for ledger in self._ledgers.values():
+            ledger.begin(self._tester, first)
+        began, number = time.monotonic(), 0
+        while not self._scene.traffic.is_over:
+            number += 1
+            if self._random.random() < self._share:
+                self._send(self._faults.image(number), is_good=False)
+            image = self._scene.step(number)
+            self._corners[stamp_ns(image.header)] = self._scene.corners
+            self._send(image, is_good=True)
+            self._faults.good()
+            self._detect(number, image)
+            self._turn(number)
+            while (left := began + number / self._rate - time.monotonic()) > 0:
+                self._hear(min(left, 0.01))
+            self._hear(0.0)
+        for _ in range(100):
+            self._hear(0.02)
+        self._numbers.judge((), {})
+        for ledger in self._ledgers.values():
+            ledger.close()
+
+    def report(self) -> bool:
+        """Print what came of it; return whether all held."""
+        results = []
+        for name, ledger in self._ledgers.items():
+            results.append(ledger.report())
+            if name == TRAFFIC.name:
+                self._numbers.report()
+                results.append(not self._numbers.reissued)
+            said = Counter(ALIKE.sub("", line) for line in ledger.node.output.splitlines())
+            for sentence, count in said.most_common(20):
+                print(f"  said {count} times: {sentence[:160]}")
+        return all(results)
+
+    def _send(self, image: Image, *, is_good: bool) -> None:
+        for ledger in self._ledgers.values():
+            ledger.note(image, is_good=is_good)
+        self._tester.show(image)
+
+    def _detect(self, number: int, image: Image) -> None:
+        """Publish the detections of an image, or what a detector that fails makes of them."""
+        if self._detector is None:
+            return
+        boxes, since = self._scene.detect(), number % round(FAULT_EVERY * self._rate)
+        if not self._share or number < FAULT_EVERY * self._rate or since > LASTS * self._rate:
+            self._detector.right(image.header, boxes)
+            return
+        if since == 0 or self._fault is None:
+            words, self._fault = next(self._ways)
+            self._ledgers[TRAFFIC.name].counts[f"detector: {words}"] += 1
+        self._fault(image.header, boxes)
+
+    def _turn(self, number: int) -> None:
+        """Weigh the nodes, and give a target or a parameter to single trackers, in their turn."""
+        if number % round(10 * self._rate) == 0:
+            for ledger in self._ledgers.values():
+                ledger.weigh()
+        target = self._scene.target() if self._is_due(number, TARGET_EVERY, 2) else None
+        for name, changes in self._changes.items():
+            node = self._ledgers[name].node
+            if target is not None:
+                node.give_target(target)
+            if self._is_due(number, CHANGE_EVERY):
+                node.set_parameter(*changes[number // round(5 * self._rate) % len(changes)])
+
+    def _is_due(self, number: int, every: float, offset: int = 0) -> bool:
+        return number % round(every * self._rate) == offset
+
+    def _hear(self, seconds: float) -> None:
+        self._tester.spin(seconds)
+        for ledger in self._ledgers.values():
+            ledger.hear()
+        while self._tracks:
+            cloud = self._tracks.pop(0)
+            corners = self._corners.pop(stamp_ns(cloud.header), {})
+            self._numbers.judge(sightings(cloud), corners)
