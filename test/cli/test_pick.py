@@ -282,6 +282,10 @@ def test_one_file_has_it_all_and_is_edited_in_place(answered, tmp_path, capsys):
     assert set(yaml.safe_load(copy.read_text())) == {"zones"}
     assert "targets" in yaml.safe_load(path.read_text())
     assert main(["pick", folder, "-o", str(copy)]) == 1  # it exists
+    path.write_text("targets: [{name: 2026-01-01, box: [1, 2, 3, 4]}]")  # a date in YAML
+    answered(lambda document: document)
+    assert main(["pick", folder, "--edit", str(path)]) == 0
+    assert yaml.safe_load(path.read_text())["targets"][0]["name"] == "2026-01-01"
 
 
 def test_lines_are_printed_as_a_file_has_them(answered, tmp_path, capsys):
