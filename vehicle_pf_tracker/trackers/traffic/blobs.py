@@ -108,7 +108,8 @@ class UsualSize:
             return 0.0
         size, place = _size_and_place(edges)
         usual = float(place @ np.linalg.lstsq(self._squares, self._sums, rcond=_SINGULAR)[0])
-        return float(min((np.log(size / max(usual, 1.0)) / _SIZE_SPREAD) ** 2, _MOST_SIZE_COST))
+        normal = float(np.log(size / max(usual, 1.0))) / _SIZE_SPREAD
+        return normal**2 if normal < 0 else min(normal**2, _MOST_SIZE_COST)
 
 
 def _size_and_place(edges: Array) -> tuple[float, Array]:
