@@ -59,6 +59,16 @@ def test_a_shadow_is_cut_off_and_a_dark_vehicle_is_not():
     )
 
 
+def test_the_depth_of_a_sunny_days_shadows_is_learnt():
+    detector = MotionDetector()
+    for index, frame in enumerate(frames(50)):
+        left = 3 * (index - 30) + 36
+        if index >= 30:
+            frame[60:84, left : left + 24] = frame[60:84, left : left + 24] * 0.5
+        found = detector.detect(frame)
+    assert found.boxes == pytest.approx(np.array([[57, 60, 36, 24]]), abs=4)
+
+
 def test_masks_repeat_whatever_else_the_process_draws():
     runs = []
     for _ in range(2):
