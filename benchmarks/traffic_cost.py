@@ -18,7 +18,8 @@
 
 One thread. The same 640x360 px images with 10, 20 and 50 vehicles at once are followed in turns:
 `traffic` with given boxes, `traffic` that finds them itself, and the baselines on those boxes.
-Times are processor times; the medians of the rounds are shown.
+Times are processor times; the medians of the rounds are shown. Then a detector that is out of
+order: so many boxes in every image that drive, or are anywhere.
 """
 
 from __future__ import annotations
@@ -57,6 +58,8 @@ SETTLED = 60
 """First frames, in which the background is learnt and vehicles are found; not timed."""
 BEYOND = 45
 """Distance outside of the image from which vehicles come back on the other side, px."""
+FLOODS = (1500, 50_000)
+"""Boxes in an image of a detector that is out of order."""
 BASELINES = ("bytetrack", "ocsort")
 
 
@@ -85,6 +88,8 @@ def main() -> None:
         span = counts[-1] - counts[0]
         slopes = np.subtract(means[counts[-1]][:2], means[counts[0]][:2]) / span
         print(f"\nper further vehicle: {slopes[0]:.2f} ms, with motion {slopes[1]:.2f} ms\n")
+        for boxes in FLOODS:
+            print(f"{boxes} boxes in an image: {flood(boxes, args.frames // 5):.0f} ms")
         sys.stdout.flush()
         command = [sys.executable, "-m", "benchmarks.traffic_cost", "--resident"]
         subprocess.run([*command, str(sequences[counts[-1]].folder)], check=True)
@@ -161,6 +166,22 @@ def ours(sequence: TrafficSequence, *, motion: bool) -> tuple[float, float]:
         seconds.append(time.process_time() - before)
         followed.append(sum(one.mode is TrackMode.TRACKING for one in estimates))
     return 1e3 * statistics.fmean(seconds[SETTLED:]), statistics.fmean(followed[SETTLED:])
+
+
+def flood(count: int, frames: int) -> float:
+    """Return the mean time in ms of an image with so many boxes, a half of which drive."""
+    rng = stream(0, "flood")
+    tracker, image = TrafficTracker(TrafficParameters()), np.zeros((HEIGHT, WIDTH, 3), np.uint8)
+    driving = rng.uniform((0, 0, 8, 8), (WIDTH, HEIGHT, 40, 40), (count // 2, 4))
+    seconds = []
+    for _ in range(frames):
+        driving[:, 0] = (driving[:, 0] + 2) % WIDTH
+        anywhere = rng.uniform((0, 0, 8, 8), (WIDTH, HEIGHT, 60, 60), (count - count // 2, 4))
+        boxes = Detections.make(np.vstack([driving, anywhere]), rng.uniform(size=count))
+        before = time.process_time()
+        tracker.step(image, boxes)
+        seconds.append(time.process_time() - before)
+    return 1e3 * statistics.fmean(seconds)
 
 
 def resident(sequence: TrafficSequence) -> None:

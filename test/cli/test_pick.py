@@ -63,10 +63,8 @@ def answered(monkeypatch):
 
     def use(made):
         def answer(url):
-            given = json.loads(get(url + "info"))["document"] if callable(made) else None
-            document = made(given) if callable(made) else made
-            request = urllib.request.Request(f"{url}done", json.dumps(document).encode())
-            urllib.request.urlopen(request, timeout=30)
+            document = made(json.loads(get(url + "info"))["document"]) if callable(made) else made
+            get(url + "done", json.dumps(document).encode())
 
         def open_browser(url):
             threading.Thread(target=answer, args=(url,)).start()
@@ -282,6 +280,10 @@ def test_one_file_has_it_all_and_is_edited_in_place(answered, tmp_path, capsys):
     assert set(yaml.safe_load(copy.read_text())) == {"zones"}
     assert "targets" in yaml.safe_load(path.read_text())
     assert main(["pick", folder, "-o", str(copy)]) == 1  # it exists
+    path.write_text("targets: [{name: 2026-01-01, box: [1, 2, 3, 4]}]")  # a date in YAML
+    answered(lambda document: document)
+    assert main(["pick", folder, "--edit", str(path)]) == 0
+    assert yaml.safe_load(path.read_text())["targets"][0]["name"] == "2026-01-01"
 
 
 def test_lines_are_printed_as_a_file_has_them(answered, tmp_path, capsys):

@@ -268,6 +268,12 @@ def test_a_clip_without_vehicles_says_why(tmp_path, real, capsys, frames, detect
     assert why in said
 
 
+def test_results_that_exist_are_told_before_a_network_is_loaded(run, capsys):
+    run()
+    run("--model", "none.onnx", status=1, detections=False)
+    assert "tracks.csv exists; give --overwrite" in capsys.readouterr().err
+
+
 def test_a_run_that_fails_keeps_the_results_before(run, capsys):
     out = run()
     before = {path.name: path.read_bytes() for path in out.iterdir()}

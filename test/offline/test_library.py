@@ -48,7 +48,7 @@ def table_of(path):
 def test_its_table_is_that_of_run(rec, tmp_path):
     words = ["--variant", "pf", "--seed", "3", "--set", "num_particles=50", "--target", TARGET]
     assert main(["run", str(rec), *words, "-o", str(tmp_path / "out")]) == 0
-    box = Box(*map(float, TARGET.split(",")))
+    box = [float(number) for number in TARGET.split(",")]
     track(rec, box, "pf", seed=3, num_particles=50).to_csv(tmp_path / "own.csv")
     expected = table_of(tmp_path / "out" / "estimates.csv")
     assert table_of(tmp_path / "own.csv") == expected
@@ -62,6 +62,9 @@ def test_without_a_target_it_starts_on_the_first_true_box(rec, tmp_path):
     assert estimates[3].position == (22.0, 30.0)
     with pytest.raises(InputError, match="has no truth to start on; give the vehicle's box"):
         track(record(tmp_path / "none", truths=()))
+    with pytest.raises(InputError, match=r"\(8, 24\) is not left, top, width and height in px"):
+        track(rec, (8, 24))
+    assert track(rec, Box(8, 24, 16, 12), "ms")[0].box == Box(8, 24, 16, 12)
 
 
 def test_a_data_frame_has_a_row_for_each_frame(rec):

@@ -31,7 +31,7 @@ class Blind:
 
 
 def test_a_detector_looks_at_every_third_image_and_says_whether_it_looked():
-    paced = PacedDetector(Blind(), 3)
+    paced = PacedDetector(Blind(), lambda: 3)
     seen = [(len(paced.detect(FRAME)), paced.disturbed, paced.is_blind) for _ in range(7)]
     looked, passed = (1, True, True), (0, False, True)
     assert seen == [looked, passed, passed, looked, passed, passed, looked]
@@ -50,10 +50,18 @@ def test_a_detector_looks_at_every_third_image_and_says_whether_it_looked():
     ],
 )
 def test_the_rate_of_the_images_chooses_how_often_it_looks(network, others, rate, every):
-    paced, fixed = PacedDetector(Blind(), 0), PacedDetector(Blind(), 2)
+    paced, fixed = PacedDetector(Blind(), lambda: 0), PacedDetector(Blind(), lambda: 2)
     for detector in (paced, fixed):
         for _ in range(100):
             looked = len(detector.detect(FRAME)) > 0
             detector.seconds = network
             detector.pace(others + looked * network, 1 / rate)
     assert (paced.every, fixed.every) == (every, 2)
+
+
+def test_a_change_of_the_parameter_counts_from_the_next_image_on():
+    wanted = [3]
+    paced = PacedDetector(Blind(), lambda: wanted[0])
+    assert [len(paced.detect(FRAME)) for _ in range(2)] == [1, 0]
+    wanted[0] = 1
+    assert [len(paced.detect(FRAME)) for _ in range(2)] == [1, 1]

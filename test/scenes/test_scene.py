@@ -30,7 +30,7 @@ def scene(*after, before=(), rate=30.0, noise=0.0):
     target = Actor(RED, moving(Box(2, 3, 10, 4), 2.0))
     return Scene(
         40, 12, rate, 8, lambda: np.full((12, 40, 3), 90, np.float32),
-        (*before, target, *after), len(before), Camera(noise, seed=1),
+        Camera(noise, seed=1), (*before, target, *after), len(before),
     )  # fmt: skip
 
 

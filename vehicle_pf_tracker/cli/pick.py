@@ -174,7 +174,7 @@ class Editor(PageServer):
             return kind, resources.files(__package__).joinpath(what or "pick.html").read_bytes()
         if what == "info":
             facts = {**self._facts, "frames": self._frames.count}
-            return "application/json", json.dumps(facts).encode()
+            return "application/json", json.dumps(facts, default=str).encode()
         if not what.startswith("frame/") or not what[6:].isdecimal():
             return None
         number = int(what[6:][:9])

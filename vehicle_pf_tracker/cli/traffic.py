@@ -87,12 +87,12 @@ def run(request: Request) -> int:
     configuration = _configuration(request)
     detections = DetectionFile(request.detections) if request.detections else None
     stop = Stop()
-    tracking = _tracking(request, configuration, detections, stop)
     source = request.open_source()
     folder = request.output or Path("results", f"{Path(request.source).stem or 'run'}_traffic")
     outputs = (Products(folder, PRODUCTS), request.video)
     inputs = (*request.inputs, request.detections, request.model, request.lines)
     with claimed(outputs, inputs, overwrite=request.overwrite):
+        tracking = _tracking(request, configuration, detections, stop)
         pictures = Pictures(request.video)
         status, notices = _follow(request, tracking, source, make_folder(folder), stop, pictures)
         notices = [

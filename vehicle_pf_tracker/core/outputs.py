@@ -41,8 +41,6 @@ class Products:
 
     Attributes
     ----------
-    folder : Path
-        The folder.
     names : sequence of str
         Patterns of the files and folders that the command replaces; none where it resumes.
     """

@@ -49,10 +49,8 @@ class Summary:
 
     Attributes
     ----------
-    count : int
-        Number of values.
-    mean : float
-        Mean of the values.
+    count, mean : int, float
+        Number of values, and their mean.
     spread : float or None
         Sample standard deviation; None for a single value.
     low, high : float or None

@@ -142,12 +142,8 @@ def line_histograms(segments: Segments, windows: Bounds, bins: int) -> Array:
 
     Parameters
     ----------
-    segments : (S, 4) array
-        As from `LineDetector.detect`.
-    windows : Bounds
-        Pixel rectangles, arrays of shape (N,).
-    bins : int
-        Directions over 180 degrees.
+    segments, windows, bins
+        As for `lengths_inside` and `direction_shares`.
 
     Returns
     -------

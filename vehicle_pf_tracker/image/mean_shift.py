@@ -62,14 +62,8 @@ def kernel_histogram(
 
     Parameters
     ----------
-    frame : (H, W, 3) array
-        RGB.
-    position : (float, float)
-        Centre in px; kept inside the image.
-    window : Window
-        Box around the kernel's ellipse; over the border the pixels that exist count.
-    bits : int
-        Bits a channel.
+    frame, position, window, bits
+        As for `colour.joint_histogram`; the kernel's ellipse touches the sides of the window.
 
     Returns
     -------

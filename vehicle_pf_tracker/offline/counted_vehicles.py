@@ -136,10 +136,12 @@ def session_and_counter(
     check_library()
     parameters, plane = configuration.tracker, configuration.session.road.fixed_plane()
     plan = read_counting_plan(Path(parameters.lines)) if parameters.lines else CountingPlan()
-    make, every = detector_maker(parameters.detector, progress), parameters.detector.every
+    make, tracker = detector_maker(parameters.detector, progress), TrafficTracker(parameters, plane)
     session = TrafficSession(
-        TrafficTracker(parameters, plane),
-        (lambda: PacedDetector(make(), every, run)) if make else None,
+        tracker,
+        (lambda: PacedDetector(make(), lambda: tracker.parameters.detector.every, run))
+        if make
+        else None,
         frame_rate=parameters.frame_rate,
         reset_on_time_jump=configuration.session.reset_on_time_jump,
         regions=plan.regions,

@@ -91,7 +91,7 @@ _SHARE = 0.8
 rest."""
 _LONGEST = 0.1
 """Longest time between two looks of a detector, s, also where the rate cannot be kept. On a dual
-carriageway at 30 Hz every third image leaves 98 % of IDF1, every fourth 96 %, every sixth 56 %."""
+carriageway at 30 Hz every third image leaves 95 to 98 % of IDF1, every sixth 56 %."""
 _RECENT = 0.1
 """Weight of the latest image among the costs."""
 
@@ -112,8 +112,8 @@ class PacedDetector:
     ----------
     detector : Detector
         The detector.
-    every : int
-        k; 0 chooses the smallest that keeps the rate of the images.
+    wanted : callable
+        Returns k, which may change; 0 chooses the smallest that keeps the rate of the images.
     run : callable
         Calls the detector.
 
@@ -129,10 +129,12 @@ class PacedDetector:
         See `Detector`.
     """
 
-    def __init__(self, detector: Detector, every: int = 1, run: Run = call) -> None:
+    def __init__(
+        self, detector: Detector, wanted: Callable[[], int] = lambda: 1, run: Run = call
+    ) -> None:
         self._detector, self._run = detector, run
-        self._is_chosen = every == 0
-        self.every = max(every, 1)
+        self._wanted = wanted
+        self.every = 1
         self.found, self.seconds = 0, 0.0
         self.disturbed = self.is_blind = False
         self._images, self._others = 0, 0.0
@@ -140,6 +142,7 @@ class PacedDetector:
     def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
         """Find vehicles, if it is this image's turn; see `Detector`."""
         self._images += 1
+        self.every = self._wanted() or self.every
         self.disturbed, self.is_blind = False, self._images > 1 and self._images <= self.every
         if self.is_blind:
             return Detections.make([], [])
@@ -154,11 +157,11 @@ class PacedDetector:
         """Take the time that the last image cost in all, and the images' period, s."""
         others = seconds - (self.seconds if self._images == 1 else 0.0)
         self._others += (others - self._others) * (_RECENT if self._others else 1.0)
-        if self._is_chosen:
+        if self._wanted() == 0:
             most = max(round(_LONGEST / period), 1)
             left = _SHARE * period - self._others
-            wanted = math.ceil(self.seconds / left) if left > 0 else most
-            self.every = min(max(wanted, 1), most)
+            least = math.ceil(self.seconds / left) if left > 0 else most
+            self.every = min(max(least, 1), most)
 
 
 _COLUMNS = ("frame", "id", "left", "top", "width", "height", "score")

@@ -29,11 +29,6 @@ from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.offline.output_files import write_csv
 from vehicle_pf_tracker.trackers.estimate import Mode
 
-WAITING = "WAITING"
-"""Mode of a frame before there is a target; all numbers are empty."""
-REJECTED = "REJECTED"
-"""Mode of a frame that the tracker could not use; all numbers are empty."""
-
 
 @dataclass(frozen=True, slots=True)
 class EstimateRow:
@@ -105,6 +100,11 @@ class EstimateRow:
             return None
         return Box.around(self.position, self.width, self.height)
 
+
+WAITING = "WAITING"
+"""Mode of a frame before there is a target; all numbers are empty."""
+REJECTED = "REJECTED"
+"""Mode of a frame that the tracker could not use; all numbers are empty."""
 
 COLUMNS = tuple(field.name for field in fields(EstimateRow))
 _NUMBERS = ("x", "y", "width", "height", "confidence", "n_eff", "step_ms")

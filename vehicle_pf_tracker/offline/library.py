@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -151,7 +151,10 @@ class Estimates(Sequence[EstimateRow]):
 
 
 def track(
-    source: str | Path, target: Box | None = None, variant: str = "fusion", **parameters: Any
+    source: str | Path,
+    target: Box | Sequence[float] | None = None,
+    variant: str = "fusion",
+    **parameters: Any,
 ) -> Estimates:
     """Follow one vehicle through a source, as the verb ``run`` does.
 
@@ -159,8 +162,9 @@ def track(
     ----------
     source : str or Path
         As for `open_source`.
-    target : Box, optional
-        Box of the vehicle in the first frame, px; None: the first true box of the source.
+    target : Box or four numbers, optional
+        Box of the vehicle in the first frame: left, top, width and height in px. None: the first
+        true box of the source.
     variant : str
         Name in the registry.
     **parameters : Any
@@ -176,6 +180,10 @@ def track(
     truth = next(iter(opened.truth()), None)
     if target is None and truth is None:
         raise InputError(f"{source} has no truth to start on; give the vehicle's box")
+    if target is not None and not isinstance(target, Box):
+        if len(target) != len(fields(Box)):
+            raise InputError(f"the target {target} is not left, top, width and height in px")
+        target = Box(*target)
     tracker = OfflineTracker(
         found,
         from_mapping(found.parameters, parameters),

@@ -50,8 +50,6 @@ class Picture(StampedFrame):
 
     Attributes
     ----------
-    frame : Frame
-        Pixels of the image.
     name : str
         Name of the image in an error.
     coded_format : str or None

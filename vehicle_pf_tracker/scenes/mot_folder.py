@@ -53,10 +53,8 @@ class SimulatedDetector:
 
     Attributes
     ----------
-    misses : float
-        Share of free vehicles that are missed.
-    miss_length : float
-        Mean number of frames for which one is missed.
+    misses, miss_length : float
+        Share of free vehicles that are missed, and mean number of frames for which one is.
     false_alarms : float
         Mean number of false alarms per frame.
     noise : float

@@ -138,10 +138,8 @@ class Carriageway:
 
     Attributes
     ----------
-    top : int
-        First row of asphalt on the stage.
-    lanes : int
-        Number of lanes.
+    top, lanes : int
+        First row of asphalt on the stage, and number of lanes.
     scale : float
         Size, px per metre.
     rightward : bool

@@ -21,7 +21,8 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any, TypeAlias
@@ -109,7 +110,7 @@ class Actor:
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class Stage(ABC):
     """Synthetic traffic; the same scene, parameters and seed give bit-identical frames.
 
     Things are placed on a stage, which the backdrop fills. The image is the part of it that the
@@ -125,10 +126,6 @@ class Scene:
         Number of frames.
     backdrop : callable
         Draws what never moves and hides nothing; called once per pass over the frames.
-    actors : tuple of Actor
-        All actors in painting order, far to near.
-    target : int
-        Index in `actors` of the vehicle the truth is about.
     camera : Camera or OutdoorCamera
         Takes the picture.
     """
@@ -138,18 +135,44 @@ class Scene:
     frame_rate: float
     frame_count: int
     backdrop: Callable[[], Image]
-    actors: tuple[Actor, ...]
-    target: int
     camera: Camera | OutdoorCamera
 
-    def frames(self) -> Iterator[SceneFrame]:
-        """Render every frame in order, with its truth."""
+    @abstractmethod
+    def painted(self, index: int) -> Iterable[Actor]:
+        """Give the actors of frame `index` in painting order."""
+
+    def images(self) -> Iterator[Frame]:
+        """Render every frame in order."""
         backdrop = self.backdrop()
         for index in range(self.frame_count):
             picture = backdrop.copy()
-            for actor in self.actors:
+            for actor in self.painted(index):
                 actor.paint(picture, index)
-            yield SceneFrame(self.camera.capture(picture, index), self.truth(index))
+            yield self.camera.capture(picture, index)
+
+
+@dataclass(frozen=True, slots=True)
+class Scene(Stage):
+    """A scene with one target.
+
+    Attributes
+    ----------
+    actors : tuple of Actor
+        All actors in painting order, far to near.
+    target : int
+        Index in `actors` of the vehicle the truth is about.
+    """
+
+    actors: tuple[Actor, ...]
+    target: int
+
+    def painted(self, index: int) -> Iterable[Actor]:
+        """Give all actors."""
+        return self.actors
+
+    def frames(self) -> Iterator[SceneFrame]:
+        """Render every frame in order, with its truth."""
+        return map(SceneFrame, self.images(), self.truths())
 
     def truths(self) -> Iterator[Truth]:
         """Give the truth of every frame, as `frames` does, without rendering a pixel."""

@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,10 +24,10 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.scenes.compositing import Image, PixelWindow, overlap, stream
+from vehicle_pf_tracker.scenes.compositing import PixelWindow, overlap, stream
 from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from vehicle_pf_tracker.scenes.roads import PAINTS, Carriageway, Lane, Vehicle, any_car, countryside
-from vehicle_pf_tracker.scenes.scene import Actor, Camera, OutdoorCamera, Path
+from vehicle_pf_tracker.scenes.scene import Actor, Camera, Path, Stage
 from vehicle_pf_tracker.scenes.scenery import bridge
 from vehicle_pf_tracker.scenes.vehicles import lorry
 
@@ -74,51 +74,33 @@ class VehicleTruth:
 
 
 @dataclass(frozen=True, slots=True)
-class TrafficScene:
-    """Synthetic traffic; the same scene, parameters and seed give bit-identical frames.
+class TrafficScene(Stage):
+    """A scene with many vehicles, whose camera must not move.
 
     Attributes
     ----------
-    width, height : int
-        Image size in px.
-    frame_rate : float
-        Frames per second.
-    frame_count : int
-        Number of frames.
-    backdrop : callable
-        Draws what never moves and hides nothing.
     vehicles : tuple of (Actor, Actor)
         Shadow and body of each vehicle.
     obstacles : tuple of Actor
         What stands in front of all vehicles, in painting order.
-    camera : Camera or OutdoorCamera
-        Takes the picture; it must not move.
     order : callable or None
         Indices of the vehicles of a frame, far to near; None: the lower a body stands, the
         nearer it is.
     """
 
-    width: int
-    height: int
-    frame_rate: float
-    frame_count: int
-    backdrop: Callable[[], Image]
     vehicles: tuple[tuple[Actor, Actor], ...]
     obstacles: tuple[Actor, ...]
-    camera: Camera | OutdoorCamera
     order: Callable[[int], list[int]] | None = None
+
+    def painted(self, index: int) -> Iterable[Actor]:
+        """Give all shadows, then all bodies, each far to near, and the obstacles."""
+        order = self._far_to_near(index)
+        parts = (self.vehicles[number][part] for part in (0, 1) for number in order)
+        return *parts, *self.obstacles
 
     def frames(self) -> Iterator[tuple[Frame, tuple[VehicleTruth, ...]]]:
         """Render every frame in order, with its truth."""
-        backdrop = self.backdrop()
-        for index in range(self.frame_count):
-            picture = backdrop.copy()
-            order = self._far_to_near(index)
-            shadows = [self.vehicles[number][0] for number in order]
-            bodies = [self.vehicles[number][1] for number in order]
-            for actor in (*shadows, *bodies, *self.obstacles):
-                actor.paint(picture, index)
-            yield self.camera.capture(picture, index), self.truth(index)
+        return zip(self.images(), map(self.truth, range(self.frame_count)), strict=True)
 
     def truth(self, index: int) -> tuple[VehicleTruth, ...]:
         """Exact truth about every vehicle in the image of frame `index`, by identity."""

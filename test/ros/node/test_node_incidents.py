@@ -17,7 +17,9 @@
 from __future__ import annotations
 
 import signal
+import threading
 import time
+from pathlib import Path
 
 import pytest
 
@@ -45,6 +47,7 @@ from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.offline.estimates import read_estimates
 from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder
 from vehicle_pf_tracker.trackers.base import BaseTracker
@@ -63,7 +66,8 @@ def test_a_snapshot_can_be_run_again_bit_for_bit(bench, tmp_path):
     answers = [values_of(rig.show_frame(frame, i)) for i, frame in enumerate(road(12))]
     told = bench.call(Trigger, f"{rig.name}/snapshot", Trigger.Request())
     assert told.success
-    found = told.message.removeprefix("written to ")
+    found = told.message.removeprefix("writing to ")
+    bench.wait_for(Path(found, "parameters.yaml").is_file)
     assert Recording(found).frame_count == 12
     words = ["run", found, "--variant", "apf", "--params", f"{found}/parameters.yaml"]
     assert main([*words, "-o", str(tmp_path / "out")]) == 0
@@ -76,8 +80,40 @@ def test_a_session_that_starts_anew_writes_what_led_to_it(bench, folder, monkeyp
     rig.play(road(4))
     monkeypatch.setattr(BaseTracker, "step", failing(BaseTracker.step, {0, 1}))
     rig.play(road(4), 4)
-    (written,) = folder.glob("apf_tracker_*")
-    assert Recording(written).frame_count == 6
+    (written,) = bench.wait_for(lambda: list(folder.glob("apf_tracker_*/parameters.yaml")))
+    assert Recording(written.parent).frame_count == 6
+
+
+def test_images_are_answered_while_a_snapshot_is_written(bench, tmp_path, monkeypatch, capfd):
+    may_end = threading.Event()
+    write = RecordingWriter.write_serialized
+
+    def slow(*given):
+        may_end.wait(60.0)
+        write(*given)
+
+    monkeypatch.setattr(RecordingWriter, "write_serialized", slow)
+    rig = Rig(bench, on_target(incident_memory=100))
+    frames = road(8)
+    rig.play(frames[:4])
+    calls = [bench.call(Trigger, f"{rig.name}/snapshot", Trigger.Request()) for _ in range(2)]
+    assert [call.success for call in calls] == [True, False]
+    assert "still being written" in calls[1].message
+    assert rig.play(frames[4:], 4) == ["TRACKING"] * 4
+    may_end.set()
+    found = Path(calls[0].message.removeprefix("writing to "))
+    bench.wait_for((found / "parameters.yaml").is_file)
+    assert Recording(found).frame_count == 4
+
+
+def test_a_snapshot_that_cannot_be_written_says_why(bench, tmp_path, monkeypatch):
+    rig = Rig(bench, on_target(incident_memory=100))
+    rig.play(road(2))
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("ROS_HOME", str(tmp_path / "file"))
+    answer = bench.call(Trigger, f"{rig.name}/snapshot", Trigger.Request())
+    assert not answer.success
+    assert "Not a directory" in answer.message
 
 
 def test_without_memory_there_is_no_such_service(bench):

@@ -39,11 +39,12 @@ def test_births_and_ends_are_per_minute(clock):
     assert rates.values == {}
     for second in range(120):
         clock.now = float(second)
-        rates.note({second // 10, second // 10 + 1}, 3, 2, 0.04)
+        rates.note({second // 10, second // 10 + 1}, 3, 2, 0.04, 5)
     values = rates.values
     assert values["births per minute"] == values["ends per minute"] == pytest.approx(6, abs=0.2)
     assert (values["detections per image"], values["of them believed"]) == (3, 2)
     assert values["detector's latency (ms)"] == pytest.approx(40)
+    assert values["places with false alarms"] == 5
 
 
 def watch(rates, clock, seconds, detections, latency=0.03):

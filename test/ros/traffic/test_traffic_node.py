@@ -135,6 +135,7 @@ def test_without_a_selection_each_image_has_a_summary(rig):
     assert float(told["births per minute"]) > 0
     assert float(told["detections per image"]) > 0
     assert float(told["detector's latency (ms)"]) > 0
+    assert float(told["places with false alarms"]) >= 0
 
 
 def test_markers_and_overlay_show_every_vehicle(rig):

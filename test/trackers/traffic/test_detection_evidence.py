@@ -71,3 +71,13 @@ def test_a_place_of_false_alarms_speaks_against_a_detection_and_never_for_one():
 
 def test_no_detections_have_no_odds():
     assert len(taught().log_odds([])) == 0
+
+
+def test_places_with_false_alarms_are_counted_and_forgotten():
+    evidence = DetectionEvidence()
+    evidence.learn(sample(TREE, 0.5), False)
+    evidence.learn(sample(ROAD, 0.5), True)
+    assert evidence.cluttered == 1
+    for _ in range(20_000):
+        evidence.look()
+    assert evidence.cluttered == 0

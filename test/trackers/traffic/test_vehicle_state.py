@@ -22,7 +22,6 @@ from hypothesis import strategies as st
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
     ACROSS,
     ALONG,
-    OBSERVATION,
     Drive,
     Edge,
     V,
@@ -68,9 +67,7 @@ def test_another_horizon_changes_neither_box_nor_velocity_of_the_lower_edge(stat
     x, v, _, _, across, along = state.mean
     assert v == 50
     assert (-along * v * x + across * v, -along * v**2) == pytest.approx(rate)
-    # The logarithm of the distance changes by 0.69, a leap by 0.39: so far the 4 px are in doubt.
-    doubted = np.hypot(spread, (np.log(2) - 0.3) * 4.0)
-    assert np.sqrt(state.covariance[ALONG, ALONG]) * 50**2 == pytest.approx(doubted)
+    assert np.sqrt(state.covariance[ALONG, ALONG]) * 50**2 == pytest.approx(spread)
     state.move_horizon(1000.0)  # it cannot drive in the sky
     assert state.mean[V] > 0
     assert state.edges == pytest.approx(edges)
@@ -128,18 +125,6 @@ def test_no_speed_makes_a_box_infinite(state, along):
         state.predict(1.0, STILL)
     assert np.isfinite(state.edges).all()
     assert state.box.width >= 1
-
-
-def test_a_horizon_that_leaps_casts_doubt_on_size_and_speed():
-    box = np.array([100.0, 80.0, 140.0, 110.0])
-    near, far = (VehicleState(box, np.ones(4), 0.0, Drive(0.1, 1.0, 300.0)) for _ in range(2))
-    near.move_horizon(-10.0)
-    far.move_horizon(-400.0)
-    # The lower edge is 110 px from it, then 120 and 510: logarithms change by 0.09 and 1.53.
-    width = OBSERVATION[Edge.RIGHT] - OBSERVATION[Edge.LEFT]
-    variance = [float(width @ one.covariance @ width) for one in (near, far)]
-    assert variance[0] == pytest.approx(2.0)
-    assert variance[1] == pytest.approx(2.0 + ((np.log(510 / 110) - 0.3) * 40) ** 2)
 
 
 @pytest.mark.parametrize("along", [-1.0, 1.0])

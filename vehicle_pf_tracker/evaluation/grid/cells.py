@@ -89,10 +89,8 @@ class VariantSystem:
 
     Attributes
     ----------
-    label : str
-        Name of the system in all tables.
-    variant : str
-        Name of the variant in the registry.
+    label, variant : str
+        Name of the system in all tables, and of the variant in the registry.
     parameter_set : str
         Label of its parameter set; empty for the defaults.
     overrides : tuple of (str, Value)

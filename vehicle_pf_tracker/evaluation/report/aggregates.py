@@ -37,10 +37,8 @@ class Column:
 
     Attributes
     ----------
-    key : str
-        Name of the metric in files.
-    group : str
-        Group of columns it stands in.
+    key, group : str
+        Name of the metric in files, and the group of columns it stands in.
     label, unit : str
         Name and unit for readers; shares have no unit.
     decimals : int

@@ -96,10 +96,9 @@ class ScoredEvaluation:
         Folder the runs were read from.
     truths : mapping of str to mapping of int to Truth
         Truths by recording and number of the frame.
-    runs : tuple of ScoredRun
-        Runs from the true box in the order of the plan: recordings, systems, seeds.
-    shifted : tuple of ScoredRun
-        Runs from shifted first boxes.
+    runs, shifted : tuple of ScoredRun
+        Runs from the true box in the order of the plan (recordings, systems, seeds), and those from
+        shifted first boxes.
     failed : tuple of FailedCell
         Failed cells in the same order, from any start.
     """

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import json
 import os
+import threading
 import time
 from collections import deque
 from collections.abc import Callable
@@ -31,6 +32,7 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
@@ -73,6 +75,7 @@ class IncidentRecorder:
         self._kept: deque[tuple[float, int, type[Any], bytes]] = deque()
         self._boxes: deque[tuple[int, Box]] = deque()
         self._bytes = 0
+        self._writing: threading.Thread | None = None
 
     @property
     def count(self) -> int:
@@ -94,8 +97,10 @@ class IncidentRecorder:
         """Keep where the target was, for a run to start on."""
         self._boxes.append((stamp, box))
 
-    def write(self, configuration: Configuration) -> Path:
-        """Write a recording, with the parameters beside it, and return its folder.
+    def write(self, configuration: Configuration, tell: Callable[[str], object]) -> Path:
+        """Begin to write a recording, with the parameters beside it, and return its folder.
+
+        A thread writes it, while images go on; `tell` takes what came of it, in that thread.
 
         Raises
         ------
@@ -104,21 +109,40 @@ class IncidentRecorder:
         """
         if not self._kept:
             raise InputError("no image has come yet")
+        if self._writing is not None and self._writing.is_alive():
+            raise InputError("the seconds before are still being written")
         try:  # the one thing of a node that needs more than a robot has from apt
-            recordings = import_module("vehicle_pf_tracker.recordings.writer")
+            writer = import_module("vehicle_pf_tracker.recordings.writer").RecordingWriter
         except ModuleNotFoundError as error:
             raise InputError(f"writing a recording needs {error.name} (pip)") from None
-        ros_folder().mkdir(parents=True, exist_ok=True)
+        with output_errors(ros_folder()):
+            ros_folder().mkdir(parents=True, exist_ok=True)
         folder = ros_folder() / f"{self._name}_{time.strftime('%Y%m%d_%H%M%S')}"
-        with recordings.RecordingWriter(folder, overwrite=True) as writer:
-            for _, stamp, kind, data in self._kept:
-                topic, type_name = _TOPICS[kind]
-                writer.write_serialized(topic.format(self._name), type_name, stamp, data)
-            if self._boxes:
-                writer.write_truth(Truth(*self._boxes[0], Occlusion.NONE))
-        text = to_yaml(configuration.specs(), configuration.to_mapping(), f"{self._name}'s.")
-        (folder / "parameters.yaml").write_text(text, encoding="utf-8")
+        messages = [(_TOPICS[kind], stamp, data) for _, stamp, kind, data in self._kept]
+        first, name = self._boxes[0] if self._boxes else None, self._name
+        text = to_yaml(configuration.specs(), configuration.to_mapping(), f"{name}'s.")
+
+        def write() -> None:
+            with writer(folder, overwrite=True) as recording:
+                for (topic, type_name), stamp, data in messages:
+                    recording.write_serialized(topic.format(name), type_name, stamp, data)
+                if first is not None:
+                    recording.write_truth(Truth(*first, Occlusion.NONE))
+            with output_errors(folder):
+                (folder / "parameters.yaml").write_text(text, encoding="utf-8")
+
+        self._writing = threading.Thread(target=_telling, args=[write, folder, tell])
+        self._writing.start()
         return folder
+
+
+def _telling(write: Callable[[], None], folder: Path, tell: Callable[[str], object]) -> None:
+    try:
+        write()
+    except InputError as error:
+        tell(f"the last seconds are not kept: {error}")
+    else:
+        tell(f"the last seconds are written to {folder}")
 
 
 class KeptTarget:

@@ -253,7 +253,7 @@ class NodeStream(ABC):
                 self.incidents.keep_box(stamp_ns(header), box)
 
     def write_incident(self) -> str:
-        """Write the last seconds to a recording; return words about that.
+        """Begin to write the last seconds to a recording; return words about that.
 
         Raises
         ------
@@ -261,15 +261,16 @@ class NodeStream(ABC):
             If nothing was kept, or it cannot be written.
         """
         assert self.incidents is not None
-        return f"written to {self.incidents.write(self._configuration)}"
+        folder = self.incidents.write(self._configuration, lambda words: self.log.warning(words))  # noqa: PLW0108
+        return f"writing to {folder}"
 
     def note_restart(self) -> None:
         """Count that the session started anew, and write what led to it."""
         self.health.restarts += 1
         if self.incidents is not None:
             try:
-                self.log.warning(f"the last seconds are {self.write_incident()}")
-            except (InputError, OSError) as error:
+                self.write_incident()
+            except InputError as error:
                 self.log.error(f"the last seconds cannot be written: {error}")
 
     def refuse(self, what: str, reason: str) -> None:

@@ -41,6 +41,7 @@ class _Image(NamedTuple):
     detections: int
     believed: int
     latency_ms: float
+    cluttered: int
 
 
 class Rates:
@@ -60,7 +61,12 @@ class Rates:
         self._usual: dict[str, tuple[float, float]] = {}
 
     def note(
-        self, vehicles: Collection[int], detections: int, believed: int, latency: float
+        self,
+        vehicles: Collection[int],
+        detections: int,
+        believed: int,
+        latency: float,
+        cluttered: int = 0,
     ) -> None:
         """Note an image.
 
@@ -72,11 +78,15 @@ class Rates:
             What the detector found, and vehicles that are visible.
         latency : float
             Time that the detector took, s.
+        cluttered : int
+            Places in the image that have had false alarms.
         """
         before, self._known = self._known, frozenset(vehicles)
         births, ends = len(self._known - before), len(before - self._known)
         now = self._clock()
-        self._images.append(_Image(now, births, ends, detections, believed, latency * 1e3))
+        self._images.append(
+            _Image(now, births, ends, detections, believed, latency * 1e3, cluttered)
+        )
         while self._images[0].when < now - _WINDOW:
             self._images.popleft()
 
@@ -93,6 +103,7 @@ class Rates:
             "detections per image": sum(one.detections for one in images) / len(images),
             "of them believed": sum(one.believed for one in images) / len(images),
             "detector's latency (ms)": sum(one.latency_ms for one in images) / len(images),
+            "places with false alarms": float(images[-1].cluttered),
         }
 
     def judge(self) -> str:

@@ -339,7 +339,8 @@ class TrafficStream(NodeStream):
             found, seconds = detector.found, detector.seconds
         known = [one.identity for one in estimates if one.mode in CONFIRMED]
         visible = sum(one.mode is TrackMode.TRACKING for one in estimates)
-        self._rates.note(known, found, visible, seconds)
+        cluttered = self.vehicles.session.tracker.cluttered_places
+        self._rates.note(known, found, visible, seconds, cluttered)
 
     @property
     def _reason(self) -> str:

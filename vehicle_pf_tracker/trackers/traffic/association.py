@@ -41,7 +41,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     clipped,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.track import PLAIN_SIGHT, Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
 
 GATE = 30.0
@@ -283,10 +283,6 @@ def _log_density(residuals: Array, covariances: Array) -> Array:
 
 _MISSED_FOR = 5.0
 """Nominal periods without a detection after which a vehicle may be hidden."""
-_IN_SIGHT = 0.5
-"""Share of its prediction that is in sight, below which it is where it is thought to be, behind
-another one: what appears near by is not it. Without this a car that comes out behind a lorry is
-taken for the one that the lorry hides."""
 _REACH = 1.0
 """Distance from the prediction, in widths, within which a vehicle can reappear at once; ..."""
 _REACH_GROWTH = 1 / 30
@@ -322,7 +318,7 @@ def _cost(track: Track, other: Track) -> float | None:
         return None
     if track.confirmed and other.undetected <= track.age:  # there were two of them
         return None
-    if other.visible < _IN_SIGHT:
+    if other.visible < PLAIN_SIGHT:
         return None
     new, old = track.state.box, other.state.box
     ratio = new.area / old.area

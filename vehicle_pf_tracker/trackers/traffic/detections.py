@@ -42,6 +42,8 @@ MOST_DETECTIONS = 300
 """Detections of a frame that are looked at, the highest scores first. No camera shows as many
 vehicles; a detector that reports more is out of order, and association would take seconds."""
 
+INSIDE = 0.7
+"""Share of a box inside another one above which it is a part of it: a bonnet, a second box."""
 NOTHING = np.empty((0, 4))
 """No boxes."""
 _LARGEST_SHARE = 4
@@ -160,14 +162,10 @@ _NEIGHBOURS = 40
 """Detections of about the same score, by rank, that a probability is taken from."""
 _PRIOR = 2.0
 """Weight of the prior on each side, in detections."""
-_REFRESHED_EVERY = 20
-"""New outcomes after which the order is taken anew."""
 _GRID = 16
 """Places along each side of the image."""
-_OLD = 200.0
-"""Outcomes at a place above which they are halved: light and wind change."""
 _MEMORY = 1500.0
-"""Images after which the number of false alarms of a place is halved."""
+"""Images after which what is known of places is halved: light and wind change in a minute."""
 _FALSE_ALARMS, _IMAGES = 1.0, 50.0
 """False alarms per image that are expected before any is seen, and the images that this, and the
 mean of all places for the number of one, are worth."""
@@ -199,7 +197,8 @@ class DetectionEvidence:
         if self._images > _MEMORY:
             self._images /= 2
             self._false /= 2
-        if self._fresh >= min(_REFRESHED_EVERY, len(self._outcomes)) > 0:
+            self._places = (self._places + _PRIOR) / 2
+        if self._fresh >= min(_NEIGHBOURS // 2, len(self._outcomes)) > 0:
             scores, genuine = np.array(self._outcomes).T
             order = np.argsort(scores, kind="stable")
             self._sorted = scores[order]
@@ -215,16 +214,18 @@ class DetectionEvidence:
             for score, (column, row) in zip(scores.tolist(), places, strict=True)
         ]
 
+    @property
+    def cluttered(self) -> int:
+        """Number of places, of a grid, that had a false alarm lately."""
+        return int(np.count_nonzero(self._false >= 0.5))
+
     def learn(self, sample: Sample, genuine: bool, *, alone: bool = True) -> None:
         """Add the outcome of a detection; one beside a vehicle is no false alarm of its place."""
         self._outcomes.append((sample.score, genuine))
         self._fresh += 1
         row, column = sample.place
         self._false[row, column] += alone and not genuine
-        here = self._places[:, row, column]
-        here[int(genuine)] += 1
-        if here[0] + here[1] > _OLD:
-            here /= 2
+        self._places[int(genuine), row, column] += 1
 
     def log_odds(self, samples: list[Sample]) -> Array:
         """Logarithm of the odds that detections are vehicles, (N,); 0 where nothing is known.

@@ -24,6 +24,7 @@ import numpy as np
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections
 from vehicle_pf_tracker.trackers.traffic.detections import (
+    INSIDE,
     SHIPPED,
     DetectionEvidence,
     TrafficNumbers,
@@ -32,7 +33,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import Track, edges_of
+from vehicle_pf_tracker.trackers.traffic.track import SEEN_WITHIN, SETTLED_AFTER, Track, edges_of
 
 _LEAST, _MOST = -0.6, 2.0
 """Bounds of the log odds that the score of one detection adds: a few good scores are no proof, and
@@ -58,8 +59,6 @@ _SMALLEST = 0.25
 motorcycle among lorries. Smaller ones that drive are parts of vehicles."""
 _SIZE_MEMORY = 0.998
 """Weight of the detections before in the usual size: some minutes."""
-_STANDING_MATCHES = 30
-"""Detections after which what still stands is taken for a part of the scene."""
 _STANDING = 0.2
 """Way, of the size, below which it stands: boxes shake by less."""
 _STILL, _USUAL = 0.05, 0.5
@@ -70,32 +69,21 @@ _MOVED_MATCHES = 5
 """Fewest detections by which what ended unconfirmed is known to have driven: it may have been a
 vehicle, and tells nothing about its detections. Taken for false alarms, vehicles that reach the
 next bridge too soon kept those after them from being confirmed, too: of forty, six."""
-_DETECTED, _DETECTED_WEIGHT = 0.5, 20.0
-"""Share of the vehicles in plain sight that is detected, to start from, and its weight in images of
-one vehicle."""
-_DETECTED_MEMORY = 500.0
-"""Images of one vehicle that the share is taken from."""
-_LEAST_DETECTED, _MOST_DETECTED = 0.2, 0.9
-"""Bounds of this share: vehicles differ."""
+_PRIOR = 10.0
+"""Vehicles in plain sight that were detected, and that were missed, before any was seen."""
+_MOST_DETECTED = 0.9
+"""Bound of the share of these that is detected: vehicles differ."""
 _WAITS = 4.0
 """Detections that a tentative vehicle may miss by expectation before it is given up."""
-_ONE_PERIOD = 1.5
-"""Nominal periods since pixels held a vehicle in the frame before, at most: stamps jitter."""
 _DOUBLE = 0.3
 """Log odds that a track without a detection loses while it is one box with a detected one."""
 _SAME = 0.5
 """Intersection over union above which two boxes are one."""
-_PART = 0.7
-"""A young track covered by a detected one by more than this fraction is taken for a part of it."""
-_YOUNG = 30
-"""Detections by which a track has shown that it is a vehicle of its own."""
 _BLIND_FROM = 2
 """Least vehicles in sight, all missed in one image, for the detector to have failed:
 they did not all vanish at once."""
 _BLIND_FOR = 150.0
 """Nominal periods after which a vehicle that no detector sees is doubted even so: 5 s at 30 Hz."""
-_PLAIN_SIGHT = 0.5
-"""Share of a vehicle in sight, and in the image, in which it ought to be detected."""
 _IMPLAUSIBLE = -7.0
 _REFUTED = -3.0
 """Log odds below which a tentative, and a confirmed, vehicle is given up."""
@@ -126,12 +114,12 @@ class Existence:
         self._numbers = numbers
         self._evidence = evidence
         self._sizes = np.zeros(2)
-        self._detected, self._asked = _DETECTED * _DETECTED_WEIGHT, _DETECTED_WEIGHT
+        self._detected, self._asked = _PRIOR, 2 * _PRIOR
 
     @property
     def detection_rate(self) -> float:
         """Share of the vehicles in plain sight that the detector finds."""
-        return min(max(self._detected / self._asked, _LEAST_DETECTED), _MOST_DETECTED)
+        return min(self._detected / self._asked, _MOST_DETECTED)
 
     def begun(self, track: Track, found: FrameDetections, index: int) -> bool:
         """Take the first detection of a new track; True if that is already enough."""
@@ -183,7 +171,7 @@ class Existence:
             for one in track.samples:
                 self._evidence.learn(one, True)
             track.samples.clear()
-        elif len(track.samples) > _STANDING_MATCHES:
+        elif len(track.samples) > SETTLED_AFTER:
             oldest = track.samples.pop(0)
             if not track.confirmed and track.way < _STANDING:
                 self._evidence.learn(oldest, False)
@@ -213,27 +201,22 @@ class Existence:
             return
         doubles = _doubles([one for one in tracks if one.confirmed and one.undetected], detected)
         for track in tracks:
-            in_sight = min(track.visible, track.inside) > _PLAIN_SIGHT
-            if track.has_driven and in_sight and track.unseen <= _ONE_PERIOD:
-                self._note(track.undetected == 0)
-            if track.undetected == 0 or (track.given and track.unseen <= _ONE_PERIOD):
+            if track.has_driven and track.in_sight and track.unseen < SEEN_WITHIN:
+                self._detected += track.undetected == 0
+                self._asked += 1
+            if track.undetected == 0 or (track.given and track.unseen < SEEN_WITHIN):
                 continue
             if track in doubles:
                 track.miss(_DOUBLE * elapsed)
-            if in_sight:
+            if track.in_sight:
                 track.miss(elapsed * self._missed(track))
-
-    def _note(self, detected: bool) -> None:
-        """Note that a vehicle in plain sight was detected, or was not."""
-        kept = 1 - 1 / _DETECTED_MEMORY
-        self._detected, self._asked = kept * self._detected + detected, kept * self._asked + 1
 
     def _missed(self, track: Track) -> float:
         if not track.confirmed:
             return -math.log(1 - self.detection_rate)
         # Pixels are asked later in the frame: they held it if they did in the frame before.
         numbers = self._numbers
-        return numbers.missed_held if track.unseen <= _ONE_PERIOD else numbers.missed_hidden
+        return numbers.missed_held if track.unseen < SEEN_WITHIN else numbers.missed_hidden
 
     def survivors(
         self, tracks: Sequence[Track], size: tuple[int, int], period: float
@@ -278,9 +261,9 @@ def _in_sight(tracks: Sequence[Track]) -> int:
     """Count the vehicles that a detector should see: it lately did, and pixels still do."""
     return sum(
         track.confirmed
-        and track.unseen <= _ONE_PERIOD
+        and track.unseen < SEEN_WITHIN
         and track.undetected <= _BLIND_FOR
-        and min(track.visible, track.inside) > _PLAIN_SIGHT
+        and track.in_sight
         for track in tracks
     )
 
@@ -293,5 +276,5 @@ def _doubles(tracks: Sequence[Track], detected: Sequence[Track]) -> set[Track]:
     return {
         track
         for track, is_same, share in zip(tracks, same, inside, strict=True)
-        if is_same or (track.matches < _YOUNG and share > _PART)
+        if is_same or (track.matches < SETTLED_AFTER and share > INSIDE)
     }

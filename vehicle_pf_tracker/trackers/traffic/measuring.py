@@ -28,17 +28,14 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import INWARD, cut_edges, deviations
-from vehicle_pf_tracker.trackers.traffic.detections import areas
+from vehicle_pf_tracker.trackers.traffic.detections import INSIDE, areas
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import Track, edges_of
+from vehicle_pf_tracker.trackers.traffic.track import SETTLED_AFTER, Track, edges_of
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
 _PUSHED = 1.0
 """Standard deviations that the opposite edge may at most be pushed out by, where an edge is drawn
 in because it is covered. A vehicle that brakes pushes it out."""
-_PATIENCE = 30
-"""Detections in a row that an edge may be covered in; then it is the vehicle that was taken too
-large: 1 s, in which even a slow vehicle goes behind what hides it."""
 _WHOLE = 0.85
 """Share of the width or height, of the predicted and of the latest detections, below which one of
 the two edges is covered: at the rim of an occluder the edge does not jump, it creeps, and would
@@ -57,8 +54,6 @@ from the front. From the side it is half of it, hence the deviation."""
 _ASPECT_DEVIATION = 0.25
 _IMPLAUSIBLE = 0.6
 """Side of a first box, of the usual one, below which something hides a part: its edges may grow."""
-_INSIDE = 0.7
-"""Share of a detection inside the prediction above which it can be one of several in it."""
 _BESIDE = 0.1
 """Share of another detection up to which it overlaps with this one and is still beside it."""
 _NOTABLE = 0.15
@@ -141,7 +136,7 @@ def measure(
     jumped = np.tile(less, 2) & (normal > settings.covered) & (opposite > -_PUSHED)
     crept = np.tile(shrunk, 2) & (normal > np.maximum(opposite, 0.0))
     covered = (jumped | crept) & ~unknown
-    patient = np.array([one.matches >= _SETTLED and one.partial < _PATIENCE for one in tracks])
+    patient = np.array([one.matches >= _SETTLED and one.partial < SETTLED_AFTER for one in tracks])
     left_out = unknown | (covered & patient[:, np.newaxis])
     states.measure(edges, np.where(left_out, np.inf, spread))
     states.give_back([track.state for track in tracks])
@@ -173,7 +168,7 @@ def _divide(tracks: Sequence[Track], edges: Array, others: Array) -> None:
         & (intersections(own, others) < _BESIDE * areas(others))
         & (others[:, Edge.BOTTOM] < own[..., Edge.BOTTOM])
     ).any(axis=1)
-    known = intersections(predicted, edges) > _INSIDE * areas(edges)
+    known = intersections(predicted, edges) > INSIDE * areas(edges)
     for track, box, crowded in zip(tracks, edges, (known & beside).tolist(), strict=True):
         if track.crowd(crowded) >= _CROWDED:
             track.shrink_to(box)

@@ -34,10 +34,13 @@ MOST_EVIDENCE = 8.0
 detections in plain sight speak against it."""
 SEEN_WITHIN = 2.0
 """Nominal periods within which a vehicle counts as seen: one frame may fail."""
+SETTLED_AFTER = 30
+"""Detections, one second of 30 Hz, by which what a track shows is no passing state: a covered edge,
+a part of another vehicle, standing still."""
+PLAIN_SIGHT = 0.5
+"""Share of a vehicle that no other hides, and in the image, in which it ought to be detected."""
 _COLOUR_RATE = 0.1
 """Rate per detection at which colours and their usual similarity are learnt."""
-_LEAST_VOTE = 0.01
-"""Vote for its class by a detection of no score; others vote by their scores."""
 _FIRST_SIMILARITY = 0.9
 """Similarity of a vehicle's colours from frame to frame before it is known."""
 _STRAIGHTEST = 1e-4
@@ -58,8 +61,8 @@ class Track:
         Place, size and velocity.
     identity : int
         Number of the vehicle; 0 until it is confirmed.
-    votes : dict of str to float
-        Summed scores of its detections by their class.
+    votes : dict of str to int
+        Number of its detections by their class.
     log_odds : float
         Evidence that the vehicle exists.
     strength : float
@@ -104,7 +107,7 @@ class Track:
     state: VehicleState
     identity: int = 0
     colours: Array = field(default_factory=lambda: np.zeros(BINS))
-    votes: dict[str, float] = field(default_factory=dict)
+    votes: dict[str, int] = field(default_factory=dict)
     log_odds: float = 0.0
     strength: float = 0.0
     doubt: float = 0.0
@@ -137,8 +140,13 @@ class Track:
         return self.identity > 0
 
     @property
+    def in_sight(self) -> bool:
+        """True where nothing known hides it, and it is in the image."""
+        return min(self.visible, self.inside) > PLAIN_SIGHT
+
+    @property
     def label(self) -> str:
-        """Class that most of its detections say, by their scores."""
+        """Class that most of its detections say."""
         return max(self.votes, key=self.votes.__getitem__, default="")
 
     def go_on(self, elapsed: float) -> None:
@@ -165,7 +173,7 @@ class Track:
         self.state, self.before, self.joined = track.state, track.before, track.serial
         self.score = track.score
         for label, votes in track.votes.items():
-            self.votes[label] = self.votes.get(label, 0.0) + votes
+            self.votes[label] = self.votes.get(label, 0) + votes
         self.has_driven = self.has_driven or track.has_driven
         self.unseen = self.undetected = 0.0
         self.log_odds = max(self.log_odds, track.log_odds)
@@ -176,7 +184,7 @@ class Track:
         """Take score and class of its detection in this frame."""
         self.score = score
         if label:
-            self.votes[label] = self.votes.get(label, 0.0) + max(score, _LEAST_VOTE)
+            self.votes[label] = self.votes.get(label, 0) + 1
 
     def measured(self, sides: Array, *, is_whole: bool) -> None:
         """Take the largest latest sides (2,) in px, and whether a detection showed all of it."""

@@ -39,6 +39,7 @@ from vehicle_pf_tracker.trackers.traffic.association import (
 )
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import (
+    INSIDE,
     SHIPPED,
     DetectionEvidence,
     Detections,
@@ -63,10 +64,6 @@ _VEHICLE_WIDTH = 1.8
 """Width of a car in m, by which speeds and accelerations become widths."""
 _FOCAL = 1.2
 """Focal length, of the image's width: that of a camera with a field of view of 45 degrees."""
-_NESTED = 0.7
-"""Share of a detection inside a detected vehicle above which it is a part of that vehicle."""
-_LEARNING_SHARE = 0.8
-"""Least visible share of a vehicle for its colours to be learnt."""
 
 
 class TrafficTracker:
@@ -118,6 +115,11 @@ class TrafficTracker:
     def seed(self) -> int:
         """Seed in use."""
         return self._seed
+
+    @property
+    def cluttered_places(self) -> int:
+        """Number of places in the image, of a grid, that had a false alarm lately."""
+        return self._evidence.cluttered
 
     def step(
         self, frame: Frame, detections: Detections | None = None, elapsed: float = 1.0
@@ -263,7 +265,7 @@ class TrafficTracker:
         cut = np.asarray(cut_edges(edges, self._size).any(axis=1))
         for (track, index, fit), is_whole, is_cut in zip(pairs, whole, cut, strict=True):
             track.name(found.labels[index], float(found.scores[index]))
-            if is_whole and track.visible > _LEARNING_SHARE:
+            if is_whole:
                 track.learn_colours(found.histogram(index))
                 if not is_cut:
                     track.growth.add(found.edges[index])
@@ -300,7 +302,7 @@ class TrafficTracker:
         """Drop free detections that are inside vehicles, bonnets or second boxes, or `either`."""
         boxes, edges = edges_of(tracks), found.edges[found.free, np.newaxis]
         smaller = np.minimum(areas(boxes), areas(edges)) if either else areas(edges)
-        inside = np.asarray((intersections(edges, boxes) > _NESTED * smaller).any(axis=1))
+        inside = np.asarray((intersections(edges, boxes) > INSIDE * smaller).any(axis=1))
         for index, is_inside in zip(found.free.copy(), inside.tolist(), strict=True):
             if is_inside:
                 found.free.remove(index)

@@ -57,12 +57,6 @@ _VAGUEST = 1e4
 """Largest standard deviation, px; in their units it bounds those of velocities too. Of a place in
 an image nothing is known then, and the measurement of half a px after it still leaves seven of a
 variance's 16 digits."""
-_HORIZON_MOVED = 0.05
-"""Change of the horizon that is applied, of the lower edge's distance from it: speeds are known no
-better when a vehicle is new."""
-_HORIZON_LEAPT = 0.3
-"""Change of the logarithm of the distance from the horizon above which it leaps: less is the
-usual error of an estimate."""
 _SIZE_WALK = 0.004
 """Change of a vehicle's shape as the camera sees it, of its size per nominal period: a vehicle that
 drives past is seen from behind and then from the side within some 5 s."""
@@ -246,15 +240,11 @@ class VehicleState:
         self._settle()
 
     def move_horizon(self, horizon: float) -> None:
-        """Take another row (px) for the horizon; box and velocity of the lower edge stay.
-
-        Where the horizon leaps, size and speed become uncertain.
-        """
-        x, v = self.mean[..., X], self.mean[..., V].copy()
-        moved = np.abs(horizon - self.horizon) >= _HORIZON_MOVED * v
-        if not moved.any():
+        """Take another row (px) for the horizon; box and velocity of the lower edge stay."""
+        if np.all(self.horizon == horizon):
             return
-        new = np.where(moved, np.maximum(v + self.horizon - horizon, _NEAREST_HORIZON), v)
+        x, v = self.mean[..., X], self.mean[..., V].copy()
+        new = np.maximum(v + self.horizon - horizon, _NEAREST_HORIZON)
         ratio, self.horizon = v / new, v + self.horizon - new
         step = np.zeros_like(self.covariance)
         step[..., range(6), range(6)] = 1.0
@@ -264,11 +254,6 @@ class VehicleState:
         self.mean = (step @ self.mean[..., np.newaxis])[..., 0]
         self.mean[..., V] = new
         self._transform(step)
-        # Size and speed along the road were learnt with the other horizon, and hold the less, the
-        # farther it was; the speed across was seen.
-        doubt = np.maximum(np.abs(np.log(ratio)) - _HORIZON_LEAPT, 0.0)
-        for part in (W, H, ALONG):
-            self.covariance[..., part, part] += (doubt * self.mean[..., part]) ** 2
         self._bound()
         self._settle()
 
