@@ -275,7 +275,7 @@ def test_a_recording_that_lacks_its_file_says_so(record):
     content = yaml.safe_load((folder / "metadata.yaml").read_text())
     content["rosbag2_bagfile_information"]["relative_file_paths"] = ["gone.mcap"]
     (folder / "metadata.yaml").write_text(yaml.safe_dump(content))
-    with pytest.raises(InputError, match="lacks its file gone.mcap"):
+    with pytest.raises(InputError, match=r"lacks its file gone\.mcap"):
         Recording(folder)
 
 
