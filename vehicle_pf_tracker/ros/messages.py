@@ -22,6 +22,7 @@ from __future__ import annotations
 import array
 import math
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -74,10 +75,8 @@ LEVELS: Mapping[str, bytes] = {
 UNKNOWN_ANGLE = math.pi**2 / 3
 """Variance of an angle that nothing is known of, rad²."""
 
-_PARTICLE_FIELDS = [
-    PointField(name=name, offset=4 * index, datatype=PointField.FLOAT32, count=1)
-    for index, name in enumerate(("x", "y", "z", "weight"))
-]
+_DATATYPES = {"<u4": PointField.UINT32, "|u1": PointField.UINT8, "<f4": PointField.FLOAT32}
+_PARTICLE = np.dtype([(name, "<f4") for name in ("x", "y", "z", "weight")])
 
 
 def stamp_ns(header: Header) -> int:
@@ -153,21 +152,35 @@ def velocity_message(
 
 def particles_message(header: Header, estimate: Estimate) -> PointCloud2:
     """Make the cloud: x, y in px, z = 0, and the normalised weight of each particle."""
-    count = len(estimate.weights)
-    points = np.zeros((count, 4), np.dtype("<f4"))
-    points[:, :2] = estimate.particles
-    points[:, 3] = estimate.weights
+    points = np.zeros(len(estimate.weights), _PARTICLE)
+    points["x"], points["y"] = estimate.particles.T
+    points["weight"] = estimate.weights
+    return cloud_message(header, points)
+
+
+def cloud_message(header: Header, points: npt.NDArray[np.void]) -> PointCloud2:
+    """Make the cloud of structured points (N,), whose names and types are those of its fields."""
+    kind = points.dtype
     return PointCloud2(
         header=header,
         height=1,
-        width=count,
-        fields=_PARTICLE_FIELDS,
+        width=len(points),
+        fields=_fields(kind),
         is_bigendian=False,
-        point_step=16,
-        row_step=16 * count,
-        data=packed(points),
+        point_step=kind.itemsize,
+        row_step=kind.itemsize * len(points),
+        data=packed(points.view(np.uint8)),
         is_dense=True,
     )
+
+
+@cache
+def _fields(kind: np.dtype[np.void]) -> list[PointField]:
+    """Describe the fields of points; made once for each kind."""
+    return [
+        PointField(name=name, offset=offset, datatype=_DATATYPES[of.str], count=1)
+        for name, (of, offset, *_) in (kind.fields or {}).items()
+    ]
 
 
 def pose_message(header: Header, position: Array, covariance: Array) -> PoseWithCovarianceStamped:

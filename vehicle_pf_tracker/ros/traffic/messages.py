@@ -28,7 +28,7 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Point
 from rclpy.serialization import deserialize_message
-from sensor_msgs.msg import PointCloud2, PointField
+from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -38,9 +38,9 @@ from vehicle_pf_tracker.offline.traffic_drawing import identity_colour
 from vehicle_pf_tracker.ros.messages import (
     CLASS,
     LEVELS,
+    cloud_message,
     detection_message,
     detections_type,
-    packed,
     status,
 )
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
@@ -53,25 +53,8 @@ CODES: Mapping[TrackMode, int] = MappingProxyType(
 )
 """Modes in `~/tracks`: 0 TENTATIVE, 1 TRACKING, 2 OCCLUDED, 3 LOST."""
 
-_FLOATS = ("x", "y", "width", "height", "vx", "vy")
-_TRACK = np.dtype(
-    {
-        "names": ["id", *_FLOATS, "mode", "confidence"],
-        "formats": ["<u4", *["<f4"] * len(_FLOATS), "u1", "<f4"],
-        "offsets": [0, 4, 8, 12, 16, 20, 24, 28, 32],
-        "itemsize": 36,
-    }
-)
-_DATATYPES = {"<u4": PointField.UINT32, "|u1": PointField.UINT8, "<f4": PointField.FLOAT32}
-
-
-def _field(name: str) -> PointField:
-    assert _TRACK.fields is not None
-    kind, offset = _TRACK.fields[name][:2]
-    return PointField(name=name, offset=offset, datatype=_DATATYPES[kind.str], count=1)
-
-
-_FIELDS = [_field(name) for name in _TRACK.names or ()]
+_FLOATS = [(name, "<f4") for name in ("x", "y", "width", "height", "vx", "vy")]
+_TRACK = np.dtype([("id", "<u4"), *_FLOATS, ("mode", "u1"), ("confidence", "<f4")], align=True)
 _LINE_WIDTH = 2.0
 """Width of the lines of boxes in px."""
 _LETTERS = 14.0
@@ -83,24 +66,11 @@ def tracks_message(
 ) -> PointCloud2:
     """Make the cloud with a point for each vehicle: centre and size in px, velocity in px/s."""
     points = np.zeros(len(estimates), _TRACK)
-    for point, one in zip(points, estimates, strict=True):
-        vx, vy = one.velocity[0] / frame_period, one.velocity[1] / frame_period
-        point["id"], point["mode"] = one.identity, CODES[one.mode]
-        point["confidence"] = one.confidence
-        values = (*one.position, one.box.width, one.box.height, vx, vy)
-        for name, value in zip(_FLOATS, values, strict=True):
-            point[name] = value
-    return PointCloud2(
-        header=header,
-        height=1,
-        width=len(points),
-        fields=_FIELDS,
-        is_bigendian=False,
-        point_step=_TRACK.itemsize,
-        row_step=_TRACK.itemsize * len(points),
-        data=packed(points.view(np.uint8)),
-        is_dense=True,
-    )
+    for index, one in enumerate(estimates):
+        box, velocity = one.box, (part / frame_period for part in one.velocity)
+        values = one.identity, *one.position, box.width, box.height, *velocity
+        points[index] = *values, CODES[one.mode], one.confidence
+    return cloud_message(header, points)
 
 
 def scalars(estimate: TrackEstimate) -> dict[str, object]:

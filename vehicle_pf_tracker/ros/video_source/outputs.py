@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import array
 import math
 import threading
 import time
@@ -36,7 +35,7 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.parameters.files import read_yaml_file
-from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.ros.messages import image_message, packed
 
 _DEPTH = 5
 """Images kept for a slow subscriber. Reliable, since that serves both kinds of subscribers."""
@@ -140,9 +139,8 @@ class ImageOutputs:
         options = [cv2.IMWRITE_JPEG_QUALITY, self._jpeg_quality or 0]
         pixels = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
         _, encoded = cv2.imencode(".jpg", pixels, options)
-        data = array.array("B")
-        data.frombytes(encoded.data)
-        return CompressedImage(header=header, format="rgb8; jpeg compressed bgr8", data=data)
+        words = "rgb8; jpeg compressed bgr8"
+        return CompressedImage(header=header, format=words, data=packed(encoded))
 
 
 def _publisher(node: Node, kind: type, topic: str) -> Publisher:
