@@ -59,6 +59,16 @@ def test_a_shadow_is_cut_off_and_a_dark_vehicle_is_not():
     )
 
 
+def test_the_depth_of_a_sunny_days_shadows_is_learnt():
+    detector = MotionDetector()
+    for index, frame in enumerate(frames(50)):
+        left = 3 * (index - 30) + 36
+        if index >= 30:
+            frame[60:84, left : left + 24] = frame[60:84, left : left + 24] * 0.5
+        found = detector.detect(frame)
+    assert found.boxes == pytest.approx(np.array([[57, 60, 36, 24]]), abs=4)
+
+
 def test_masks_repeat_whatever_else_the_process_draws():
     runs = []
     for _ in range(2):
@@ -135,17 +145,18 @@ def test_vehicles_whose_corners_touch_are_divided():
     )
 
 
-def test_vehicles_that_overlap_are_divided_once_the_size_of_one_is_known():
-    both = mask((20, 20, 50, 50), (46, 35, 76, 65))
+def test_the_size_of_vehicles_tells_two_that_overlap_and_what_is_none():
+    both, speck = mask((20, 20, 50, 50), (46, 35, 76, 65)), mask((20, 60, 28, 68))
     reader = BlobReader()
-    assert len(reader.read(both, np.empty((0, 4)))[0]) == 1
+    assert [len(reader.read(one, np.empty((0, 4)))[0]) for one in (both, speck)] == [1, 1]
     for index in range(60):
         alone = np.array([[20 + index, 20 + index // 2, 50 + index, 50 + index // 2]])
         reader.read(mask(*alone.tolist()), alone.astype(float))
     edges, _ = reader.read(both, np.empty((0, 4)))
     assert edges[np.argsort(edges[:, 0])] == pytest.approx(
-        np.array([[20, 20, 50, 50], [46, 35, 76, 65]]), abs=10
+        np.array([[20, 20, 50, 50], [46, 35, 76, 65]]), abs=5
     )
+    assert len(reader.read(speck, np.empty((0, 4)))[0]) == 0
 
 
 def test_pieces_that_look_like_vehicles_are_not_joined_by_one_prediction():

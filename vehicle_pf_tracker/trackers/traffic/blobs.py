@@ -73,6 +73,9 @@ _FULLNESS, _FULLNESS_SPREAD = np.log(0.8), 0.2
 _SIZE_SPREAD, _MOST_SIZE_COST = 0.2, 4.0
 """Standard deviation of the logarithm of a car's size, and most cost of another size: a lorry is
 twice as large, and has to stay whole."""
+_SPECK = np.log(0.4) / _SIZE_SPREAD
+"""Deviation from the usual size below which a box is of leaves, captions or noise: a motorcycle has
+two thirds of a car's size, and a car beside many lorries half of the usual one."""
 _SIZES_NEEDED, _SIZE_MEMORY = 50, 0.998
 """Least boxes that a usual size is taken from: of one vehicle that has driven through; and weight
 of those before each: some minutes."""
@@ -102,13 +105,18 @@ class UsualSize:
         self._sums = _SIZE_MEMORY * self._sums + place / size
         self._count += 1
 
-    def cost(self, edges: Array) -> float:
-        """Squared standard deviations of a box (4,) from the usual size; 0 while none is known."""
+    def deviation(self, edges: Array) -> float:
+        """Logarithm of a box's size over the usual one, in its spread; 0 while none is known."""
         if self._count < _SIZES_NEEDED:
             return 0.0
         size, place = _size_and_place(edges)
         usual = float(place @ np.linalg.lstsq(self._squares, self._sums, rcond=_SINGULAR)[0])
-        return float(min((np.log(size / max(usual, 1.0)) / _SIZE_SPREAD) ** 2, _MOST_SIZE_COST))
+        return float(np.log(size / max(usual, 1.0))) / _SIZE_SPREAD
+
+    def cost(self, edges: Array) -> float:
+        """Squared deviation of a box (4,), of a larger one not more than lorries cost."""
+        apart = self.deviation(edges)
+        return apart**2 if apart < 0 else min(apart**2, _MOST_SIZE_COST)
 
 
 def _size_and_place(edges: Array) -> tuple[float, Array]:
@@ -167,7 +175,14 @@ class BlobReader:
                     found.append(piece)
         for own in pieces.values():
             found += self._grouped(own)
-        found = [piece for piece in found if piece.area >= least]
+        found = [
+            piece
+            for piece in found
+            if piece.area >= least
+            and (
+                self._sizes.deviation(piece.edges) > _SPECK or not _is_free(piece.edges, mask.shape)
+            )
+        ]
         edges = np.array([piece.edges for piece in found]).reshape(-1, 4)
         area = np.array([piece.area for piece in found])
         return edges, area / areas(edges)
@@ -220,8 +235,7 @@ class BlobReader:
     def _learn_shape(self, piece: Piece, shape: tuple[int, ...], members: int) -> None:
         box = piece.edges
         sides = box[2:] - box[:2]
-        free = box[:2].min() > 1 and box[2] < shape[1] - 1 and box[3] < shape[0] - 1
-        if members == 1 and free and sides.min() > _ASPECT_SIDE:
+        if members == 1 and _is_free(box, shape) and sides.min() > _ASPECT_SIDE:
             aspect = float(_log_aspect(box[np.newaxis])[0])
             self._aspect += _ASPECT_RATE * (aspect - self._aspect)
             self._sizes.learn(box)
@@ -263,6 +277,12 @@ def _cut(part: Pixels, axis: int) -> list[tuple[Pixels, int, int]]:
         u, v, width, height = cv2.boundingRect(half.astype(np.uint8))
         halves.append((half[v : v + height, u : u + width], u, v))
     return halves
+
+
+def _is_free(edges: Array, shape: tuple[int, ...]) -> bool:
+    """Tell whether no border of the image cuts a box."""
+    height, width = shape
+    return bool(edges[:2].min() > 1 and edges[2] < width - 1 and edges[3] < height - 1)
 
 
 def _log_aspect(edges: Array) -> Array:

@@ -33,7 +33,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import SEEN_WITHIN, SETTLED_AFTER, Track, edges_of
+from vehicle_pf_tracker.trackers.traffic.track import SETTLED_AFTER, Track, edges_of
 
 _LEAST, _MOST = -0.6, 2.0
 """Bounds of the log odds that the score of one detection adds: a few good scores are no proof, and
@@ -75,6 +75,8 @@ _MOST_DETECTED = 0.9
 """Bound of the share of these that is detected: vehicles differ."""
 _WAITS = 4.0
 """Detections that a tentative vehicle may miss by expectation before it is given up."""
+_ONE_PERIOD = 1.5
+"""Nominal periods since pixels held a vehicle in the frame before, at most: stamps jitter."""
 _DOUBLE = 0.3
 """Log odds that a track without a detection loses while it is one box with a detected one."""
 _SAME = 0.5
@@ -201,10 +203,10 @@ class Existence:
             return
         doubles = _doubles([one for one in tracks if one.confirmed and one.undetected], detected)
         for track in tracks:
-            if track.has_driven and track.in_sight and track.unseen < SEEN_WITHIN:
+            if track.has_driven and track.in_sight and track.unseen <= _ONE_PERIOD:
                 self._detected += track.undetected == 0
                 self._asked += 1
-            if track.undetected == 0 or (track.given and track.unseen < SEEN_WITHIN):
+            if track.undetected == 0 or (track.given and track.unseen <= _ONE_PERIOD):
                 continue
             if track in doubles:
                 track.miss(_DOUBLE * elapsed)
@@ -216,7 +218,7 @@ class Existence:
             return -math.log(1 - self.detection_rate)
         # Pixels are asked later in the frame: they held it if they did in the frame before.
         numbers = self._numbers
-        return numbers.missed_held if track.unseen < SEEN_WITHIN else numbers.missed_hidden
+        return numbers.missed_held if track.unseen <= _ONE_PERIOD else numbers.missed_hidden
 
     def survivors(
         self, tracks: Sequence[Track], size: tuple[int, int], period: float
@@ -261,7 +263,7 @@ def _in_sight(tracks: Sequence[Track]) -> int:
     """Count the vehicles that a detector should see: it lately did, and pixels still do."""
     return sum(
         track.confirmed
-        and track.unseen < SEEN_WITHIN
+        and track.unseen <= _ONE_PERIOD
         and track.undetected <= _BLIND_FOR
         and track.in_sight
         for track in tracks

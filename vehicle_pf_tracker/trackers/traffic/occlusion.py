@@ -23,9 +23,10 @@ import numpy as np
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.detections import NOTHING, areas, inside_image
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.track import Track, edges_of
 
+_OCCLUDER_SEEN = 3.0
+"""Nominal periods since it was seen, up to which a vehicle can hide others."""
 _NAMED_SHARE = 0.3
 """Share of a vehicle above which the one that hides it is named as its occluder."""
 
@@ -63,7 +64,9 @@ def cover(tracks: Sequence[Track], size: tuple[int, int], occlusions: bool) -> N
     """
     edges = edges_of(tracks)
     hiding = [
-        rank for rank, one in enumerate(tracks) if occlusions and one.mode is TrackMode.TRACKING
+        rank
+        for rank, one in enumerate(tracks)
+        if occlusions and one.confirmed and one.unseen <= _OCCLUDER_SEEN and not one.lost
     ]
     common = intersections(edges[:, np.newaxis], edges[hiding]) / areas(edges)[:, np.newaxis]
     common[np.arange(len(tracks))[:, np.newaxis] <= np.array(hiding, dtype=np.intp)] = 0.0

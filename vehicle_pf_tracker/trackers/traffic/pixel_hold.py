@@ -65,6 +65,8 @@ _SLIP, _SLIP_PX = 0.02, 0.3
 _HELD_WITHIN = 4.0
 """Nominal periods since it was seen, up to which pixels can hold a vehicle: later the points lie on
 what hides it."""
+_HELD_SHARE = 0.3
+"""Least visible share of a vehicle, and share in the image, for pixels to hold it."""
 _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 
 
@@ -102,7 +104,7 @@ class PixelHold:
             if track.confirmed
             and track.undetected > 0
             and track.unseen < _HELD_WITHIN
-            and track.in_sight
+            and min(track.visible, track.inside) > _HELD_SHARE
         ]
         for track, hold in zip(held, self.measure(held, colours, normals), strict=True):
             if hold is not None:
