@@ -162,7 +162,7 @@ class Existence:
                 self._sizes = _SIZE_MEMORY * self._sizes + (size, size**2)
             return False
         known = track.confirmed or track.log_odds >= self.parameters.birth.evidence
-        track.has_driven = known and self._drives(track)
+        track.judge(known and self._drives(track))
         self._teach(track)
         proven = track.has_driven or track.strength > self._numbers.proven_by_scores
         return not track.confirmed and known and proven

@@ -264,6 +264,10 @@ class Track:
         if not (self.has_driven or self.given):
             self.samples.append(sample)
 
+    def judge(self, has_driven: bool) -> None:
+        """Take whether its way shows that it is no part of the scene."""
+        self.has_driven = has_driven
+
     def miss(self, log_odds: float) -> None:
         """Take evidence against it: it was not detected."""
         self.log_odds -= log_odds
