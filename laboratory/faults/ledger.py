@@ -82,7 +82,7 @@ class Ledger:
 
     def begin(self, tester: Tester, image: Image) -> None:
         """Wait until the node answers `image`, which is sent again and again."""
-        # Answers to it that come later are none to a second image: one run ended on them.
+        # Sent several times, it is answered several times, the last perhaps after this.
         self._first = stamp_ns(image.header)
         deadline = time.monotonic() + TIMEOUT
         while not self.node.modes or _is_loading(self.node.modes[-1]):
