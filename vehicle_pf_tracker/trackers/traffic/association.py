@@ -190,17 +190,18 @@ class FrameDetections:
 def pair_costs(
     tracks: Sequence[Track],
     found: FrameDetections,
+    indices: Sequence[int],
     settings: DetectionParameters,
     numbers: TrafficNumbers = SHIPPED,
 ) -> Array:
-    """Cost of each pair of a track and a detection, by edges and colours."""
+    """Cost of each pair of a track and one of the detections at `indices`, by edges and colours."""
     states = VehicleState.stacked([track.state for track in tracks])
     variances = states.edge_covariance.diagonal(axis1=1, axis2=2)
     spread = np.sqrt(variances + deviations(states.edges, settings.edge_noise) ** 2)
-    costs = edge_costs(clipped(states.edges, found.size), spread, found.edges, numbers)
+    costs = edge_costs(clipped(states.edges, found.size), spread, found.edges[indices], numbers)
     if settings.colour_cost:
         for row, column in np.argwhere(costs < GATE).tolist():
-            alike = similarity(tracks[row].colours, found.histogram(column))
+            alike = similarity(tracks[row].colours, found.histogram(indices[column]))
             costs[row, column] += settings.colour_cost * (1 - alike)
     return costs
 
