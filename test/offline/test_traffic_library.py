@@ -239,7 +239,7 @@ print(len(empty), sv.VideoInfo.from_video_path("seen.mp4").total_frames)
 
 
 def test_supervision_s_own_detections_come_in_and_go_out(clips):
-    python = Path(os.environ.get(VARIABLE) or DEFAULT)
+    python = Path(os.environ.get(VARIABLE) or DEFAULT).absolute()
     if not python.is_file() or output(python, "-c", "import supervision; print(1)") != ["1"]:
         pytest.skip("needs the package supervision: `make baselines`")
     path = clips / "seen.py"
