@@ -91,7 +91,7 @@ _SHARE = 0.8
 rest."""
 _LONGEST = 0.1
 """Longest time between two looks of a detector, s, also where the rate cannot be kept. On a dual
-carriageway at 30 Hz every third image leaves 95 to 98 % of IDF1, every sixth 56 %."""
+carriageway at 30 Hz every third image leaves 97 % of IDF1, every sixth 56 %."""
 _RECENT = 0.1
 """Weight of the latest image among the costs."""
 
