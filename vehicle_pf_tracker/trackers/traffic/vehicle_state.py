@@ -265,14 +265,16 @@ class VehicleState:
             offset = self.horizon if edge in (Edge.TOP, Edge.BOTTOM) else 0.0
             residual = edges[..., edge] - offset - self.mean @ row
             variance = spread @ row + deviations[..., edge] ** 2
-            gain = spread / variance[..., np.newaxis]
-            self.mean = self.mean + gain * residual[..., np.newaxis]
+            self.mean = self.mean + spread * (residual / variance)[..., np.newaxis]
             self.mean[..., V:ACROSS] = np.maximum(self.mean[..., V:ACROSS], _LEAST_SEEN)
-            self.covariance = self.covariance - gain[..., np.newaxis] * spread[..., np.newaxis, :]
+            # Products of the spread with itself are symmetric to the last bit, as no gain's are.
+            known = spread[..., np.newaxis] * spread[..., np.newaxis, :]
+            self.covariance = self.covariance - known / variance[..., np.newaxis, np.newaxis]
         self._settle()
 
     def _transform(self, step: Array) -> None:
-        self.covariance = step @ self.covariance @ np.swapaxes(step, -2, -1)
+        moved = step @ self.covariance @ np.swapaxes(step, -2, -1)
+        self.covariance = (moved + np.swapaxes(moved, -2, -1)) / 2
 
     def _bound(self) -> None:
         """Keep a prediction within bounds; a vehicle that is in sight is far inside them."""
@@ -283,8 +285,7 @@ class VehicleState:
         # Scaled from both sides a covariance stays one, and correlations stay what they are.
         with np.errstate(invalid="ignore"):  # of an unsound one, which is dropped
             shares = np.minimum(_VAGUEST / np.sqrt(variances), 1.0)
-        bounded = self.covariance * (shares[..., np.newaxis] * shares[..., np.newaxis, :])
-        self.covariance = (bounded + np.swapaxes(bounded, -2, -1)) / 2
+        self.covariance = self.covariance * (shares[..., np.newaxis] * shares[..., np.newaxis, :])
 
     def _settle(self) -> None:
         """Derive the edges, as `OBSERVATION` says."""
