@@ -58,6 +58,21 @@ def test_a_vehicle_that_brakes_is_followed(track):
     assert track.state.edges[Edge.BOTTOM] < 129.8
 
 
+def test_a_drive_that_detections_contradict_is_left(track):
+    # Two px farther in every frame, of a vehicle that was sure to stand.
+    for frame in range(1, 21):
+        measured(track, BOX + 2 * frame)
+    assert track.state.edges == pytest.approx(BOX + 40, abs=4)
+
+
+def test_a_box_that_another_vehicle_widens_is_no_drive(track):
+    wider = BOX.copy()
+    wider[Edge.RIGHT] += 15
+    for _ in range(10):
+        measured(track, wider)
+    assert track.state.edge_covariance[Edge.LEFT, Edge.LEFT] < 0.3
+
+
 def test_an_edge_cut_by_the_border_is_not_measured():
     below = np.array([100.0, 215, 140, 250])
     one = Track(1, VehicleState(below, np.full(4, 0.3), -1e4, DRIVE), matches=20)

@@ -16,15 +16,26 @@
 
 import numpy as np
 import pytest
+from traffic_samples import track
 
 from vehicle_pf_tracker.core.box import intersections
-from vehicle_pf_tracker.trackers.traffic.association import assign, edge_costs
+from vehicle_pf_tracker.trackers.traffic.association import (
+    GATE,
+    FrameDetections,
+    assign,
+    edge_costs,
+    pair_costs,
+)
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
 from vehicle_pf_tracker.trackers.traffic.detections import (
+    DetectionEvidence,
+    Detections,
     areas,
     clipped,
     inside_image,
     overlaps,
 )
+from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
 
 BOX = np.array([10.0, 10, 50, 40])
 
@@ -60,3 +71,16 @@ def test_overlaps():
     assert inside_image(BOX, (30, 240)) == 0.5
     assert clipped(np.array([[-5.0, 5, 20, 300]]), (100, 240)).tolist() == [[0, 5, 20, 240]]
     assert clipped(np.array([[200.0, 5, 220, 30]]), (100, 240)).tolist() == [[99, 5, 100, 30]]
+
+
+@pytest.mark.parametrize("log_odds", [1.0, -1.0])
+def test_a_likely_vehicle_that_overlaps_by_half_may_be_one_whose_drive_was_wrong(log_odds):
+    sure = track(1, 100)
+    sure.state.covariance *= 1e-4
+    boxes = Detections.make([(106, 104, 40, 30)], [0.8])
+    frame = np.zeros((240, 320, 3), np.uint8)
+    found = FrameDetections(boxes, DetectionEvidence(), ColourBins(frame), (320, 240))
+    found.log_odds = np.array([log_odds])
+    settings = DetectionParameters(colour_cost=0.0, edge_noise=0.02)
+    (cost,) = pair_costs([sure], found, [0], settings)
+    assert (cost < GATE).all() == (log_odds > 0)

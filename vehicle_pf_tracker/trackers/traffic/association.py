@@ -30,6 +30,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import (
@@ -39,6 +40,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     Detections,
     TrafficNumbers,
     clipped,
+    overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
 from vehicle_pf_tracker.trackers.traffic.track import PLAIN_SIGHT, Track
@@ -53,6 +55,9 @@ INWARD = np.array([1.0, 1.0, -1.0, -1.0])
 """Sign of a residual (detection less prediction) of left, top, right, bottom that points inward."""
 _LEAST_PART = 0.15
 """Smallest share of the vehicle that a detection may show."""
+_SAME = 0.5
+"""Overlap (intersection over union) with a box in sight and apart from others, from which a
+detection that is rather a vehicle than not may be it: however sure its drive is, it was wrong."""
 
 
 def check_library() -> None:
@@ -198,7 +203,13 @@ def pair_costs(
     states = VehicleState.stacked([track.state for track in tracks])
     variances = states.edge_covariance.diagonal(axis1=1, axis2=2)
     spread = np.sqrt(variances + deviations(states.edges, settings.edge_noise) ** 2)
-    costs = edge_costs(clipped(states.edges, found.size), spread, found.edges[indices], numbers)
+    predicted, detected = clipped(states.edges, found.size), found.edges[indices]
+    costs = edge_costs(predicted, spread, detected, numbers)
+    alone = (intersections(predicted[:, np.newaxis], predicted) > 0).sum(axis=1) == 1
+    alone &= np.array([track.in_sight for track in tracks])
+    may_be = alone[:, np.newaxis] & (found.log_odds[indices] > 0)
+    overlap = overlaps(predicted[:, np.newaxis], detected)
+    costs = np.minimum(costs, np.where(may_be, GATE * (1 + _SAME - overlap), np.inf))
     if settings.colour_cost:
         for row, column in np.argwhere(costs < GATE).tolist():
             alike = similarity(tracks[row].colours, found.histogram(indices[column]))

@@ -60,6 +60,12 @@ _NOTABLE = 0.15
 """Share of the prediction above which another detection in it is no fragment."""
 _CROWDED = 3
 """Detections in a row that tell: one may have been torn apart by chance."""
+_DRIFT_RATE = 0.25
+"""Rate per detection at which the mean residual of an edge follows."""
+_CONTRADICTED = 5.0
+"""Sum of the squared mean residuals, of the edges whose opposite went as far, from which a drive is
+wrong. At 2.5 the errors that detectors repeat are followed, too: HOTA of CenterNet on the exam's
+clip falls by one; at 9 more boxes stay behind vehicles that come near."""
 _OPPOSITE = [Edge.RIGHT, Edge.BOTTOM, Edge.LEFT, Edge.TOP]
 
 
@@ -138,12 +144,51 @@ def measure(
     covered = (jumped | crept) & ~unknown
     patient = np.array([one.matches >= _SETTLED and one.partial < SETTLED_AFTER for one in tracks])
     left_out = unknown | (covered & patient[:, np.newaxis])
+    _doubt_drives(tracks, states, np.where(left_out, 0.0, (predicted - edges) * INWARD), spread)
     states.measure(edges, np.where(left_out, np.inf, spread))
     states.give_back([track.state for track in tracks])
     whole = ~covered.any(axis=1)
     for track, own, is_whole in zip(tracks, latest, whole.tolist(), strict=True):
         track.measured(own, is_whole=is_whole)
     return np.asarray(whole)
+
+
+def _doubt_drives(
+    tracks: Sequence[Track], states: VehicleState, residuals: Array, spread: Array
+) -> None:
+    """Be less sure of drives that detections keep contradicting: the next ones count for more.
+
+    Where the horizon is wrong or the road bends, a drive is wrong in every frame by a little, on
+    the same side, and a state that is sure of it would stay behind until no detection fits. The
+    covariance is then that by which the residuals were expected, as in the strong tracking filter
+    of Zhou and Frank (1996). Only an edge outside the prediction counts, and as far as the opposite
+    edge has moved, too: what covers a vehicle draws an edge in, and a box of two vehicles pushes
+    one out.
+
+    Parameters
+    ----------
+    tracks : sequence of N Track
+        Tracks, predicted into this frame.
+    states : VehicleState
+        Their states, stacked.
+    residuals, spread : (N, 4) arrays
+        Detection less prediction, outward, zero of edges that tell nothing; and the standard
+        deviations of the measurement, px.
+    """
+    variances = states.edge_covariance.diagonal(axis1=1, axis2=2)
+    alone = (intersections(states.edges[:, np.newaxis], states.edges) > 0).sum(axis=1) == 1
+    drift = np.array([track.drift for track in tracks])
+    drift += _DRIFT_RATE * (residuals / np.sqrt(variances + spread**2) - drift)
+    outward = np.clip(drift, 0.0, np.abs(drift[:, _OPPOSITE]))
+    seen = (residuals > 0) & (outward > 0)
+    expected = np.where(seen, variances, 0.0).sum(axis=1)
+    lacking = np.where(seen, residuals**2 - spread**2, 0.0).sum(axis=1)
+    wrong = ((outward**2).sum(axis=1) > _CONTRADICTED) & (lacking > expected) & alone
+    wider = np.where(wrong, lacking / np.where(wrong, expected, 1.0), 1.0)
+    states.covariance *= wider[:, np.newaxis, np.newaxis]
+    drift[wrong] = 0.0
+    for track, own in zip(tracks, drift, strict=True):
+        track.drift = own
 
 
 def _divide(tracks: Sequence[Track], edges: Array, others: Array) -> None:

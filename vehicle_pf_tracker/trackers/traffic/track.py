@@ -97,6 +97,8 @@ class Track:
         Edges in the frame before, px.
     samples : list of Sample
         Detections before the vehicle was confirmed.
+    drift : (4,) array
+        Mean of the latest outward residuals of its edges, in standard deviations.
     usual_similarity : float
         Similarity of its colours to those learnt, while it is detected.
     growth : Growth
@@ -129,6 +131,7 @@ class Track:
     hidden_by: int | None = None
     before: Array = field(default_factory=lambda: np.zeros(4))
     samples: list[Sample] = field(default_factory=list)
+    drift: Array = field(default_factory=lambda: np.zeros(4))
     usual_similarity: float = _FIRST_SIMILARITY
     growth: Growth = field(default_factory=Growth)
     _first: Array = field(default_factory=lambda: np.zeros(2))
