@@ -32,10 +32,12 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
-from vehicle_pf_tracker.filtering.resampling import systematic
-from vehicle_pf_tracker.filtering.weights import effective_sample_size
+from vehicle_pf_tracker.filtering.resampling import SCHEMES, Ancestors
+from vehicle_pf_tracker.filtering.weights import Weights, effective_sample_size
 from vehicle_pf_tracker.image.colour import Histogram, joint_histogram
 from vehicle_pf_tracker.image.kernels.interface import load_kernels
+from vehicle_pf_tracker.image.mean_shift import kernel_histogram
+from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Window, is_outside, keep_inside
 from vehicle_pf_tracker.parameters.table import specs, to_mapping
 from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode, read_only
@@ -84,6 +86,10 @@ class Target:
     def joint_histogram(self, window: Window, bits: int) -> Histogram:
         """Return the joint RGB histogram of the target in the first frame."""
         return joint_histogram(self.patch, self.centre, window, bits)
+
+    def kernel_reference(self, window: Window, bits: int) -> Reference:
+        """Return the reference of mean shift: the same histogram, weighted with its kernel."""
+        return Reference(kernel_histogram(self.patch, self.centre, window, bits))
 
 
 ParticleParametersT = TypeVar("ParticleParametersT", bound=ParticleParameters)
@@ -294,8 +300,12 @@ class ParticleTracker(BaseTracker[ParticleParametersT]):
         """Take new parameters; another number of particles is drawn from the present cloud."""
         super().reconfigure(parameters)
         if self._target is not None and len(self._cloud.weights) != parameters.num_particles:
-            ancestors = systematic(self._cloud.weights, parameters.num_particles, self._rng)
+            ancestors = self._draw(self._cloud.weights, "systematic")
             self._cloud = Cloud.uniform(self._cloud.positions[ancestors])
+
+    def _draw(self, weights: Weights, scheme: str) -> Ancestors:
+        """Draw the particles that the next ones come from by a named scheme, as indices."""
+        return SCHEMES[scheme](weights, self.parameters.num_particles, self._rng)
 
 
 def drawn_seed(seed: int) -> int:

@@ -162,11 +162,10 @@ def test_the_evidence_is_the_median_of_the_features(monkeypatch):
         "judge",
         lambda self, evidence, *a, **k: judged.append(evidence) or judge(self, evidence, *a, **k),
     )
-    distances = iter([0.1, 0.8, 0.5] * 2)
+    similarities = iter([0.9, 0.2, 0.5])
     tracker, street = make(), Street()
     follow(tracker, street, range(3))
-    monkeypatch.setattr(mfpf, "bhattacharyya_coefficient", lambda *_: next(distances))
-    monkeypatch.setattr(mfpf, "hellinger_distance", lambda rho: rho)
+    monkeypatch.setattr(mfpf, "hellinger_similarity", lambda *_: next(similarities))
     tracker.step(street.frame(3))
     assert judged[-1] == 0.5
 

@@ -32,7 +32,6 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import RAYLEIGH_MEAN, sample_normal, sample_normal_rayleigh
-from vehicle_pf_tracker.filtering.resampling import SCHEMES
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.image.colour import Histogram, JointColour
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_similarity
@@ -222,7 +221,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         bits, window = settings.histogram_bits, self.window
         regular = self._is_clear(settings)  # step 4
         if regular:
-            parents = self._resample(settings)  # steps 5 and 6
+            ancestors = self._draw(self._cloud.weights, settings.resampling)
+            parents = self._cloud.positions[ancestors]  # steps 5 and 6 (Algorithm 2)
             moves = sample_normal(
                 self._rng, len(parents), settings.motion.sigma_w * elapsed
             )  # step 7
@@ -256,12 +256,6 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         if settings.occlusion.rule == "relative":
             return all(level.clear for level in self._levels)
         return min(self._pi, self._pi_up) >= settings.occlusion.tau
-
-    def _resample(self, settings: ApfParameters) -> Array:
-        """Draw the parents of the next particles (Algorithm 2)."""
-        scheme = SCHEMES[settings.resampling]
-        ancestors = scheme(self._cloud.weights, settings.num_particles, self._rng)
-        return self._cloud.positions.take(ancestors, axis=0)
 
     def _drift(self, settings: ApfParameters, count: int, elapsed: float) -> Array:
         motion, velocity = settings.motion, self._velocity.settled

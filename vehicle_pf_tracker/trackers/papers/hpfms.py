@@ -28,8 +28,6 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import from_log
-from vehicle_pf_tracker.image.mean_shift import kernel_histogram
-from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
@@ -74,10 +72,8 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         self._evidence = 0.0
 
     def _learn(self) -> None:
-        histogram = kernel_histogram(
-            self.target.patch, self.target.centre, self.window, self.parameters.histogram_bits
-        )
-        self._reference = Reference(histogram)
+        bits = self.parameters.histogram_bits
+        self._reference = self.target.kernel_reference(self.window, bits)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self.parameters

@@ -30,20 +30,19 @@ from __future__ import annotations
 import statistics
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import TypeVar
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import DISC_SIGMA, sample_disc, sample_normal
-from vehicle_pf_tracker.filtering.resampling import SCHEMES, Ancestors
-from vehicle_pf_tracker.filtering.weights import Weights, effective_sample_size, from_log
+from vehicle_pf_tracker.filtering.resampling import Ancestors
+from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
 from vehicle_pf_tracker.image.colour import RgbMarginals
 from vehicle_pf_tracker.image.similarity import (
     Reference,
-    bhattacharyya_coefficient,
     hellinger_distance,
+    hellinger_similarity,
 )
 from vehicle_pf_tracker.image.window import Histograms, WindowFeature, keep_inside
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
@@ -55,13 +54,11 @@ from vehicle_pf_tracker.trackers.papers.feature_weighting import (
 )
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     TEXTURES,
-    FeatureFilterParameters,
+    FilterParametersT,
     MfpfParameters,
     edge_feature,
 )
 from vehicle_pf_tracker.trackers.papers.shared import MeanVelocity, log_likelihood
-
-FilterParametersT = TypeVar("FilterParametersT", bound=FeatureFilterParameters)
 
 
 class FeatureFilter(ParticleTracker[FilterParametersT]):
@@ -128,15 +125,23 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         return centre + self._noise(self._search_radius(1.0))
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        settings = self._settings
         particles, prior, left_image = self._disperse(frame, elapsed)
-        rho, averages = self._measure(frame, particles)  # step 2
+        rho = self._compare(frame, particles)  # step 2
+        averages = self._averages(rho)
+        if self._initial is None:
+            self._initial = averages
         predicted = self._predict(frame, elapsed)  # step 3
-        weighting = self._weigh_features(averages)  # step 4, to its update
+        threshold = settings.confidence.threshold
+        weighting = weigh_features(averages, self._initial, threshold)  # step 4, to its update
         is_hidden, passes = weighting.full_occlusion, 0
         weights, cloud = self.weigh(particles, prior, rho, weighting)
         position = predicted if is_hidden else self._locate(particles, weights, weighting)
         histograms = self._describe(frame, position)
-        similarities = self._similarities(histograms)
+        similarities = [
+            hellinger_similarity(found, reference.histogram)
+            for found, reference in zip(histograms, self.references, strict=True)
+        ]
         self._update(weighting, histograms, position, elapsed)
         if not is_hidden:
             passes = self._resample(cloud, weights)  # step 5
@@ -146,7 +151,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             self._velocity.value,
             "prediction" if is_hidden else "estimation",
             # The median: one feature that fails, or is misled, does not decide.
-            statistics.median(similarities.tolist()),
+            statistics.median(similarities),
             self._report(weighting),
             resampling_passes=passes,
             resampled_particles=passes * len(particles),
@@ -190,20 +195,8 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         grown = nominal + dispersion.growth * self._predicted_for
         return min(grown, max(nominal, dispersion.largest))
 
-    def _measure(self, frame: Frame, particles: Array) -> tuple[Array, Array]:
-        """Compare the particles with the references (step 2; eq. 8 and 16).
-
-        Returns
-        -------
-        Bhattacharyya coefficients (F, N), and the average similarity of each feature (F,)
-        """
-        rho = self._compare(frame, particles)
-        averages = self._averages(rho)
-        if self._initial is None:
-            self._initial = averages
-        return rho, averages
-
     def _compare(self, frame: Frame, particles: Array) -> Array:
+        """Bhattacharyya coefficients (F, N) of the particles with the references (eq. 8)."""
         window, references = self.window, self.references
         return np.stack(
             [
@@ -213,6 +206,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         )
 
     def _averages(self, rho: Array) -> Array:
+        """Average similarity of each feature (F,) (eq. 16)."""
         best_share = self._settings.confidence.best_share
         return average_similarities(hellinger_distance(rho), best_share)
 
@@ -221,11 +215,6 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         moved = np.asarray(self._position) + np.asarray(self._velocity.value) * elapsed
         x, y = keep_inside(frame, moved)
         return float(x), float(y)
-
-    def _weigh_features(self, averages: Array) -> FeatureWeighting:
-        """Confidence and weight of every feature (step 4, eq. 17)."""
-        assert self._initial is not None
-        return weigh_features(averages, self._initial, self._settings.confidence.threshold)
 
     def weigh(
         self, particles: Array, prior: Array, rho: Array, weighting: FeatureWeighting
@@ -260,14 +249,6 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         at, window = np.asarray([position]), self.window
         return [feature.histograms(frame, at, window)[0] for feature in self.features.values()]
 
-    def _similarities(self, histograms: list[Histograms]) -> Array:
-        """``1 - BD`` of histograms to the references, shape (F,)."""
-        rho = [
-            bhattacharyya_coefficient(found, reference.histogram)
-            for found, reference in zip(histograms, self.references, strict=True)
-        ]
-        return np.asarray(1.0 - hellinger_distance(np.asarray(rho)))
-
     def _update(
         self,
         weighting: FeatureWeighting,
@@ -298,16 +279,12 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         limit = settings.resample_below * len(cloud.weights)
         if effective_sample_size(cloud.weights) >= limit:
             return 0
-        self._ancestors = self._draw(cloud.weights)
+        self._ancestors = self._draw(cloud.weights, settings.resampling)
         if not self._is_joint:
-            sets = [self._draw(own) for own in weights]
+            sets = [self._draw(own, settings.resampling) for own in weights]
             count = len(self._ancestors)
             self._ancestors = common_survivors(sets, count, otherwise=self._ancestors)
         return 1
-
-    def _draw(self, weights: Weights) -> Ancestors:
-        settings = self._settings
-        return SCHEMES[settings.resampling](weights, settings.num_particles, self._rng)
 
     def _report(self, weighting: FeatureWeighting) -> dict[str, float]:
         """AS, LC and WF of every feature, and which are in use, for `~/mode`."""

@@ -134,6 +134,11 @@ def edge_feature(parameters: EdgeParameters) -> GradientDirections:
     )
 
 
+PRINTED_EDGES = EdgeParameters(threshold=0.8, floor=0.0, in_frame=False, signed=False)
+"""Edge feature as printed in P2, section III-C."""
+FilterParametersT = TypeVar("FilterParametersT", bound="FeatureFilterParameters")
+
+
 @dataclass(frozen=True, slots=True)
 class FeatureFilterParameters(ParticleParameters):
     """Common parameters of `mfpf` and its single-feature filters."""
@@ -160,6 +165,19 @@ class FeatureFilterParameters(ParticleParameters):
     dispersion: DispersionParameters = group(DispersionParameters)
     confidence: ConfidenceParameters = group(ConfidenceParameters)
 
+    def printed(self: FilterParametersT) -> FilterParametersT:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
+        return replace(
+            self,
+            velocity_window=1,
+            estimate="best",
+            resampling="multinomial",
+            resample_below=1.0,
+            likelihood=LikelihoodParameters(sigma_v=1.5),
+            dispersion=replace(self.dispersion, noise="gaussian", uncertain_factor=2.0, start=1.0),
+            confidence=ConfidenceParameters(best_share=1.0, threshold=0.8),
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class MfpfParameters(FeatureFilterParameters):
@@ -182,29 +200,7 @@ class MfpfParameters(FeatureFilterParameters):
 
     def printed(self) -> MfpfParameters:
         """Return the parameters as printed; see `CommonParameters.printed`."""
-        printed = common_print(self)
         return replace(
-            printed, edges=PRINTED_EDGES, texture="glcm", update_unused=True, joint_resampling=False
-        )
-
-
-FilterParametersT = TypeVar("FilterParametersT", bound=FeatureFilterParameters)
-
-PRINTED_EDGES = EdgeParameters(threshold=0.8, floor=0.0, in_frame=False, signed=False)
-"""Edge feature as printed in P2, section III-C."""
-
-
-def common_print(parameters: FilterParametersT) -> FilterParametersT:
-    """Return `parameters` with everything as printed that all filters of P2 have."""
-    return replace(
-        parameters,
-        velocity_window=1,
-        estimate="best",
-        resampling="multinomial",
-        resample_below=1.0,
-        likelihood=LikelihoodParameters(sigma_v=1.5),
-        dispersion=replace(
-            parameters.dispersion, noise="gaussian", uncertain_factor=2.0, start=1.0
-        ),
-        confidence=ConfidenceParameters(best_share=1.0, threshold=0.8),
-    )
+            FeatureFilterParameters.printed(self),
+            edges=PRINTED_EDGES, texture="glcm", update_unused=True, joint_resampling=False,
+        )  # fmt: skip

@@ -27,7 +27,6 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.base import BaseTracker, Cloud, Outcome
@@ -63,10 +62,8 @@ class MsTracker(BaseTracker[MsParameters]):
         self._velocity = MeanVelocity(VELOCITY_WINDOW)
 
     def _learn(self) -> None:
-        histogram = kernel_histogram(
-            self.target.patch, self.target.centre, self.window, self.parameters.histogram_bits
-        )
-        self._reference = Reference(histogram)
+        bits = self.parameters.histogram_bits
+        self._reference = self.target.kernel_reference(self.window, bits)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         self._velocity = MeanVelocity(VELOCITY_WINDOW)

@@ -33,7 +33,6 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import sample_normal
-from vehicle_pf_tracker.filtering.resampling import SCHEMES, Ancestors
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
@@ -90,12 +89,7 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
 
     def _resample(self, cloud: Cloud) -> Array:
         """Draw the positions that the next particles come from."""
-        return cloud.positions[self._draw(cloud)]
-
-    def _draw(self, cloud: Cloud) -> Ancestors:
-        """Draw the particles that the next ones come from, as indices."""
-        scheme = SCHEMES[self._settings.resampling]
-        return scheme(cloud.weights, self._settings.num_particles, self._rng)
+        return cloud.positions[self._draw(cloud.weights, self._settings.resampling)]
 
     def _diffuse(self, frame: Frame, parents: Array, sigma: float) -> tuple[Array, bool]:
         """Propagate with a Normal density (P1 eq. 7); the result is that of `_move`."""
@@ -162,7 +156,7 @@ class PfTracker(ColourTracker[PfParameters]):
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self.parameters
-        ancestors = self._draw(self._cloud)
+        ancestors = self._draw(self._cloud.weights, settings.resampling)
         parents, speeds = self._cloud.positions[ancestors], self._speeds[ancestors]
         expected = parents
         if settings.dynamics == "second_order":

@@ -48,6 +48,8 @@ from vehicle_pf_tracker.trackers.papers.shared import (
 )
 from vehicle_pf_tracker.trackers.parameters import share
 
+RepeatedParametersT = TypeVar("RepeatedParametersT", bound="RepeatedResamplingParameters")
+
 
 @dataclass(frozen=True, slots=True)
 class RepeatedResamplingParameters(ColourParameters):
@@ -81,20 +83,16 @@ class RepeatedResamplingParameters(ColourParameters):
     )  # fmt: skip
     likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.2)
 
-
-RepeatedParametersT = TypeVar("RepeatedParametersT", bound=RepeatedResamplingParameters)
-
-
-def common_print(parameters: RepeatedParametersT) -> RepeatedParametersT:
-    """Return `parameters` with everything as printed that both filters of P3 have."""
-    return replace(
-        parameters,
-        histogram_bits=3,
-        criterion=1.0,
-        most_passes=20,
-        weighted_mean=False,
-        likelihood=replace(parameters.likelihood, squared_distance=True),
-    )
+    def printed(self: RepeatedParametersT) -> RepeatedParametersT:
+        """Return the parameters as printed; see `CommonParameters.printed`."""
+        return replace(
+            self,
+            histogram_bits=3,
+            criterion=1.0,
+            most_passes=20,
+            weighted_mean=False,
+            likelihood=replace(self.likelihood, squared_distance=True),
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,10 +160,6 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
 class ConventionalParameters(RepeatedResamplingParameters):
     """Parameters of `conventional`."""
 
-    def printed(self) -> ConventionalParameters:
-        """Return the parameters as printed; see `CommonParameters.printed`."""
-        return common_print(self)
-
 
 class ConventionalTracker(RepeatedResampling[ConventionalParameters]):
     """Table I of P3."""
@@ -220,7 +214,8 @@ class AdaptiveParameters(RepeatedResamplingParameters):
 
     def printed(self) -> AdaptiveParameters:
         """Return the parameters as printed; see `CommonParameters.printed`."""
-        return replace(common_print(self), occlusion=replace(self.occlusion, test="n_eff"))
+        occlusion = replace(self.occlusion, test="n_eff")
+        return replace(RepeatedResamplingParameters.printed(self), occlusion=occlusion)
 
 
 class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):

@@ -32,7 +32,6 @@ from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     TEXTURES,
     EdgeParameters,
     FeatureFilterParameters,
-    common_print,
     edge_feature,
     texture_parameter,
 )
@@ -41,10 +40,6 @@ from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
 @dataclass(frozen=True, slots=True)
 class SfpfColorParameters(FeatureFilterParameters):
     """Parameters of `sfpf_color`."""
-
-    def printed(self) -> SfpfColorParameters:
-        """Return the parameters as printed; see `CommonParameters.printed`."""
-        return common_print(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +50,7 @@ class SfpfEdgeParameters(FeatureFilterParameters):
 
     def printed(self) -> SfpfEdgeParameters:
         """Return the parameters as printed; see `CommonParameters.printed`."""
-        return replace(common_print(self), edges=PRINTED_EDGES)
+        return replace(FeatureFilterParameters.printed(self), edges=PRINTED_EDGES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +61,7 @@ class SfpfTextureParameters(FeatureFilterParameters):
 
     def printed(self) -> SfpfTextureParameters:
         """Return the parameters as printed; see `CommonParameters.printed`."""
-        return replace(common_print(self), texture="glcm")
+        return replace(FeatureFilterParameters.printed(self), texture="glcm")
 
 
 class SfpfColorTracker(FeatureFilter[SfpfColorParameters]):
