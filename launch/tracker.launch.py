@@ -20,10 +20,10 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import Parameter
 from launch_ros.substitutions import FindPackageShare
 
-from vehicle_pf_tracker.ros.cameras import image_remappings
 from vehicle_pf_tracker.ros.launching import (
     ARGUMENTS,
     declared,
+    image_remappings,
     is_true,
     layout_for,
     parameter_file,

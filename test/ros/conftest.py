@@ -252,7 +252,7 @@ def start_node(start_process):
     return start
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def messages(tmp_path_factory):
     """Return a function that imports one of the packages' modules of messages."""
     folder = tmp_path_factory.mktemp("messages")

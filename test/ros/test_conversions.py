@@ -37,6 +37,10 @@ from vehicle_pf_tracker.ros.messages import (
     REJECTED,
     WAITING,
     box_message,
+    box_of_detection,
+    box_of_point,
+    box_of_polygon,
+    box_of_region,
     image_message,
     mode_message,
     particles_message,
@@ -46,12 +50,6 @@ from vehicle_pf_tracker.ros.messages import (
     velocity_message,
 )
 from vehicle_pf_tracker.ros.node.image_input import read_image
-from vehicle_pf_tracker.ros.node.input_messages import (
-    box_of_detection,
-    box_of_point,
-    box_of_polygon,
-    box_of_region,
-)
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 

@@ -27,8 +27,7 @@ from replay_rig import record
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml
-from vehicle_pf_tracker.ros.cameras import read_cameras
-from vehicle_pf_tracker.ros.launching import parameter_file
+from vehicle_pf_tracker.ros.launching import parameter_file, read_cameras
 from vehicle_pf_tracker.ros.replay.publishing import recorded_images
 
 FILE = """
@@ -136,7 +135,7 @@ def test_the_written_files_are_those_that_nodes_read(tmp_path):
 
 LAUNCH = """
 import sys, tempfile
-from vehicle_pf_tracker.ros.cameras import read_cameras
+from vehicle_pf_tracker.ros.launching import read_cameras
 written = [c.write_parameters() for c in read_cameras(sys.argv[1]) * 2]
 assert len(set(written)) == 2
 print(*written, sep="\\n", flush=True)

@@ -59,7 +59,7 @@ def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status; see `vehicle_pf_tracker.ros.node.process.run_nodes`.
+        Exit status; see `vehicle_pf_tracker.ros.process.run_nodes`.
     """
     name = variant or Path(sys.argv[0]).stem.removesuffix("_tracker")
     program = name if name == _VIDEO else f"{name}_tracker"
@@ -85,7 +85,7 @@ video_source = main
 
 def _run(name: str, words: Sequence[str]) -> int:
     if name == _VIDEO:
-        from vehicle_pf_tracker.ros.video_source.source_node import run_video_source  # noqa: PLC0415
+        from vehicle_pf_tracker.ros.video_source import run_video_source  # noqa: PLC0415
 
         return run_video_source(words)
     if name == _ANY and words[:1] != ["--variant"]:
@@ -95,7 +95,7 @@ def _run(name: str, words: Sequence[str]) -> int:
     from vehicle_pf_tracker.trackers.registry import find_node  # noqa: PLC0415
 
     found = find_node(name)
-    from vehicle_pf_tracker.ros.node.process import node_usage, run_nodes  # noqa: PLC0415
+    from vehicle_pf_tracker.ros.process import node_usage, run_nodes  # noqa: PLC0415
 
     usage = node_usage(found.executable)
     return run_nodes(found.executable, [_maker(found)], words, usage)
@@ -106,8 +106,8 @@ def _run_cameras(words: Sequence[str]) -> int:
 
     if words[:1] != ["--cameras"] or len(words) < 2:
         return answer_usage(f"{_ANY}_tracker", words, _USAGE)
-    from vehicle_pf_tracker.ros.cameras import read_cameras  # noqa: PLC0415
-    from vehicle_pf_tracker.ros.node.process import run_nodes  # noqa: PLC0415
+    from vehicle_pf_tracker.ros.launching import read_cameras  # noqa: PLC0415
+    from vehicle_pf_tracker.ros.process import run_nodes  # noqa: PLC0415
     from vehicle_pf_tracker.trackers.registry import find_node  # noqa: PLC0415
 
     makers = [

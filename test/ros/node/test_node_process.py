@@ -96,7 +96,7 @@ def test_a_signal_while_libraries_load_leaves_no_traceback(start_process, name):
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "class Interrupting:\n"
         "    def find_spec(self, name, path=None, target=None):\n"
-        "        if name == 'vehicle_pf_tracker.ros.node.process':\n"
+        "        if name == 'vehicle_pf_tracker.ros.process':\n"
         f"            os.kill(os.getpid(), signal.{name})\n"
         "sys.meta_path.insert(0, Interrupting())\n"
         "from vehicle_pf_tracker.ros.executables import main\n"
@@ -221,7 +221,8 @@ def test_two_nodes_live_under_their_namespaces(bench, start_node):
 
 def test_the_node_loads_neither_recordings_nor_evaluation():
     code = (
-        "import sys; from vehicle_pf_tracker.ros.node import process, tracker_node; "
+        "import sys; from vehicle_pf_tracker.ros import process; "
+        "from vehicle_pf_tracker.ros.node import tracker_node; "
         "print(*sorted(name for name in sys.modules if name.startswith('vehicle_pf_tracker.')))"
     )
     loaded = subprocess.run(

@@ -23,7 +23,7 @@ import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
-from vehicle_pf_tracker.ros.node.watchdog import Watchdog
+from vehicle_pf_tracker.ros.node.incidents import Watchdog
 
 
 def deep(levels: int) -> int:

@@ -20,16 +20,21 @@ vision_msgs is no wheel: it is built from its definitions where it is not instal
 from __future__ import annotations
 
 import math
+import os
+import sys
+from pathlib import Path
 
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
+from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.serialization import serialize_message
 from replay_rig import COMMAND
 from sensor_msgs.msg import Image
-from tracker_rig import FIRST_NS, PERIOD_NS, QUEUE, header, overrides, values_of
+from tracker_rig import FIRST_NS, PERIOD_NS, QUEUE, diagnostics_of, header, overrides, values_of
 from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, hear_notices, lanes
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -226,6 +231,49 @@ def test_a_detector_may_publish_best_effort(bench, vision):
                 *(Parameter(name, value="perhaps") for name in override),
             ],
         )
+
+
+def test_the_memory_of_a_flood_is_freed(bench, vision, start_node, monkeypatch):
+    """Each buffer of a reader that ever held a flood would keep its size, 17 of them."""
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(sys.path))  # for the node, of vision_msgs
+    # Best effort loses an image that is published before the node has found its publisher.
+    reliable = "qos_overrides./image.subscription.reliability:=reliable"
+    words = ["detector.kind:=topic", "detector.max_wait:=20.0", "queue_depth:=50", reliable]
+    arguments = [word for one in words for word in ("-p", one)]
+    node = start_node("traffic", *arguments)
+    node.wait_for_output("ready")
+    camera = bench.publisher(Image, "image", QUEUE)
+    detector = bench.publisher(vision.Detection2DArray, "detections", QUEUE)
+    modes = bench.collect(DiagnosticArray, f"{NODE}/mode", QUEUE)
+    frame = lanes(1)[0]
+
+    def show(count):
+        for _ in range(count):
+            before = len(modes)
+            camera.publish(image_message(header(before), frame))
+            detector.publish(vision.Detection2DArray(header=header(before)))
+            bench.wait_for(lambda: len(modes) > before)  # noqa: B023 - called at once
+
+    def resident():
+        pages = Path("/proc", str(node.popen.pid), "statm").read_text().split()[1]
+        return int(pages) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+    def readers():
+        found = bench.node.get_subscriptions_info_by_topic("/detections")
+        return [one.endpoint_gid for one in found]
+
+    show(20)
+    usual, before = resident(), readers()
+    flood = serialize_message(vision.Detection2DArray(header=header(0))) + bytes(4_400_000)
+    for _ in range(20):
+        detector.publish(flood)
+    bench.wait_for(lambda: resident() > usual + 20)
+    bench.wait_for(lambda: resident() < usual + 5)
+    bench.wait_for(lambda: readers() not in ([], before))
+    bench.wait_until_matched(detector)
+    show(5)
+    told = diagnostics_of(bench, "traffic_tracker", lambda table: table["images"] == "25")
+    assert (told["images with detections"], told["images without detections"]) == ("25", "0")
 
 
 def test_turned_boxes_and_those_without_a_class_are_read(rig):

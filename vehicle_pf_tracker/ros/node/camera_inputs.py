@@ -17,9 +17,10 @@
 from __future__ import annotations
 
 import contextlib
+from dataclasses import dataclass
 from typing import Any
 
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import Transform, TransformStamped
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
@@ -29,10 +30,9 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.parameters.road import RoadParameters
-from vehicle_pf_tracker.road.camera import PoseTree
+from vehicle_pf_tracker.road.camera import FIRST_PIXEL, Lens, Pose, PoseTree
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.image_input import image_topic
-from vehicle_pf_tracker.ros.node.input_messages import ImageLens, lens_of_info, pose_of_transform
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.localisation import Localisation
 
@@ -178,3 +178,79 @@ class StreamLocalisation(Localisation):
         if self.road is None:
             return ""
         return f"{self.road.speed:.1f} +- {self.road.speed_deviation:.1f} km/h"
+
+
+_COEFFICIENTS = {"rational_polynomial": 8, "equidistant": 4}
+"""Numbers of coefficients of a model; what a driver writes after them must be zero."""
+
+
+@dataclass(frozen=True, slots=True)
+class ImageLens:
+    """Lens of a camera, and the size of the images that it is for, px."""
+
+    lens: Lens
+    size: tuple[int, int]
+
+
+def lens_of_info(message: CameraInfo, *, rectified: bool) -> ImageLens:
+    """Read the lens of a CameraInfo, for the images that it goes with: binned and cut out.
+
+    Parameters
+    ----------
+    message : CameraInfo
+        Calibration of the camera.
+    rectified : bool
+        True for images that were rectified: they have the projection matrix, and no distortion.
+
+    Raises
+    ------
+    InputError
+        If the camera is not calibrated, or its model is not known.
+    """
+    matrix = message.p if rectified else message.k
+    fx, cx, fy, cy = (matrix[0], matrix[2], matrix[5], matrix[6]) if rectified else (
+        matrix[0], matrix[2], matrix[4], matrix[5]
+    )  # fmt: skip
+    if not (fx > 0 and fy > 0):
+        raise InputError("camera_info has no calibration: its focal length is not above 0")
+    across, down = max(message.binning_x, 1), max(message.binning_y, 1)
+    left, top = message.roi.x_offset, message.roi.y_offset
+    model, coefficients = _distortion(message, rectified=rectified)
+    lens = Lens(
+        (fx / across, fy / down),
+        (_binned(cx, left, across), _binned(cy, top, down)),
+        model,
+        coefficients,
+    )
+    width, height = message.roi.width or message.width, message.roi.height or message.height
+    return ImageLens(lens, (width // across, height // down))
+
+
+def _distortion(message: CameraInfo, *, rectified: bool) -> tuple[str, tuple[float, ...]]:
+    coefficients = tuple(map(float, message.d))
+    if rectified or (not any(coefficients) and message.distortion_model != "equidistant"):
+        return "none", ()
+    count = _COEFFICIENTS.get(message.distortion_model, len(coefficients))
+    if any(coefficients[count:]):
+        raise InputError(
+            f"camera_info has {len(coefficients)} coefficients of {message.distortion_model}; "
+            f"those after the first {count} must be 0"
+        )
+    return message.distortion_model, coefficients[:count]
+
+
+def _binned(centre: float, offset: int, factor: int) -> float:
+    """Move a principal point to a part of the image, and bin it; pixels have corners."""
+    return (centre + FIRST_PIXEL - offset) / factor - FIRST_PIXEL
+
+
+def pose_of_transform(transform: Transform) -> Pose:
+    """Read the pose of the child frame of a transform in its parent.
+
+    Raises
+    ------
+    InputError
+        If it is not a rigid transform.
+    """
+    at, turn = transform.translation, transform.rotation
+    return Pose.of((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))

@@ -36,9 +36,8 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.image_input import read_image
-from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder, KeptTarget
+from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder, KeptTarget, Watchdog
 from vehicle_pf_tracker.ros.node.outputs import Outputs
-from vehicle_pf_tracker.ros.node.watchdog import Watchdog
 from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
 
 _PATIENCE, _LEAST_PATIENCE = 10.0, 0.5

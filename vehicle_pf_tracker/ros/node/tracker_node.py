@@ -24,16 +24,16 @@ from sensor_msgs.msg import RegionOfInterest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import detection_type
-from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
-from vehicle_pf_tracker.ros.node.image_input import image_topic
-from vehicle_pf_tracker.ros.node.image_node import ImageNode
-from vehicle_pf_tracker.ros.node.input_messages import (
+from vehicle_pf_tracker.ros.messages import (
     box_of_detection,
     box_of_point,
     box_of_polygon,
     box_of_region,
+    detection_type,
 )
+from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
+from vehicle_pf_tracker.ros.node.image_input import image_topic
+from vehicle_pf_tracker.ros.node.image_node import ImageNode
 from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
 from vehicle_pf_tracker.ros.node.stream import Stream
 from vehicle_pf_tracker.trackers.registry import Variant

@@ -208,7 +208,7 @@ def _values(
 
 _BODY = 4
 """Bytes before the message."""
-_LONGEST = 1_000_000
+LONGEST = 1_000_000
 """Longest message in bytes that is read: 2300 detections, which take rclpy 0.3 s. Ten thousand
 would take 1.5 s, in which no image is answered."""
 
@@ -247,10 +247,10 @@ def read_serialized_detections(message: bytes) -> Detections:
     InputError
         If it is too long to be read in time.
     """
-    if len(message) > _LONGEST:
+    if len(message) > LONGEST:
         raise InputError(
             f"a message of detections has {len(message) / 1e6:.1f} MB, more than the "
-            f"{_LONGEST / 1e6:g} MB that are read; is the detector in order?"
+            f"{LONGEST / 1e6:g} MB that are read; is the detector in order?"
         )
     return read_detections(deserialize_message(message, detections_type()))
 

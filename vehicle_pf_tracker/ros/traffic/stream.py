@@ -34,7 +34,7 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.offline.detectors import PacedDetector
 from vehicle_pf_tracker.offline.drawing import Colour, draw_box, line_width
-from vehicle_pf_tracker.offline.live_page import LivePage
+from vehicle_pf_tracker.offline.page_server import LivePage
 from vehicle_pf_tracker.parameters.configuration import Configuration, NodeParameters
 from vehicle_pf_tracker.ros.messages import WAITING, detections_type, image_message, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health

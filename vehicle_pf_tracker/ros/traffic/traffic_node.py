@@ -27,10 +27,11 @@ from std_msgs.msg import Int64
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.model_files import is_url
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import detections_type
+from vehicle_pf_tracker.ros.messages import box_of_region, detections_type, finite
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
-from vehicle_pf_tracker.ros.node.input_messages import box_of_region, finite
+from vehicle_pf_tracker.ros.process import return_memory
+from vehicle_pf_tracker.ros.traffic.messages import LONGEST
 from vehicle_pf_tracker.ros.traffic.stream import TrafficOutputs, TrafficStream
 from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
@@ -38,6 +39,9 @@ from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
 _LOOK_EVERY = 0.02
 """Interval in s in which images that wait for detections are looked at."""
+_FREE_AFTER = 5.0
+"""Time in s after a flood of detections until its memory is freed, as a detector that floods once
+floods again: the new subscription misses what comes until it is matched."""
 
 
 class TrafficNode(ImageNode):
@@ -79,7 +83,9 @@ class TrafficNode(ImageNode):
         self._outputs = outputs
         self.stream = TrafficStream(self, configuration, outputs, self.diagnostics.begin())
         self._look_timer = self.poll(_LOOK_EVERY, self._look)
-        self._look_timer.cancel()
+        self._free_timer = self.poll(_FREE_AFTER, self._free)
+        for timer in (self._look_timer, self._free_timer):
+            timer.cancel()
         self.serve("~/remove_selected", self._remove)
 
     def activate(self) -> None:
@@ -90,11 +96,7 @@ class TrafficNode(ImageNode):
         self.listen(Int64, "~/select", self._on_select)
         detector = self.table.configuration.tracker.detector.kind
         if detector == TOPIC:
-            # As many as images may wait: a detector may answer several at once.
-            qos = QoSProfile(depth=MOST_WAITING)
-            topic = self.resolve_topic_name("detections")
-            take = self._on_detections
-            self.inputs.append(subscribe(self, detections_type(), topic, take, qos, raw=True))
+            self._listen_to_detections()
         self.warn_of_overrides()
         self.get_logger().info(f"ready: images on {source}, detections: {detector}")
 
@@ -115,10 +117,27 @@ class TrafficNode(ImageNode):
         if self.stream is not None:
             self._after_step(self.stream)
 
+    def _listen_to_detections(self) -> None:
+        # As many as images may wait: a detector may answer several at once.
+        qos = QoSProfile(depth=MOST_WAITING)
+        topic, take = self.resolve_topic_name("detections"), self._on_detections
+        self.inputs.append(subscribe(self, detections_type(), topic, take, qos, raw=True))
+
     def _on_detections(self, message: bytes) -> None:
-        if self.stream is not None:
-            self.stream.take_detections(message)
-            self._after_step(self.stream)
+        if self.stream is None:
+            return
+        if len(message) > LONGEST and self._free_timer.is_canceled():
+            self._free_timer.reset()
+        self.stream.take_detections(message)
+        self._after_step(self.stream)
+
+    def _free(self) -> None:
+        """Free what a flood took: Fast DDS keeps each of a reader's buffers at its longest."""
+        self._free_timer.cancel()
+        if self.inputs:  # that to detections is the last
+            self.destroy_subscription(self.inputs.pop())
+            self._listen_to_detections()
+        return_memory()
 
     def _look(self) -> None:
         if self.stream is not None:

@@ -19,7 +19,7 @@ import pytest
 pytest.importorskip("rclpy")
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.video_source.outputs import read_calibration
+from vehicle_pf_tracker.ros.source_outputs import read_calibration
 
 GOOD = """
 image_width: 64

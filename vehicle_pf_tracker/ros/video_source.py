@@ -36,7 +36,7 @@ from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, Footage, Picture
 from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
 from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
 from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_nodes
-from vehicle_pf_tracker.ros.video_source.outputs import ImageOutputs, Pace, read_calibration
+from vehicle_pf_tracker.ros.source_outputs import ImageOutputs, Pace, read_calibration
 
 _NAME = "video_source"
 _LATE = 1.0
