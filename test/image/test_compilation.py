@@ -96,8 +96,8 @@ def test_the_folder_of_ones_choice_is_used(copy, tmp_path):
 FIRST_START = """
 from vehicle_pf_tracker.image.kernels.interface import load_kernels
 load_kernels("numba")
-from vehicle_pf_tracker.image.kernels.numba_windows import window_pixels
-print(len(window_pixels.stats.cache_hits), len(window_pixels.stats.cache_misses))
+from vehicle_pf_tracker.image.kernels.numba_windows import place_windows
+print(len(place_windows.stats.cache_hits), len(place_windows.stats.cache_misses))
 """
 
 

@@ -18,11 +18,10 @@ from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.road import (
+    RoadParameters,
     format_pairs,
-    parse_lens,
     parse_numbers,
     parse_pairs,
-    parse_pose,
 )
 from vehicle_pf_tracker.road.plane import Pair
 
@@ -51,20 +50,22 @@ def test_what_is_no_pair(text):
 
 
 def test_lens_and_pose():
-    lens = parse_lens("800,810,320,240", "plumb_bob", "-0.3,0.1,0,0,0")
-    assert (lens.focal, lens.centre) == ((800.0, 810.0), (320.0, 240.0))
-    assert parse_lens("", "none", "") is None
-    assert parse_pose("0,0,8,0,0,0,1").position.tolist() == [0, 0, 8]
-    assert parse_pose("") is None
+    given = RoadParameters(
+        intrinsics="800,810,320,240", distortion_model="plumb_bob", distortion="-0.3,0.1,0,0,0",
+        camera_pose="0,0,8,0,0,0,1",
+    )  # fmt: skip
+    assert (given.lens.focal, given.lens.centre) == ((800.0, 810.0), (320.0, 240.0))
+    assert given.pose.position.tolist() == [0, 0, 8]
+    assert RoadParameters().lens is RoadParameters().pose is None
     assert parse_numbers("", "x") == ()
 
 
 @pytest.mark.parametrize(
     "read",
     [
-        lambda: parse_lens("800,810,320", "none", ""),
-        lambda: parse_lens("", "plumb_bob", "0.1,0,0,0"),
-        lambda: parse_pose("0,0,8"),
+        lambda: RoadParameters(intrinsics="800,810,320").lens,
+        lambda: RoadParameters(distortion_model="plumb_bob", distortion="0.1,0,0,0").lens,
+        lambda: RoadParameters(camera_pose="0,0,8").pose,
     ],
 )
 def test_incomplete_cameras(read):

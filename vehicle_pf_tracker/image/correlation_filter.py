@@ -39,12 +39,10 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.spectra import (
-    FilterProblem,
     PartialFourier,
-    Penalty,
     SpectralKernels,
     Spectrum,
-    take_filter_step,
+    solved,
     upsampled,
 )
 
@@ -102,7 +100,10 @@ class CorrelationFilter:
         sigma = _LABEL_SIGMA * float(np.sqrt(target.prod()))
         label = np.exp(-0.5 * (offsets[:, np.newaxis] ** 2 + offsets**2) / sigma**2)
         spectrum = np.fft.rfft2(np.fft.ifftshift(label)).real / cells**2
-        self._label = np.ascontiguousarray(spectrum[: cells // 2 + 1], np.float32)
+        # Of the ideal response, which is even and therefore real, over the places.
+        half = np.ascontiguousarray(spectrum[: cells // 2 + 1], np.float32)
+        label = np.concatenate([half, half[1 : cells // 2]])
+        self._label = label[:, np.newaxis, np.newaxis]
         from_middle = np.abs(np.arange(cells) - (cells - 1) / 2)
         inside = (from_middle[:, np.newaxis] <= target[1] / 2) & (from_middle <= target[0] / 2)
         rows, columns = np.flatnonzero(inside.any(axis=1)), np.flatnonzero(inside.any(axis=0))
@@ -131,20 +132,22 @@ class CorrelationFilter:
             Resistance against change; the first image is learnt without any.
         """
         if self.weights is None:
-            problem = FilterProblem(spectrum, np.zeros_like(spectrum), self._label, 0.0)
-            self.weights = self._solved(problem, _FIRST_STEPS, _FIRST_GROWTH)
+            wanted, stiffness = spectrum * self._label, 0.0
+            steps, growth = _FIRST_STEPS, _FIRST_GROWTH
         else:
-            problem = FilterProblem(spectrum, self.weights.spectrum, self._label, stiffness)
-            self.weights = self._solved(problem, _STEPS, _GROWTH)
-
-    def _solved(self, problem: FilterProblem, steps: int, growth: float) -> FilterWeights:
-        multiplier, confined = np.zeros_like(problem.spectrum), np.zeros_like(problem.spectrum)
+            before = self.weights.spectrum * np.float32(stiffness)
+            wanted, steps, growth = spectrum * self._label + before, _STEPS, _GROWTH
+        # ADMM in its scaled form: the multiplier, with the solution added, is confined.
+        multiplier, confined = np.zeros_like(spectrum), np.zeros_like(spectrum)
         for step in range(steps):
-            penalty = Penalty(self.penalty * growth**step, growth)
-            take_filter_step(problem, penalty, multiplier, confined)
+            penalty = self.penalty * growth**step
+            multiplier -= confined
+            multiplier *= np.float32(1 / growth)
+            right = wanted + (confined - multiplier) * np.float32(penalty)
+            multiplier += solved(spectrum, right, penalty + stiffness)
             cells = self._target.cells_of(multiplier)
             confined = self._target.spectrum_of(cells)
-        return FilterWeights(cells, cells.transpose(1, 0, 2) * self._fading, confined)
+        self.weights = FilterWeights(cells, cells.transpose(1, 0, 2) * self._fading, confined)
 
     def respond(self, spectrum: Spectrum, weights: FilterWeights | None = None) -> Response:
         """Respond to cells (half spectrum), at `UPSAMPLING` places per cell.

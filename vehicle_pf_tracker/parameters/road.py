@@ -91,12 +91,26 @@ class RoadParameters:
     @property
     def lens(self) -> Lens | None:
         """Lens by the parameters; None where they give none."""
-        return parse_lens(self.intrinsics, self.distortion_model, self.distortion)
+        numbers = parse_numbers(self.intrinsics, "road.intrinsics")
+        coefficients = parse_numbers(self.distortion, "road.distortion")
+        if coefficients and not numbers:
+            raise InputError("road.distortion needs road.intrinsics (fx,fy,cx,cy) beside it")
+        if len(numbers) not in (0, 4):
+            raise InputError(f"road.intrinsics must be fx,fy,cx,cy in px, got {self.intrinsics!r}")
+        if not numbers:
+            return None
+        fx, fy, cx, cy = numbers
+        return Lens((fx, fy), (cx, cy), self.distortion_model, coefficients)
 
     @property
     def pose(self) -> Pose | None:
         """Pose of the camera by the parameters; None where they give none."""
-        return parse_pose(self.camera_pose)
+        numbers = parse_numbers(self.camera_pose, "road.camera_pose")
+        if len(numbers) not in (0, 7):
+            raise InputError(
+                f"road.camera_pose must be x,y,z,qx,qy,qz,qw (m, unit), got {self.camera_pose!r}"
+            )
+        return Pose.of(numbers[:3], numbers[3:]) if numbers else None
 
     def plane(self, lens: Lens | None, pose: Pose | None) -> RoadPlane:
         """Make the plane of the pairs, else of the camera.
@@ -206,39 +220,3 @@ def parse_numbers(text: str, name: str) -> tuple[float, ...]:
     if not all(abs(number) <= _LARGEST for number in numbers):
         raise InputError(f"{name} has a number that is not finite or above {_LARGEST:g}: {text!r}")
     return numbers
-
-
-def parse_lens(intrinsics: str, model: str, distortion: str) -> Lens | None:
-    """Make the lens of ``fx,fy,cx,cy``, a model's name and its coefficients; None without them.
-
-    Raises
-    ------
-    InputError
-        If the numbers do not make a lens.
-    """
-    numbers = parse_numbers(intrinsics, "road.intrinsics")
-    coefficients = parse_numbers(distortion, "road.distortion")
-    if not numbers:
-        if coefficients:
-            raise InputError("road.distortion needs road.intrinsics (fx,fy,cx,cy) beside it")
-        return None
-    if len(numbers) != 4:
-        raise InputError(f"road.intrinsics must be fx,fy,cx,cy in px, got {intrinsics!r}")
-    fx, fy, cx, cy = numbers
-    return Lens((fx, fy), (cx, cy), model, coefficients)
-
-
-def parse_pose(text: str) -> Pose | None:
-    """Make the pose of ``x,y,z,qx,qy,qz,qw``; None of an empty text.
-
-    Raises
-    ------
-    InputError
-        If the numbers do not make a pose.
-    """
-    numbers = parse_numbers(text, "road.camera_pose")
-    if not numbers:
-        return None
-    if len(numbers) != 7:
-        raise InputError(f"road.camera_pose must be x,y,z,qx,qy,qz,qw (m, unit), got {text!r}")
-    return Pose.of(numbers[:3], numbers[3:])

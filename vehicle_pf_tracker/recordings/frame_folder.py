@@ -113,10 +113,8 @@ class FrameFolder(Footage):
 
     def truth(self) -> list[Truth]:
         """Return the truth of all images, in order."""
-        rows = (
-            (stamp, self.rows.get(n)) for n, stamp in zip(self.images, self.stamps, strict=True)
-        )
-        return [Truth(stamp, row.box, row.occlusion) for stamp, row in rows if row is not None]
+        stamps = dict(zip(self.images, self.stamps, strict=True))
+        return [self.rows[n].at(stamp) for n, stamp in stamps.items() if n in self.rows]
 
     def _size(self) -> tuple[int, int]:
         return frame_size(_picture(next(iter(self.images.values())), 0, None).frame)
@@ -211,5 +209,5 @@ def _picture(path: Path, stamp_ns: int, row: TruthRow | None) -> Picture:
         raise InputError(f"cannot read the image {path}: {error.strerror}") from error
     except InputError as error:
         raise InputError(f"the image {path} cannot be read: {error}") from error
-    truth = None if row is None else Truth(stamp_ns, row.box, row.occlusion)
+    truth = None if row is None else row.at(stamp_ns)
     return Picture(stamp_ns, frame, str(path), coded_format, coded, truth)

@@ -126,30 +126,21 @@ class Recording:
         """Irregularities, a sentence each; the list grows while reading."""
         return self._notices.sentences
 
-    def frames(
-        self, start_offset: float = 0.0, duration: float | None = None
-    ) -> Iterator[StampedFrame]:
+    def frames(self) -> Iterator[StampedFrame]:
         """Yield the images as RGB frames, in the order of their log times.
 
         One that cannot be read has its stamp but no frame; `notices` counts it.
 
-        Parameters
-        ----------
-        start_offset : float
-            Time to skip after the start of the recording, s of log time.
-        duration : float or None
-            Time to read, s; None reads to the end.
-
         Raises
         ------
         InputError
-            If no image can be read, or an option is negative or not finite.
+            If no image can be read.
         """
         # Held back until one can be read, so that a recording of rubbish is an error.
         unread: list[StampedFrame] = []
         readable = False
         count = 0
-        for _, message in self._select({self.image_topic}, start_offset, duration):
+        for _, message in self._select({self.image_topic}):
             image = self._decode_or_note(message)
             count += 1
             if not readable and image.frame is None:
@@ -161,7 +152,7 @@ class Recording:
             yield from unread
             unread = []
             yield image
-        is_short = count < self.frame_count and not start_offset and duration is None
+        is_short = count < self.frame_count
         if is_short and len(unread) < _UNREADABLE_IN_A_ROW:
             self._notices.add_missing(self.frame_count - count)
         if not readable and (unread or is_short):
@@ -182,14 +173,14 @@ class Recording:
         """
         if not self._has_truth():
             return ()
-        return self._assemble(self._select(messages.TRUTH_TOPICS, 0.0, None))
+        return self._assemble(self._select(messages.TRUTH_TOPICS))
 
     def first_truth(self) -> Truth | None:
         """Read the earliest truth alone, without reading the whole recording."""
         if not self._has_truth():
             return None
         early: list[tuple[McapIndex, Message]] = []
-        for found in self._select(messages.TRUTH_TOPICS, 0.0, None):
+        for found in self._select(messages.TRUTH_TOPICS):
             # Topics of one stamp may be recorded some time apart.
             if early and found[1].log_time_ns > early[0][1].log_time_ns + 500_000_000:
                 break
@@ -210,8 +201,15 @@ class Recording:
         ----------
         topics : collection of str or None
             Topics to read; None for all.
-        start_offset, duration : float
-            Time span, s, as for `frames`.
+        start_offset : float
+            Time to skip after the start of the recording, s of log time.
+        duration : float or None
+            Time to read, s; None reads to the end.
+
+        Raises
+        ------
+        InputError
+            If a time is negative or not finite.
         """
         types = {info.name: info for info in self.topics}
         for index, message in self._select(topics, start_offset, duration):
@@ -223,7 +221,10 @@ class Recording:
             )
 
     def _select(
-        self, topics: Collection[str] | None, start_offset: float, duration: float | None
+        self,
+        topics: Collection[str] | None,
+        start_offset: float = 0.0,
+        duration: float | None = None,
     ) -> Iterator[tuple[McapIndex, Message]]:
         first = self.start_ns + _nanoseconds("start offset", start_offset)
         end = self.end_ns + 1

@@ -16,42 +16,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from pathlib import Path
-from typing import Protocol
+from typing import TypeAlias
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.recordings.footage import Footage, StampedFrame
+from vehicle_pf_tracker.recordings.footage import Footage
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.video import is_recording, open_footage
 
-
-class Source(Protocol):
-    """A stream of stamped images, with truth where it is known.
-
-    Attributes
-    ----------
-    image_topic : str
-        Topic of the images; empty outside of recordings.
-    """
-
-    image_topic: str
-
-    @property
-    def frame_count(self) -> int | None:
-        """Number of images; None where it is unknown."""
-
-    @property
-    def notices(self) -> list[str]:
-        """Irregularities, a sentence each; complete when all images are read."""
-
-    def frames(self) -> Iterator[StampedFrame]:
-        """Yield the images in the order of time."""
-
-    def truth(self) -> Sequence[Truth]:
-        """Return the true state of the vehicle, in the order of time."""
+Source: TypeAlias = Recording | Footage
+"""A stream of stamped images, with truth where it is known."""
 
 
 def open_source(
@@ -61,7 +37,7 @@ def open_source(
     fps: float | None = None,
     truth: Path | None = None,
     identity: int | None = None,
-) -> Recording | Footage:
+) -> Source:
     """Open a recording, a video file, a folder of images, a camera or a stream.
 
     Parameters

@@ -24,7 +24,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, read_text
-from vehicle_pf_tracker.core.truth import Occlusion
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 from vehicle_pf_tracker.recordings.truth_formats import (
     FORMATS,
@@ -66,6 +66,10 @@ class TruthRow:
 
     box: Box
     occlusion: Occlusion
+
+    def at(self, stamp_ns: int) -> Truth:
+        """Make the truth of the image that has this stamp."""
+        return Truth(stamp_ns, self.box, self.occlusion)
 
 
 Table = dict[int, TruthRow]

@@ -129,9 +129,9 @@ class VideoFile(Footage):
             while (frame := _next_frame(video)) is not None:
                 stamp, number = self._stamp(video, last), self._read + 1
                 row = self._truth.get(number)
-                truth = None if row is None else Truth(stamp, row.box, row.occlusion)
-                if truth is not None:
+                if row is not None:
                     self._stamps[number] = stamp
+                truth = None if row is None else row.at(stamp)
                 yield Picture(stamp, frame, f"frame {number} of {self._path}", truth=truth)
                 self._read, last = number, stamp
             self._ended = True
@@ -143,7 +143,7 @@ class VideoFile(Footage):
     def truth(self) -> list[Truth]:
         """Return the truth, at even stamps where its frames are not read yet."""
         return [
-            Truth(self._stamps.get(n, stamp_of(n - 1, self.fps)), row.box, row.occlusion)
+            row.at(self._stamps.get(n, stamp_of(n - 1, self.fps)))
             for n, row in sorted(self._truth.items())
             if n >= 1
         ]

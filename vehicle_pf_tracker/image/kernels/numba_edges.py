@@ -40,7 +40,6 @@ Points: TypeAlias = tuple[Strengths, Table, Strengths]
 Tangents: TypeAlias = npt.NDArray[np.float64]
 Numbers: TypeAlias = npt.NDArray[np.int64]
 
-_GRADIENTS = types.int16[:, ::1]
 _NUMBERS = types.int64[::1]
 _TANGENTS = types.Array(types.float64, 1, "C", readonly=True)
 
@@ -68,37 +67,6 @@ def direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
     for tangent in tangents:
         first += across >= along * tangent
     return first
-
-
-@inlined
-def _raise_to(numbers: Strengths, others: Strengths) -> None:
-    """Replace numbers by the larger ones of another array, as far as both go."""
-    for x in range(min(len(numbers), len(others))):
-        numbers[x] = max(numbers[x], others[x])
-
-
-@inlined
-def _window_peaks(strengths: Strengths, width: int, height: int) -> Strengths:
-    """Largest number of the window that begins at each pixel, as far as windows fit."""
-    # Maxima over 1, 2, 4, ... rows; two of the last that overlap make those over a window's.
-    rows = strengths.copy()
-    span = 1
-    while 2 * span <= height:
-        for y in range(len(rows) - span):
-            _raise_to(rows[y], rows[y + span])
-        span *= 2
-    peaks = np.empty((len(rows) - height + 1, rows.shape[1] - width + 1), np.int32)
-    kept = np.empty(rows.shape[1], np.int32)
-    for y in range(len(peaks)):
-        row, span_along = rows[y], 1
-        _raise_to(row, rows[y + height - span])
-        while 2 * span_along <= width:
-            kept[:] = row
-            _raise_to(row, kept[span_along:])
-            span_along *= 2
-        peaks[y] = row[: peaks.shape[1]]
-        _raise_to(peaks[y], row[width - span_along :])
-    return peaks
 
 
 @inlined
@@ -155,12 +123,20 @@ def _count_window(
 
 
 @inlined
-def _limits_of(peaks: Strengths, middles: Rectangles, rule: tuple[float, float]) -> Numbers:
+def _limits_of(
+    strengths: Strengths, middles: Rectangles, half: tuple[int, int], rule: tuple[float, float]
+) -> Numbers:
     """Least squared magnitude that counts in each window; see `gradients.squared_limits`."""
-    share, least = rule
+    (share, least), (across, up) = rule, half
+    height, width = strengths.shape
     limits = np.full(len(middles), _NEVER, np.int64)
     for i in range(len(middles)):
-        peak = peaks[middles[i, 1], middles[i, 0]]
+        x, y = middles[i]
+        left, right = np.uint32(max(x - across, 0)), np.uint32(min(x + across + 1, width))
+        peak = np.int32(0)
+        for row in range(max(y - up, 0), min(y + up + 1, height)):
+            for column in range(left, right):
+                peak = max(peak, strengths[row, column])
         if peak > 0:
             limits[i] = np.int64(math.ceil(max(share * np.float32(peak), least)))
     return limits
@@ -209,14 +185,12 @@ def count_edges(
     """
     (gx, gy), (across, up) = gradients, half
     height, width = gx.shape
-    # Zeros around the image let the windows at its border be as large as the others.
-    padded = np.zeros((height + 2 * up, width + 2 * across), np.int32)
-    strengths = padded[up : up + height, across : across + width]
+    strengths = np.empty((height, width), np.int32)
     for y in range(height):
         for x in range(width):
             along, down = np.int32(gx[y, x]), np.int32(gy[y, x])
             strengths[y, x] = along * along + down * down
-    limits = _limits_of(_window_peaks(padded, 2 * across + 1, 2 * up + 1), middles, rule)
+    limits = _limits_of(strengths, middles, half, rule)
     points = _list_points(gradients, strengths, limits.min(), directions)
     totals = np.empty(len(middles), np.int64)
     for i in range(len(middles)):

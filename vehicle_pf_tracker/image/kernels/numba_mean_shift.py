@@ -25,14 +25,14 @@ import numpy.typing as npt
 from numba import types
 
 from vehicle_pf_tracker.image.kernels.numba_jit import CELLS, RECTANGLES, Cells, compiled, inlined
-from vehicle_pf_tracker.image.kernels.numba_windows import PAIR, SCALE, Pixels, Reals
+from vehicle_pf_tracker.image.kernels.numba_windows import REALS, Pixels, Reals
 from vehicle_pf_tracker.image.mean_shift import epanechnikov
 from vehicle_pf_tracker.image.window import Window
 
 Offsets: TypeAlias = npt.NDArray[np.int64]
-Ellipse: TypeAlias = tuple[Reals, Reals]
 
 _OFFSETS = types.Array(types.int64, 2, "C", readonly=True)
+_ARGUMENTS = CELLS, RECTANGLES, _OFFSETS, REALS, REALS
 
 
 @functools.lru_cache(maxsize=8)
@@ -60,35 +60,34 @@ def _weigh_cells(
     return total
 
 
-@compiled(types.float64[::1](CELLS, RECTANGLES, PAIR, _OFFSETS, SCALE))
+@compiled(types.float64[::1](*_ARGUMENTS))
 def compare_kernels(
-    cells: Cells, pixels: Pixels, origin: tuple[int, int], offsets: Offsets, scale: Ellipse
+    cells: Cells, pixels: Pixels, offsets: Offsets, profile: Reals, values: Reals
 ) -> Reals:
     """Compare the kernel-weighted histograms of windows with a reference.
 
     Parameters
     ----------
     cells : (1, H, W) array
-        Cells of the region that all windows cover, cut at the border of the frame.
+        Cells of the part that all windows cover, cut at the border of the frame.
     pixels : (N, 2) array
-        Centre x, y of each window in the frame.
-    origin : (int, int)
-        x, y of the region's first pixel in the frame.
+        Centre x, y of each window in it.
     offsets : (P, 2) array
         Pixels of the ellipse around a centre.
-    scale : (P,) array, (K + 1 or more,) array
-        Profile of those pixels; square roots of the reference at the active bins, then zeros.
+    profile : (P,) array
+        Profile of those pixels.
+    values : (K + 1 or more,) array
+        Square roots of the reference at the active bins, then zeros.
 
     Returns
     -------
     (N,) array
         Bhattacharyya coefficients.
     """
-    profile, values = scale
     masses = np.empty(len(values))
     result = np.empty(len(pixels))
     for i in range(len(pixels)):
-        x, y = pixels[i, 0] - origin[0], pixels[i, 1] - origin[1]
+        x, y = pixels[i]
         total = _weigh_cells(cells, x, y, offsets, profile, masses)
         overlap = 0.0
         for k in range(len(values)):
@@ -97,9 +96,9 @@ def compare_kernels(
     return result
 
 
-@compiled(types.float64[:, ::1](CELLS, RECTANGLES, PAIR, _OFFSETS, SCALE))
+@compiled(types.float64[:, ::1](*_ARGUMENTS))
 def shift_kernels(
-    cells: Cells, pixels: Pixels, origin: tuple[int, int], offsets: Offsets, scale: Ellipse
+    cells: Cells, pixels: Pixels, offsets: Offsets, profile: Reals, values: Reals
 ) -> Reals:
     """Step of each window from its centre x, y to the mean; parameters as for `compare_kernels`.
 
@@ -108,13 +107,12 @@ def shift_kernels(
     (N, 2) array
         Not a number where the ellipse has no colour of the reference.
     """
-    profile, values = scale
     height, width = cells.shape[1:]
     masses = np.empty(len(values))
     weights = np.empty(len(values))
     steps = np.full((len(pixels), 2), np.nan)
     for i in range(len(pixels)):
-        x, y = pixels[i, 0] - origin[0], pixels[i, 1] - origin[1]
+        x, y = pixels[i]
         _weigh_cells(cells, x, y, offsets, profile, masses)
         for k in range(len(values)):
             weights[k] = values[k] / math.sqrt(masses[k]) if masses[k] > 0 else 0.0

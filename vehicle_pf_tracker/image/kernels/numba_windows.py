@@ -46,15 +46,17 @@ from vehicle_pf_tracker.image.window import Positions
 Pixels: TypeAlias = npt.NDArray[np.int64]
 Reals: TypeAlias = npt.NDArray[np.float64]
 Counts: TypeAlias = npt.NDArray[np.int32]
-Scale: TypeAlias = tuple[Reals, Reals]
 Reach: TypeAlias = tuple[int, int, int]
+Scale: TypeAlias = tuple[Reals, Reals]
+Extent: TypeAlias = tuple[int, int, int, int]
 Columns: TypeAlias = npt.NDArray[np.uint16]
 
 _POSITIONS = types.Array(types.float64, 2, "A", readonly=True)
-REACH = types.UniTuple(types.int64, 3)
+_REACH = types.UniTuple(types.int64, 3)
 PAIR = types.UniTuple(types.int64, 2)
-SCALE = types.UniTuple(types.Array(types.float64, 1, "C", readonly=True), 2)
-QUAD = types.UniTuple(types.int64, 4)
+REALS = types.Array(types.float64, 1, "C", readonly=True)
+_SCALE = types.UniTuple(REALS, 2)
+_EXTENT = types.UniTuple(types.int64, 4)
 _COUNTS = types.int32[:, ::1]
 
 # Costs, roughly in cycles; they decide about the route, and not about the result.
@@ -63,22 +65,51 @@ _STEP = 10
 _BINS_AT_ONCE = 8
 
 
-@compiled(types.Tuple((RECTANGLES, QUAD))(_POSITIONS, types.int64, types.int64))
-def window_pixels(
-    positions: Positions, width: int, height: int
-) -> tuple[Pixels, tuple[int, int, int, int]]:
-    """Pixel x, y of each window's centre, as `window.bounds` has it, shape (N, 2).
-
-    Then the least x and y, and the largest x and y of them.
-    """
-    pixels = np.empty((len(positions), 2), np.int64)
-    x0, y0, x1, y1 = width, height, 0, 0
-    for i in range(len(positions)):
-        x = min(max(np.int64(np.rint(positions[i, 0] - 0.5)), 0), width - 1)
-        y = min(max(np.int64(np.rint(positions[i, 1] - 0.5)), 0), height - 1)
-        pixels[i, 0], pixels[i, 1] = x, y
+@inlined
+def _extent(pixels: Pixels) -> Extent:
+    """Least x and y, and largest x and y."""
+    x0, y0 = pixels[0]
+    x1, y1 = x0, y0
+    for i in range(len(pixels)):
+        x, y = pixels[i]
         x0, y0, x1, y1 = min(x0, x), min(y0, y), max(x1, x), max(y1, y)
-    return pixels, (x0, y0, x1, y1)
+    return x0, y0, x1, y1
+
+
+@compiled(types.Tuple((RECTANGLES, _EXTENT))(_POSITIONS, PAIR, PAIR, types.int64))
+def place_windows(
+    positions: Positions, size: tuple[int, int], half: tuple[int, int], margin: int
+) -> tuple[Pixels, Extent]:
+    """Find the part of a frame that windows cover, and their middles in it.
+
+    Parameters
+    ----------
+    positions : (N, 2) array
+        Centres of the windows, px; rounded and kept inside as in `window.bounds`.
+    size, half : (int, int)
+        Width and height of the frame; those of a window beside and above its middle.
+    margin : int
+        Pixels around the windows that are covered too.
+
+    Returns
+    -------
+    pixels : (N, 2) array
+        Pixel x, y of each window's middle, from the first pixel covered.
+    covered : (int, int, int, int)
+        Left, top, right, bottom of the part, as far as the frame goes.
+    """
+    (width, height), (beside, above) = size, half
+    pixels = np.empty((len(positions), 2), np.int64)
+    for i in range(len(positions)):
+        pixels[i, 0] = min(max(np.int64(np.rint(positions[i, 0] - 0.5)), 0), width - 1)
+        pixels[i, 1] = min(max(np.int64(np.rint(positions[i, 1] - 0.5)), 0), height - 1)
+    x0, y0, x1, y1 = _extent(pixels)
+    left, top = max(x0 - beside - margin, 0), max(y0 - above - margin, 0)
+    right, bottom = min(x1 + beside + 1 + margin, width), min(y1 + above + 1 + margin, height)
+    for i in range(len(pixels)):
+        pixels[i, 0] -= left
+        pixels[i, 1] -= top
+    return pixels, (left, top, right, bottom)
 
 
 @compiled(CELLS(FRAME, types.int64, TABLE))
@@ -165,21 +196,12 @@ def _listed(pixels: Pixels, x0: int, y0: int, heads: Rectangles) -> Pixels:
 
 
 @inlined
-def _slide(
-    cells: Cells,
-    pixels: Pixels,
-    extent: tuple[int, int, int, int],
-    origin: tuple[int, int],
-    reach: Reach,
-    scale: Scale,
-) -> Reals:
+def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Scale) -> Reals:
     """Compare windows that lie close together; parameters as for `compare_windows`."""
     planes, height, width = cells.shape
-    (left, right, up), (values, roots) = reach, scale
-    x0, y0 = extent[0] - origin[0], extent[1] - origin[1]
-    x1, y1 = extent[2] - origin[0], extent[3] - origin[1]
+    (left, right, up), (x0, y0, x1, y1), (values, roots) = reach, extent, scale
     heads = np.empty((y1 - y0 + 1, x1 - x0 + 1), np.int64)
-    others = _listed(pixels, extent[0], extent[1], heads)
+    others = _listed(pixels, x0, y0, heads)
     columns, sums, rows = _cleared(width, len(values))
     result = np.empty(len(pixels))
     for y in range(y0, y1 + 1):
@@ -203,7 +225,7 @@ def _slide(
     return result
 
 
-@compiled(types.float64[::1](_COUNTS, types.int64[::1], SCALE))
+@compiled(types.float64[::1](_COUNTS, types.int64[::1], _SCALE))
 def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
     """Compare windows that are counted already; `totals` are those of all bins, shape (N,)."""
     values, roots = scale
@@ -213,7 +235,7 @@ def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
     return result
 
 
-@compiled(types.float64[::1](CELLS, RECTANGLES, SCALE))
+@compiled(types.float64[::1](CELLS, RECTANGLES, _SCALE))
 def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale) -> Reals:
     """Compare windows one after the other; parameters as for `compare_windows`."""
     planes = cells.shape[0]
@@ -234,7 +256,7 @@ def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale) -> Re
 
 @inlined
 def _is_sliding_worthwhile(
-    cells: Cells, count: int, extent: tuple[int, int, int, int], reach: Reach, bins: int
+    cells: Cells, count: int, extent: Extent, reach: Reach, bins: int
 ) -> bool:
     """Weigh what the two ways to the same result cost, roughly in cycles."""
     x0, y0, x1, y1 = extent
@@ -245,25 +267,16 @@ def _is_sliding_worthwhile(
     return sliding <= count * (_PIXEL * len(cells) * across * (2 * reach[2] + 1) + bins)
 
 
-@compiled(types.float64[::1](CELLS, RECTANGLES, QUAD, PAIR, REACH, SCALE))
-def compare_windows(
-    cells: Cells,
-    pixels: Pixels,
-    extent: tuple[int, int, int, int],
-    origin: tuple[int, int],
-    reach: Reach,
-    scale: Scale,
-) -> Reals:
+@compiled(types.float64[::1](CELLS, RECTANGLES, _REACH, _SCALE))
+def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) -> Reals:
     """Compare windows with a reference.
 
     Parameters
     ----------
     cells, pixels : (P, H, W) array, (N, 2) array
-        Cells of the region that all windows cover; centre x, y of each window in the frame.
-    extent, origin : tuples of int
-        Least x and y, largest x and y of `pixels`; x, y of the region's first pixel in the frame.
+        Cells of the part that all windows cover; middle x, y of each window in it.
     reach : (int, int, int)
-        Pixels of a window to the left of its centre, to the right of it counting the centre
+        Pixels of a window to the left of its middle, to the right of it counting the middle
         itself, and above it (as many as below).
     scale : (K + 1 or more,) array, (M,) array
         Square roots of the reference at the active bins, followed by zeros; and those of 0, 1, 2, …
@@ -273,41 +286,43 @@ def compare_windows(
     (N,) array
         Bhattacharyya coefficients.
     """
+    extent = _extent(pixels)
     if _is_sliding_worthwhile(cells, len(pixels), extent, reach, len(scale[0])):
-        return _slide(cells, pixels, extent, origin, reach, scale)
+        return _slide(cells, pixels, extent, reach, scale)
     _, height, width = cells.shape
     left, right, up = reach
     rectangles = np.empty((len(pixels), 4), np.int64)
     for i in range(len(pixels)):
-        x, y = pixels[i, 0] - origin[0], pixels[i, 1] - origin[1]
+        x, y = pixels[i]
         rectangles[i, 0], rectangles[i, 1] = max(x - left, 0), max(y - up, 0)
         rectangles[i, 2], rectangles[i, 3] = min(x + right, width), min(y + up + 1, height)
     return compare_rectangles(cells, rectangles, scale)
 
 
-@compiled(types.float64[::1](FRAME, _POSITIONS, types.int64, PAIR, TABLE, SCALE))
+@compiled(types.float64[::1](FRAME, _POSITIONS, types.int64, PAIR, TABLE, _SCALE))
 def compare_joint(
-    frame: Frame, positions: Positions, bits: int, half: tuple[int, int], table: Table, scale: Scale
+    frame: Frame,
+    positions: Positions,
+    bits: int,
+    half: tuple[int, int],
+    table: Table,
+    scale: Scale,
 ) -> Reals:
     """Compare windows of joint colours in one call, the main cost of most trackers' steps.
 
-    `half` is the width and height of a window left and right of, above and below its middle; the
-    rest is as for `joint_cells` and `compare_windows`.
+    `half` is as for `place_windows`; the rest is as for `joint_cells` and `compare_windows`.
     """
     height, width, _ = frame.shape
-    pixels, extent = window_pixels(positions, width, height)
     beside, above = half
-    left, top = max(extent[0] - beside, 0), max(extent[1] - above, 0)
-    right, bottom = min(extent[2] + beside + 1, width), min(extent[3] + above + 1, height)
-    reach = beside, beside + 1, above
+    pixels, (left, top, right, bottom) = place_windows(positions, (width, height), half, 0)
     if (right - left) * (bottom - top) <= len(pixels) * (2 * beside + 1) * (2 * above + 1):
         cells = joint_cells(frame[top:bottom, left:right], bits, table)
-        return compare_windows(cells, pixels, extent, (left, top), reach, scale)
+        return compare_windows(cells, pixels, (beside, beside + 1, above), scale)
     result = np.empty(len(pixels))
     for i in range(len(pixels)):  # they share few pixels
-        x, y = pixels[i]
-        left, top = max(x - beside, 0), max(y - above, 0)
-        cells = joint_cells(frame[top : y + above + 1, left : x + beside + 1], bits, table)
+        x, y = pixels[i, 0] + left, pixels[i, 1] + top
+        part = frame[max(y - above, 0) : y + above + 1, max(x - beside, 0) : x + beside + 1]
+        cells = joint_cells(part, bits, table)
         rectangle = np.array([[0, 0, cells.shape[2], cells.shape[1]]])
         result[i] = compare_rectangles(cells, rectangle, scale)[0]
     return result
