@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.core.box import Box
     from vehicle_pf_tracker.core.errors import InputError
     from vehicle_pf_tracker.offline.library import Estimates, track
-    from vehicle_pf_tracker.offline.track_tables import read_counts, read_tracks
     from vehicle_pf_tracker.offline.traffic_library import TrafficTracker
+    from vehicle_pf_tracker.offline.traffic_results import read_counts, read_tracks
     from vehicle_pf_tracker.recordings.source import open_source
     from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
     from vehicle_pf_tracker.trackers.registry import make_tracker
@@ -57,8 +57,8 @@ _HOMES = {
     "TrafficTracker": "offline.traffic_library",
     "make_tracker": "trackers.registry",
     "open_source": "recordings.source",
-    "read_counts": "offline.track_tables",
-    "read_tracks": "offline.track_tables",
+    "read_counts": "offline.traffic_results",
+    "read_tracks": "offline.traffic_results",
     "track": "offline.library",
 }
 

@@ -23,7 +23,11 @@ import pytest
 from vehicle_pf_tracker.cli import demo
 from vehicle_pf_tracker.cli.main import main
 
-HEAD = "frame,x,y,step_ms\n"
+HEAD = "frame,stamp_ns,x,y,width,height,mode,confidence,n_eff,step_ms\n"
+
+
+def row(y, step_ms):
+    return f"1,0,2.5,{y},8,6,TRACKING,0.9,,{step_ms}\n"
 
 
 class Node:
@@ -42,7 +46,7 @@ class Node:
 @pytest.fixture
 def chain(monkeypatch):
     """Let no verb run: keep the words of each, and write what `run` and `replay` would."""
-    words, answers = [], {"run": "1,2.5,3.5,0.7\n", "replay": "1,2.5,3.5,0.9\n"}
+    words, answers = [], {"run": row(3.5, 0.7), "replay": row(3.5, 0.9)}
     node = Node()
 
     def started(command, *, check):
@@ -77,8 +81,8 @@ def pretend(monkeypatch, *modules):
 @pytest.mark.parametrize(
     ("of_the_node", "status", "said"),
     [
-        ("1,2.5,3.5,0.9\n", 0, "are those of `run`"),
-        ("1,2.5,3.6,0.9\n", 1, "are NOT those of `run`"),
+        (row(3.5, 0.9), 0, "are those of `run`"),
+        (row(3.6, 0.9), 1, "are NOT those of `run`"),
     ],
 )
 def test_a_node_is_fed_and_its_numbers_compared(

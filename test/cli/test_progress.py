@@ -15,10 +15,13 @@
 """Progress: a bar on a terminal, plain lines at intervals elsewhere."""
 
 import io
-import time
+import sys
+from functools import partial
+from types import SimpleNamespace
 
 import pytest
 
+from vehicle_pf_tracker.cli import console
 from vehicle_pf_tracker.cli.console import counting, stages
 from vehicle_pf_tracker.cli.replay import shown_replay
 from vehicle_pf_tracker.ros.replay import replay_options
@@ -29,35 +32,34 @@ class Terminal(io.StringIO):
         return True
 
 
-def lines(view, reports):
+@pytest.fixture
+def lines(monkeypatch):
     """Show (time, report) in turn; return what was written to a file."""
-    now, stream = [0.0], io.StringIO()
-    with view(stream, lambda: now[0]) as show:
-        for moment, report in reports:
-            now[0] = moment
-            show(*report)
-    return stream.getvalue().splitlines()
+
+    def lines_of(view, reports):
+        now, stream = [0.0], io.StringIO()
+        monkeypatch.setattr(console, "time", SimpleNamespace(monotonic=lambda: now[0]))
+        monkeypatch.setattr(sys, "stderr", stream)
+        with view() as show:
+            for moment, report in reports:
+                now[0] = moment
+                show(*report)
+        return stream.getvalue().splitlines()
+
+    return lines_of
 
 
-def frames(stream, clock):
-    return counting("tracked", stream=stream, clock=clock)
-
-
-def runs(stream, clock):
-    return counting("evaluated", "runs", stream, clock)
-
-
-def report_stages(stream, clock):
-    return stages("report", stream, clock)
+frames = partial(counting, "tracked")
+runs = partial(counting, "evaluated", "runs")
+report_stages = partial(stages, "report")
 
 
 def replayed(*moments):
-    """Lines of a replay that lasts 20 s at (time, frames, position)."""
-    reports = [(at, (replay_options.Progress(n, where, 20.0),)) for at, n, where in moments]
-    return lines(shown_replay, reports)
+    """Reports of a replay that lasts 20 s at (time, frames, position)."""
+    return [(at, (replay_options.Progress(n, where, 20.0),)) for at, n, where in moments]
 
 
-def test_plain_lines_come_after_two_seconds_and_every_five():
+def test_plain_lines_come_after_two_seconds_and_every_five(lines):
     assert lines(frames, [(float(done), (done, 12)) for done in range(1, 13)]) == [
         "tracked 2 of 12 frames",
         "tracked 7 of 12 frames",
@@ -65,25 +67,27 @@ def test_plain_lines_come_after_two_seconds_and_every_five():
     ]
 
 
-def test_where_the_total_is_unknown_the_line_says_less():
+def test_where_the_total_is_unknown_the_line_says_less(lines):
     assert lines(frames, [(9.0, (7, None))]) == ["tracked 7 frames"]
 
 
-def test_stages_of_quick_work_are_not_told():
+def test_stages_of_quick_work_are_not_told(lines):
     moments = [0.0, 1.9, 2.0, 3.0, 6.9, 7.0]
     told = lines(report_stages, [(at, (f"stage at {at}",)) for at in moments])
     assert told == ["report: stage at 2.0", "report: stage at 7.0"]
 
 
-def test_a_replay_tells_its_frames():
-    assert replayed((100.0, 1, 0.0), (102.0, 21, 2.0), (106.0, 61, 6.0)) == [
+def test_a_replay_tells_its_frames(lines):
+    moments = (100.0, 1, 0.0), (102.0, 21, 2.0), (106.0, 61, 6.0)
+    assert lines(shown_replay, replayed(*moments)) == [
         "played 1 frame",
         "played 61 frames",
     ]
 
 
-def test_a_recording_of_one_moment_has_no_end_to_wait_for():
-    assert replayed((0.0, 1, 0.0), (6.0, 2, 0.0)) == ["played 2 frames"]
+def test_a_recording_of_one_moment_has_no_end_to_wait_for(lines):
+    moments = (0.0, 1, 0.0), (6.0, 2, 0.0)
+    assert lines(shown_replay, replayed(*moments)) == ["played 2 frames"]
 
 
 @pytest.mark.parametrize(
@@ -95,8 +99,9 @@ def test_a_recording_of_one_moment_has_no_end_to_wait_for():
         (shown_replay, (replay_options.Progress(41, 10.0, 20.0),), "41 frames"),
     ],
 )
-def test_a_terminal_shows_a_bar(view, report, shown):
+def test_a_terminal_shows_a_bar(monkeypatch, view, report, shown):
     stream = Terminal()
-    with view(stream, time.monotonic) as show:
+    monkeypatch.setattr(sys, "stderr", stream)
+    with view() as show:
         show(*report)
     assert shown in stream.getvalue()

@@ -33,7 +33,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline import pictures
 from vehicle_pf_tracker.offline.estimates import read_estimates
 from vehicle_pf_tracker.recordings.messages import deserialize
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
 
 
 @pytest.fixture
@@ -203,10 +203,11 @@ def test_a_video_takes_as_long_as_its_source(tmp_path, monkeypatch, encoder):
     monkeypatch.setattr(pictures, "has_encoder", lambda: encoder)
     path = tmp_path / "made.mp4"
     times = [0.0, 0.04, 0.08, 0.12, 1.12, 1.16, 1.2]  # a pause of a second
-    with pictures.Pictures(path).drawing(25.0) as take:
-        for time in times:
-            take((), lambda: frame_of(0), frame_of(0), 10**18 + round(1e9 * time))
-        take((), lambda: frame_of(0), frame_of(0), 5)  # a stamp that leaps
+    stamps = [*(10**18 + round(1e9 * time) for time in times), 5]  # a stamp that leaps
+    given = enumerate((StampedFrame(stamp, frame_of(0)) for stamp in stamps), start=1)
+    with pictures.Pictures(path).drawing(given) as (take, frames):
+        for _, found in frames:
+            take((), lambda: frame_of(0), found.frame, found.stamp_ns)
     video, last = cv2.VideoCapture(str(path)), 0.0
     while video.read()[0]:
         last = video.get(cv2.CAP_PROP_POS_MSEC)

@@ -15,9 +15,9 @@
 from scoring_samples import NONE, TOTAL, row, run_of
 
 from vehicle_pf_tracker.cli.console import print_rows
+from vehicle_pf_tracker.cli.run import run_rows
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.evaluation.tables import run_rows
 
 
 def rows_of(*stretches):

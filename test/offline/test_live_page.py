@@ -27,7 +27,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.live_page import LivePage
+from vehicle_pf_tracker.offline.page_server import LivePage
 
 GREY = np.full((48, 64, 3), 120, np.uint8)
 get = build_opener(ProxyHandler({})).open  # from this machine, whatever proxy there is

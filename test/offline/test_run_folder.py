@@ -23,7 +23,7 @@ from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.driver import OfflineTracker, with_target
 from vehicle_pf_tracker.offline.output_files import write_json, write_text
-from vehicle_pf_tracker.offline.run_folder import RunFolder, RunInfo, describe_run
+from vehicle_pf_tracker.offline.run_folder import describe_run, write_run
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
@@ -40,8 +40,9 @@ def done():
         PF, PF.parameters(seed=-1), with_target(SessionParameters(), box_of(0))
     )
     rows = list(tracker.rows(drive(4)))
-    info = RunInfo(("run", "bag"), "bag", "/camera/image_raw", tracker.start_frame, ("a note",))
-    return rows, describe_run(info, tracker.session), tracker
+    source = "bag", "/camera/image_raw", ("a note",)
+    described = describe_run(tracker.session, tracker.start_frame, ("run", "bag"), *source)
+    return rows, described, tracker
 
 
 def test_run_info_has_all_that_makes_the_run_again(done):
@@ -69,28 +70,27 @@ def test_the_drawn_seed_repeats_the_run(done):
 
 def test_metrics_of_an_earlier_run_are_not_left_beside_a_new_one(tmp_path, done):
     rows, described, _ = done
-    folder = RunFolder(tmp_path)
     (tmp_path / "metrics.json").write_text("{}")
     (tmp_path / "notes.txt").write_text("mine")
-    folder.write_run(rows, described)
+    write_run(tmp_path, rows, described)
     assert names_in(tmp_path) == ["estimates.csv", "notes.txt", "run.json"]
 
 
 def test_a_file_in_the_place_of_the_folder_is_named(tmp_path):
     (tmp_path / "out").write_text("")
     with pytest.raises(InputError, match=r"the output .*out is a file; name a folder"):
-        RunFolder(tmp_path / "out")
+        write_run(tmp_path / "out", [], {})
     with pytest.raises(InputError, match=r"cannot write .*below: Not a directory"):
-        RunFolder(tmp_path / "out" / "below")
+        write_run(tmp_path / "out" / "below", [], {})
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
 def test_a_folder_that_may_not_be_written_is_named(tmp_path):
     tmp_path.chmod(0o500)
     with pytest.raises(InputError, match="Permission denied"):
-        RunFolder(tmp_path)
+        write_run(tmp_path, [], {})
     with pytest.raises(InputError, match="Permission denied"):
-        RunFolder(tmp_path / "new")
+        write_run(tmp_path / "new", [], {})
 
 
 def test_a_file_stays_as_it_was_when_writing_fails(tmp_path):

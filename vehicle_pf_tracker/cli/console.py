@@ -20,7 +20,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, TextIO, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.offline.processes import OnProgress
@@ -74,7 +74,6 @@ def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: st
 
 Show: TypeAlias = Callable[[str, float | None], None]
 """Takes words about work under way, and its share done (0 to 1), None if unknown."""
-Clock: TypeAlias = Callable[[], float]
 
 _FIRST_SECONDS, _LINE_SECONDS = 2.0, 5.0
 """Seconds before the first plain line and between two: quick work prints none, and long work does
@@ -82,25 +81,16 @@ not fill a log."""
 
 
 @contextmanager
-def shown_progress(stream: TextIO | None = None, clock: Clock = time.monotonic) -> Iterator[Show]:
-    """Return a function that shows progress: as a bar on a terminal, as plain lines elsewhere.
-
-    Parameters
-    ----------
-    stream : text stream or None
-        Where to show it; None is standard error.
-    clock : callable
-        The monotonic clock in s.
-    """
-    stream = stream or sys.stderr
-    if not stream.isatty():
-        next_line = clock() + _FIRST_SECONDS
+def shown_progress() -> Iterator[Show]:
+    """Return a function that shows progress: as a bar on a terminal, as plain lines elsewhere."""
+    if not sys.stderr.isatty():
+        next_line = time.monotonic() + _FIRST_SECONDS
 
         def print_line(words: str, share: float | None) -> None:
             nonlocal next_line
-            if clock() >= next_line:
-                next_line = clock() + _LINE_SECONDS
-                print(words, file=stream, flush=True)
+            if time.monotonic() >= next_line:
+                next_line = time.monotonic() + _LINE_SECONDS
+                print(words, file=sys.stderr, flush=True)
 
         yield print_line
         return
@@ -109,7 +99,7 @@ def shown_progress(stream: TextIO | None = None, clock: Clock = time.monotonic) 
 
     words_column = TextColumn("{task.description}", markup=False)
     columns = BarColumn(), words_column, TimeRemainingColumn()
-    with Progress(*columns, console=Console(file=stream), transient=True) as bar:
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("", total=None)
 
         def move_bar(words: str, share: float | None) -> None:
@@ -120,14 +110,9 @@ def shown_progress(stream: TextIO | None = None, clock: Clock = time.monotonic) 
 
 
 @contextmanager
-def counting(
-    verb: str,
-    noun: str = "frames",
-    stream: TextIO | None = None,
-    clock: Clock = time.monotonic,
-) -> Iterator[OnProgress]:
+def counting(verb: str, noun: str = "frames") -> Iterator[OnProgress]:
     """Return a function that shows how many frames or runs are done; `verb` is a participle."""
-    with shown_progress(stream, clock) as show:
+    with shown_progress() as show:
 
         def count(done: int, total: int | None) -> None:
             if total:
@@ -139,9 +124,7 @@ def counting(
 
 
 @contextmanager
-def stages(
-    name: str, stream: TextIO | None = None, clock: Clock = time.monotonic
-) -> Iterator[Callable[[str], None]]:
+def stages(name: str) -> Iterator[Callable[[str], None]]:
     """Return a function that shows the present stage of a work."""
-    with shown_progress(stream, clock) as show:
+    with shown_progress() as show:
         yield lambda stage: show(f"{name}: {stage}", None)

@@ -16,27 +16,26 @@
 
 from __future__ import annotations
 
-import csv
 import importlib.util
 import os
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, tell_notice
 from vehicle_pf_tracker.cli.main import EVALUATION_MODULES
 from vehicle_pf_tracker.cli.requests import OverwriteOption, option
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
+from vehicle_pf_tracker.offline.run_folder import ESTIMATES
 
 _VERB = "from vehicle_pf_tracker.cli.main import main; raise SystemExit(main())"
 _NODE = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('fusion'))"
 _PATIENCE = "600"
 """Patience with a busy machine that compiles kernels, s; a quiet one needs a few."""
-_STEP_TIME = "step_ms"
-"""The one column of estimates.csv that depends on the machine's speed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,9 +99,6 @@ def _node() -> Iterator[None]:
         node.wait()
 
 
-def _numbers(folder: Path) -> Sequence[dict[str, str]]:
-    with (folder / "estimates.csv").open(newline="", encoding="utf-8") as file:
-        return [
-            {name: value for name, value in row.items() if name != _STEP_TIME}
-            for row in csv.DictReader(file)
-        ]
+def _numbers(folder: Path) -> Sequence[EstimateRow]:
+    """Return the estimates without the one column that depends on the machine's speed."""
+    return [replace(row, step_ms=None) for row in read_estimates(folder / ESTIMATES)]

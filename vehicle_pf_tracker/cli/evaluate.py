@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli import report, system_options
+from vehicle_pf_tracker.cli import report
 from vehicle_pf_tracker.cli.console import (
     UsageError,
     counting,
@@ -43,7 +43,7 @@ from vehicle_pf_tracker.cli.requests import (
     option,
     switch,
 )
-from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest
+from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, SEEDS, EvaluationRequest, chosen
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.grid.cells import Plan, shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
@@ -51,8 +51,7 @@ from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.evaluation.report import Report
-    from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
+    from vehicle_pf_tracker.evaluation.report.writing import Report
 
 _GRID_ONLY = (
     "params", "without_defaults", "baseline_model", "max_rmse", "topic", "id",
@@ -96,6 +95,7 @@ def check(request: TrafficRequest) -> None:
 def run_traffic(request: TrafficRequest) -> int:
     """Run the comparison, write its report, and print its tables."""
     from vehicle_pf_tracker.evaluation.traffic.comparison import (
+        MOTION,
         NAME,
         cases_of,
         compare,
@@ -107,10 +107,13 @@ def run_traffic(request: TrafficRequest) -> int:
     from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
     sequences = [read_sequence(Path(source)) for source in request.sources]
-    cases = cases_of(sequences, _sources(request, sequences))
+    known = {MOTION, *(name for sequence in sequences for name in sequence.detections)}
+    only = request.detections
+    sources = None if only is None else names_in(only, known, "a file of det/")
+    cases = cases_of(sequences, sources)
     assigned = parse_assignments(specs(TRAFFIC.parameters), request.assignments)
     parameters = Configuration.of(TRAFFIC).updated(assigned).tracker
-    seeds = range(request.first_seed, request.first_seed + (request.seeds or FEW_SEEDS))
+    seeds = request.some_seeds(FEW_SEEDS)
     with TrafficWorker(request.baselines_python) as worker, counting("compared") as progress:
         results = list(compare(cases, worker, parameters, seeds, on_progress=progress))
         options = {
@@ -124,15 +127,6 @@ def run_traffic(request: TrafficRequest) -> int:
         print_rows(*table.texts(), title)
     print(f"the report is {request.output / NAME}.html, and {NAME}.md beside it")
     return 0
-
-
-def _sources(request: TrafficRequest, sequences: Sequence[TrafficSequence]) -> list[str] | None:
-    from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION
-
-    if request.detections is None:
-        return None
-    known = {MOTION, *(name for sequence in sequences for name in sequence.detections)}
-    return list(names_in(request.detections, known, "a file of det/"))
 
 
 _SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "failures")
@@ -166,30 +160,21 @@ def run(request: Request) -> int:
 
 
 def _run_grid(request: Request, sources: Sequence[str]) -> int:
-    plan = _plan(request, sources)
+    systems, notes = chosen(request)
+    with stages("evaluate") as on_stage:
+        recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)
+    tell_notices(notes)
+    shifted = shifted_starts() if request.shifted_starts else ()
+    seeds, command = request.some_seeds(SEEDS), list(request.command)
+    plan = Plan(dict(recordings), systems, seeds, command, request.max_diff, shifted)
     with counting("evaluated", "runs") as on_progress:
         complete(plan, request.output, on_this_machine(request.workers), on_progress)
     return _judge(report.write(request.output, request), request.max_rmse)
 
 
-def _plan(request: Request, sources: Sequence[str]) -> Plan:
-    systems, notes = system_options.chosen(request)
-    with stages("evaluate") as on_stage:
-        recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)
-    tell_notices(notes)
-    return Plan(
-        dict(recordings),
-        systems,
-        range(request.first_seed, request.first_seed + (request.seeds or system_options.SEEDS)),
-        list(request.command),
-        request.max_diff,
-        shifted_starts() if request.shifted_starts else (),
-    )
-
-
 def _judge(written: Report, limit: float | None) -> int:
     """Print the means, and return the status that they give."""
-    from vehicle_pf_tracker.evaluation.report.page_tables import overall_table, starts_table
+    from vehicle_pf_tracker.evaluation.tables import overall_table, starts_table
 
     evaluation, aggregates = written.evaluation, written.aggregates
     for system, reason in dict.fromkeys((cell.system, cell.reason) for cell in evaluation.failed):

@@ -25,7 +25,6 @@ import importlib.util
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from types import MappingProxyType
 
 from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.cli.console import (
@@ -41,17 +40,12 @@ from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 
-EXTRAS: Mapping[str, str] = MappingProxyType(
-    {
-        "matplotlib": "evaluation",
-        "jinja2": "evaluation",
-        "optuna": "evaluation",
-        "scipy": "video",  # `evaluation` brings it too, and says so before
-        "av": "video",
-        "onnxruntime": "video",
-        "numba": "numba",
-    }
-)
+EXTRAS: Mapping[str, str] = {
+    **dict.fromkeys(("matplotlib", "jinja2", "optuna"), "evaluation"),
+    # `evaluation` brings scipy too, and says so before.
+    **dict.fromkeys(("scipy", "av", "onnxruntime"), "video"),
+    "numba": "numba",
+}
 """The smallest extra that brings a module, by its name."""
 
 _ROS_ENDINGS = ("_msgs", "_interfaces", "_srvs")
@@ -72,30 +66,22 @@ def remedy(module: str) -> str:
     return f"the Python module {name} is not there: {how}"
 
 
-VERBS: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {
-        "demo": ("demo", "try everything on a synthetic scene: track, replay to a node, score"),
-        "import": ("import_footage", "convert a video or a folder of images to a recording"),
-        "synth": ("synth", "render a synthetic scene to a video or a recording, with exact truth"),
-        "params": ("params", "print the parameters of a variant, as a file to edit"),
-        "run": ("run", "track vehicles in a video, recording or stream, without ROS"),
-        "traffic": ("traffic", "follow every vehicle in view, and count them at lines"),
-        "pick": ("pick", "draw vehicles, counting lines and zones on a page, for run and traffic"),
-        "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
-        "tune": (
-            "tune",
-            "search a variant's parameters on recordings, and validate them on others",
-        ),
-        "report": ("report", "write the report of an evaluation again"),
-        "replay": ("replay", "feed a recording to ROS nodes"),
-        "set-target": ("set_target", "give a running ROS node its target"),
-        "road": ("road", "calibrate a camera, for metres and km/h on the road"),
-        "compile": (
-            "compile_kernels",
-            "compile the extra [numba] now, so that no start waits",
-        ),
-    }
-)
+VERBS: Mapping[str, tuple[str, str]] = {
+    "demo": ("demo", "try everything on a synthetic scene: track, replay to a node, score"),
+    "import": ("import_footage", "convert a video or a folder of images to a recording"),
+    "synth": ("synth", "render a synthetic scene to a video or a recording, with exact truth"),
+    "params": ("params", "print the parameters of a variant, as a file to edit"),
+    "run": ("run", "track vehicles in a video, recording or stream, without ROS"),
+    "traffic": ("traffic", "follow every vehicle in view, and count them at lines"),
+    "pick": ("pick", "draw vehicles, counting lines and zones on a page, for run and traffic"),
+    "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
+    "tune": ("tune", "search a variant's parameters on recordings, and validate them on others"),
+    "report": ("report", "write the report of an evaluation again"),
+    "replay": ("replay", "feed a recording to ROS nodes"),
+    "set-target": ("set_target", "give a running ROS node its target"),
+    "road": ("road", "calibrate a camera, for metres and km/h on the road"),
+    "compile": ("compile_kernels", "compile the extra [numba] now, so that no start waits"),
+}
 """Module in this package and one line of help, by verb."""
 
 EVALUATING = frozenset({"evaluate", "tune", "report"})

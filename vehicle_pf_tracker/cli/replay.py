@@ -16,15 +16,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import (
-    Clock,
     UsageError,
     shown_progress,
     tell_notice,
@@ -54,11 +52,9 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def shown_replay(
-    stream: TextIO | None = None, clock: Clock = time.monotonic
-) -> Iterator[Callable[[ReplayProgress], None]]:
+def shown_replay() -> Iterator[Callable[[ReplayProgress], None]]:
     """Return a function that shows a replay's progress."""
-    with shown_progress(stream, clock) as show:
+    with shown_progress() as show:
         yield lambda now: show(
             f"played {now.frames} frame{'s' * (now.frames > 1)}",
             now.position / now.length if now.position else None,

@@ -26,7 +26,7 @@ from vehicle_pf_tracker.cli.requests import VerbRequest, names_in, option, posit
 from vehicle_pf_tracker.core.outputs import Products, claimed
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.evaluation.report import Report
+    from vehicle_pf_tracker.evaluation.report.writing import Report
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +69,7 @@ def run(request: Request) -> int:
 
 def write(folder: Path, request: ReportParts) -> Report:
     """Write the report of `folder` with the parts that are asked for."""
-    from vehicle_pf_tracker.evaluation.report import write_report
+    from vehicle_pf_tracker.evaluation.report.writing import write_report
 
     with stages("report") as on_stage:
         report = write_report(

@@ -38,7 +38,7 @@ from vehicle_pf_tracker.offline.drawing import draw_road_grid
 from vehicle_pf_tracker.offline.output_files import write_picture, write_text
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.files import to_yaml
-from vehicle_pf_tracker.parameters.road import RoadParameters, format_pairs, parse_pairs
+from vehicle_pf_tracker.parameters.road import format_pairs, parse_pairs
 from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
 from vehicle_pf_tracker.recordings.source import Source, frame_at
 from vehicle_pf_tracker.road.camera import MODELS
@@ -100,18 +100,6 @@ def _calibrate(request: Request, source: Source, pairs: tuple[Pair, ...]) -> int
     if not pairs:
         drawn = pick.ask(source, [pick.PAIRS], request.frame)
         pairs = tuple(map(pick.pair_of, drawn[pick.PAIRS]))
-    road = _road(request, pairs)
-    plane = road.plane(road.lens, None)
-    print(_table(plane, pairs), end="")
-    if request.grid is not None:
-        write_picture(request.grid, draw_road_grid(frame, plane, pairs))
-    if request.output is not None:
-        _write_parameters(request.output, road)
-        print(f"{request.output}: use it with --params, or as params_file of a node")
-    return 0
-
-
-def _road(request: Request, pairs: tuple[Pair, ...]) -> RoadParameters:
     values = {
         "road.pairs": format_pairs(pairs),
         "road.intrinsics": request.intrinsics,
@@ -119,7 +107,17 @@ def _road(request: Request, pairs: tuple[Pair, ...]) -> RoadParameters:
         "road.distortion": request.distortion,
         "road.frame_id": request.frame_id,
     }
-    return from_mapping(SessionParameters, values).road
+    session = from_mapping(SessionParameters, values)
+    road = session.road
+    plane = road.plane(road.lens, None)
+    print(_table(plane, pairs), end="")
+    if request.grid is not None:
+        write_picture(request.grid, draw_road_grid(frame, plane, pairs))
+    if request.output is not None:
+        table = {name: spec for name, spec in specs(SessionParameters).items() if "road." in name}
+        write_text(request.output, to_yaml(table, to_mapping(session), _TITLE))
+        print(f"{request.output}: use it with --params, or as params_file of a node")
+    return 0
 
 
 def _table(plane: RoadPlane, pairs: Sequence[Pair]) -> str:
@@ -136,9 +134,3 @@ def _table(plane: RoadPlane, pairs: Sequence[Pair]) -> str:
     lengths = [np.linalg.norm(plane.jacobian(np.array(pair.pixel)), 2) for pair in pairs]
     lines.append(f"a pixel is {min(lengths):.2g} to {max(lengths):.2g} m of road there")
     return "\n".join([*lines, ""])
-
-
-def _write_parameters(path: Path, road: RoadParameters) -> None:
-    session = SessionParameters(road=road)
-    table = {name: spec for name, spec in specs(SessionParameters).items() if "road." in name}
-    write_text(path, to_yaml(table, to_mapping(session), _TITLE))

@@ -16,33 +16,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, counting, print_rows, tell_notices
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, Names, TruthOptions, option, switch
-from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
-from vehicle_pf_tracker.cli.stopping import Stop, stopping
+from vehicle_pf_tracker.cli.stopping import Stop, cut_short, numbered_part, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.evaluation.tables import run_rows
+from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
+from vehicle_pf_tracker.evaluation.scores import OcclusionScore, score_frames
 from vehicle_pf_tracker.offline.driver import OfflineTracker, follow
 from vehicle_pf_tracker.offline.estimates import EstimateRow, summary, write_tracks
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame, run_recording
+from vehicle_pf_tracker.offline.output_files import write_json
 from vehicle_pf_tracker.offline.pictures import Pictures
-from vehicle_pf_tracker.offline.run_folder import (
-    ESTIMATES,
-    METRICS,
-    RUN,
-    RunFolder,
-    RunInfo,
-    describe_run,
-)
+from vehicle_pf_tracker.offline.run_folder import ESTIMATES, METRICS, RUN, describe_run, write_run
 from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
@@ -82,13 +74,11 @@ def run(request: Request) -> int:
     outputs = (Products(path, PRODUCTS), request.video, request.recording)
     stop = Stop()
     with claimed(outputs, (*request.inputs, request.truth), overwrite=request.overwrite):
-        status = _track(request, variant, source, RunFolder(path), stop)
+        status = _track(request, variant, source, path, stop)
     return stop.ended(status)
 
 
-def _track(
-    request: Request, variant: Variant, source: Source, folder: RunFolder, stop: Stop
-) -> int:
+def _track(request: Request, variant: Variant, source: Source, folder: Path, stop: Stop) -> int:
     pictures = Pictures(request.video, particles=request.particles)
     with stopping(stop), counting("tracked") as progress:
         (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
@@ -108,10 +98,10 @@ def _track(
     notices = [*source.notices, *of_trackers, *pictures.notices, *ended]
     tell_notices(notices)
     _write(folder, request, source, trackers, rows, notices)
-    pictures.sheet.write(folder.path / SHEET)
+    pictures.sheet.write(folder / SHEET)
     for name, of_target in rows.items():
         print(f"{name + ': ' if len(rows) > 1 else ''}{summary(of_target)}")
-    print(f"results are in {folder.path}; {SHEET} shows the key frames")
+    print(f"results are in {folder}; {SHEET} shows the key frames")
     if request.video and not pictures.problem:
         print(f"the video is {request.video}")
     if request.recording:
@@ -146,7 +136,7 @@ def _trackers(
 
 
 def _write(
-    folder: RunFolder,
+    folder: Path,
     request: Request,
     source: Source,
     trackers: Mapping[str, OfflineTracker],
@@ -155,18 +145,55 @@ def _write(
 ) -> None:
     """Write the run of one target to `folder`; of several to folders in it and to one table."""
     for earlier in (TRACKS, SHEET):
-        (folder.path / earlier).unlink(missing_ok=True)
+        (folder / earlier).unlink(missing_ok=True)
     for name, tracker in trackers.items():
-        info = RunInfo(
-            request.command, request.source, source.image_topic, tracker.start_frame, notices
-        )
-        part = folder if len(trackers) == 1 else RunFolder(folder.path / name)
-        part.write_run(rows[name], describe_run(info, tracker.session), tracker.road_columns)
+        provenance = request.command, request.source, source.image_topic, notices
+        description = describe_run(tracker.session, tracker.start_frame, *provenance)
+        part = folder if len(trackers) == 1 else folder / name
+        write_run(part, rows[name], description, tracker.road_columns)
     if len(trackers) > 1:
-        write_tracks(folder.path / TRACKS, rows)
+        write_tracks(folder / TRACKS, rows)
         return
     (found,) = rows.values()
     metrics = measure(score_frames(found, source.truth(), request.max_diff))
     if metrics.frames_scored:
-        folder.write_metrics(metrics.to_json())
+        write_json(folder / METRICS, metrics.to_json())
         print_rows(["", request.variant], run_rows(metrics))
+
+
+_LINES = (
+    ("error, RMSE, px", "rmse_px", 1),
+    ("error, RMSE while visible, px", "rmse_visible_px", 1),
+    ("error, median, px", "median_px", 1),
+    ("error, largest, px", "max_px", 1),
+    ("error below 15 px", "p_error_lt_15px", 3),
+    ("on target while visible", "on_target", 3),
+    ("TRACKING while visible", "visible_tracking", 3),
+    ("not TRACKING while hidden", "hidden_not_tracking", 3),
+    ("frames", "frames", 0),
+    ("frames scored", "frames_scored", 0),
+    ("time per step, median, ms", "step_ms_p50", 2),
+    ("time per step, 95 %, ms", "step_ms_p95", 2),
+)
+"""Label, name of the metric and decimals; occlusions stand before the modes."""
+_MODES = 6
+
+
+def run_rows(metrics: Metrics) -> list[list[str]]:
+    """Return a row for each metric that the run has: its label with the unit, and its value."""
+    values = [(label, getattr(metrics, name), decimals) for label, name, decimals in _LINES]
+    values[_MODES:_MODES] = [line for one in metrics.occlusions for line in _occlusion_lines(one)]
+    return [[label, _text(value, decimals)] for label, value, decimals in values
+            if value is not None]  # fmt: skip
+
+
+def _occlusion_lines(one: OcclusionScore) -> Iterator[tuple[str, float | str | None, int]]:
+    name = f"hidden {one.first_frame}-{one.last_frame}"
+    yield f"{name}: mean error inside, px", one.error_inside_px, 1
+    yield f"{name}: mean error after, px", one.error_after_px, 1
+    recovered = "not judged" if one.recovered is None else "yes" if one.recovered else "no"
+    yield f"{name}: recovered", recovered, 0
+
+
+def _text(value: float | str, decimals: int) -> str:
+    return value if isinstance(value, str) else f"{value:.{decimals}f}"

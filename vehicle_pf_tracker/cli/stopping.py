@@ -12,19 +12,33 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Signals that end a command: partial files are removed, and what was tracked is kept."""
+"""Signals that end a command: partial files are removed, and what was tracked is kept.
+
+The part of a source that a verb tracks in: from one moment to another, or to a signal.
+"""
 
 from __future__ import annotations
 
+import itertools
 import os
 import signal
 import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, wait
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import partial
 from types import FrameType
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
+
+from vehicle_pf_tracker.core.errors import InputError
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.cli.tracking_options import Moment
+    from vehicle_pf_tracker.offline.pictures import Numbered
+    from vehicle_pf_tracker.offline.processes import OnProgress
+    from vehicle_pf_tracker.recordings.reader import StampedFrame
+    from vehicle_pf_tracker.recordings.source import Source
 
 T = TypeVar("T")
 
@@ -170,3 +184,63 @@ def _handled(numbers: Iterable[signal.Signals], handle: Handle) -> Iterator[None
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def numbered_part(
+    source: Source, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
+) -> tuple[tuple[int, StampedFrame], Numbered]:
+    """Return the first frame from `start` on, and all to `end`, with their numbers in the source.
+
+    They end when `stop` comes; `progress` takes the number of each.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    frames = _numbered(source, start, end, stop, progress)
+    first = next(frames, None)
+    if first is None:
+        raise InputError("the source ended before its first image")
+    return first, itertools.chain([first], frames)
+
+
+def _numbered(
+    source: Source, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
+) -> Iterator[tuple[int, StampedFrame]]:
+    first_ns: int | None = None
+    number, is_empty = 0, True
+    frames = source.frames()
+    if source.frame_count is None:  # it may stall
+        frames = _leavable(frames, stop)
+    for number, found in enumerate(stop.until(frames), start=1):
+        first_ns = found.stamp_ns if first_ns is None else first_ns
+        elapsed = (found.stamp_ns - first_ns) * 1e-9
+        if start is not None and start.after(number, elapsed) > 0:
+            continue
+        if end is not None and end.after(number, elapsed) < 0:
+            break
+        is_empty = False
+        progress(number, source.frame_count)
+        yield number, found
+    if is_empty and (start is not None or end is not None):
+        raise InputError(
+            f"no frame lies between --start and --end; {number} frames were read from the source"
+        )
+
+
+def _leavable(frames: Iterator[StampedFrame], stop: Stop) -> Iterator[StampedFrame]:
+    """Yield frames until one does not come after a signal."""
+    with suppress(StillAtWork):
+        while (found := stop.leaving(partial(next, frames, None))) is not None:
+            yield found
+
+
+def cut_short(stop: Stop, source: Source, done: int) -> list[str]:
+    """Say that a signal ended the run after `done` frames; empty if it is whole.
+
+    A live source ends by a signal, and so its run is whole then.
+    """
+    if not stop.came or source.frame_count is None:
+        return []
+    return [f"a signal ended the run after {done} of {source.frame_count} frames"]

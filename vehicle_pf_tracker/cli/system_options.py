@@ -130,8 +130,8 @@ def _fitting_systems(
     return systems, notes
 
 
-def configure(variant: Variant, parameter_set: ParameterSet) -> Configuration:
-    """Put a set over a variant's defaults.
+def configure(variant: Variant, files: Iterable[Path], assignments: Iterable[str]) -> Configuration:
+    """Put files, and then ``name=value`` words, over a variant's defaults.
 
     Raises
     ------
@@ -139,10 +139,9 @@ def configure(variant: Variant, parameter_set: ParameterSet) -> Configuration:
         If a file, a name or a value does not fit.
     """
     configuration = Configuration.of(variant)
-    for file in parameter_set.files:
+    for file in files:
         configuration = with_file(configuration, variant, file)
-    values = parse_assignments(settable(variant), parameter_set.assignments)
-    return configuration.updated(values)
+    return configuration.updated(parse_assignments(settable(variant), assignments))
 
 
 def settable(variant: Variant) -> dict[str, ParameterSpec]:
@@ -195,6 +194,10 @@ class EvaluationRequest(WorkersOption):
         help="model file of a baseline that needs some, as vit:net=vit.onnx; repeatable",
     )  # fmt: skip
 
+    def some_seeds(self, usual: int) -> range:
+        """Return the seeds, `usual` of them unless the user gives a number."""
+        return range(self.first_seed, self.first_seed + (self.seeds or usual))
+
 
 def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
     """Return the systems that a request asks for, and notes about them.
@@ -242,9 +245,9 @@ def _variant_system(
 ) -> VariantSystem:
     table = settable(variant)
     fitting = [word for word in everywhere if word.partition("=")[0] in table]
-    overrides = parse_assignments(table, [*fitting, *parameter_set.assignments])
-    configuration = configure(variant, parameter_set).updated(overrides)
-    return make_system(variant, parameter_set.name, configuration, overrides)
+    words = [*fitting, *parameter_set.assignments]
+    configuration = configure(variant, parameter_set.files, words)
+    return make_system(variant, parameter_set.name, configuration, parse_assignments(table, words))
 
 
 def make_system(

@@ -24,7 +24,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, VerbRequest, option
-from vehicle_pf_tracker.cli.source_part import Moment
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
@@ -223,6 +222,48 @@ def by_name(targets: Iterable[TargetOption], first: int) -> dict[str, dict[int, 
             raise InputError(f"the target {name} is in frame {frame}; tracking begins at {first}")
         boxes[frame] = target.box
     return groups
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A point in a source: the number of a frame, or a time after the first one.
+
+    Attributes
+    ----------
+    frame : int or None
+        Number of the frame, from 1.
+    seconds : float or None
+        Time in s, by the stamps; given where `frame` is None.
+    """
+
+    frame: int | None = None
+    seconds: float | None = None
+
+    @classmethod
+    def parse(cls, text: str) -> Moment:
+        """Read ``130`` as a frame, and ``4.3s`` as a time.
+
+        Raises
+        ------
+        InputError
+            If it is neither.
+        """
+        found = re.fullmatch(r"0*([1-9]\d{0,8})|(\d{1,9}\.?\d*|\.\d+)s", text, re.ASCII)
+        if found is None:
+            raise InputError(
+                f"{text!r} is neither a frame (an integer >= 1) nor a time in seconds, as 4.3s"
+            )
+        return cls(int(found[1])) if found[1] else cls(seconds=float(found[2]))
+
+    def after(self, number: int, elapsed: float) -> float:
+        """Return by how much the moment is later than frame `number`, `elapsed` s from the first.
+
+        The result is negative where it is earlier, and its unit is the moment's own.
+        """
+        if self.frame is not None:
+            return self.frame - number
+        assert self.seconds is not None
+        return round(self.seconds - elapsed, 9)  # a stamp's rounding
 
 
 @dataclass(frozen=True, kw_only=True)

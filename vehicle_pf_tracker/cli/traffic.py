@@ -25,20 +25,26 @@ from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.requests import option, switch
-from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
-from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
+from vehicle_pf_tracker.cli.stopping import (
+    StillAtWork,
+    Stop,
+    cut_short,
+    numbered_part,
+    stopping,
+)
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.offline.detectors import DetectionFile, call
-from vehicle_pf_tracker.offline.live_page import LivePage
 from vehicle_pf_tracker.offline.model_files import model_file
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
+from vehicle_pf_tracker.offline.page_server import LivePage
 from vehicle_pf_tracker.offline.pictures import Pictures
-from vehicle_pf_tracker.offline.run_folder import RUN, RunInfo, describe
+from vehicle_pf_tracker.offline.run_folder import RUN, describe
 from vehicle_pf_tracker.offline.traffic_following import TrafficRun
 from vehicle_pf_tracker.offline.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
+from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, NONE, TOPIC
@@ -170,10 +176,15 @@ def _write(
     folder: Path,
 ) -> None:
     """Write `run.json`."""
-    info = RunInfo(request.command, request.source, source.image_topic, None, notices)
-    tracker, kind = tracking.session.tracker, configuration.tracker.detector.kind
+    kind = configuration.tracker.detector.kind
     document = describe(
-        info, TRAFFIC.name, tracker.seed, configuration.tracker, configuration.session
+        request.command,
+        request.source,
+        source.image_topic,
+        notices,
+        variant=TRAFFIC.name,
+        seed=tracking.session.tracker.seed,
+        parameters={**to_mapping(configuration.tracker), **to_mapping(configuration.session)},
     )
     if kind == MODEL:
         document["versions"]["onnxruntime"] = metadata.version("onnxruntime")

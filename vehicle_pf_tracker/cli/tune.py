@@ -40,7 +40,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import Plan, VariantSystem
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
-from vehicle_pf_tracker.evaluation.report import write_report
+from vehicle_pf_tracker.evaluation.report.writing import write_report
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.search_space import OBJECTIVES, default_search, search_space
 from vehicle_pf_tracker.evaluation.tables import markdown
@@ -114,8 +114,7 @@ def run(request: Request) -> int:
     """Search, compare, write all results, and print the comparison."""
     variant = find_variant(request.variant)
     given = [] if request.params is None else [request.params]
-    start = system_options.ParameterSet("", None, given, list(request.assignments))
-    configuration = system_options.configure(variant, start)
+    configuration = system_options.configure(variant, given, request.assignments)
     base = system_options.make_system(variant, "", configuration, {})
     what, recordings = _search(variant, base, request)
     outputs = (Products(request.output, (f"{BEST}.yaml",)), Products(request.output / EVALUATION))
@@ -152,7 +151,7 @@ def _tune(
         "searched": [str(dimension) for dimension in what.space],
         "best_trial": best.number,
         "best": dict(best.values),
-        "comparison": [line.to_json() for line in lines],
+        "comparison": [{**line._asdict(), "change": line.change} for line in lines],
         "verdict": told,
     }
     write_json(output / "tuning.json", document)

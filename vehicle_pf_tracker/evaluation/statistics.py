@@ -65,10 +65,10 @@ class Summary:
     high: float | None
 
 
-def summarise(values: Sequence[float | None], seed: int = 0) -> Summary | None:
+def summarise(values: Sequence[float | None]) -> Summary | None:
     """Summarise the values that are not None; None if there are none.
 
-    The same values and seed give the same interval.
+    The same values give the same interval.
     """
     known = [float(value) for value in values if value is not None]
     if not known:
@@ -76,11 +76,11 @@ def summarise(values: Sequence[float | None], seed: int = 0) -> Summary | None:
     mean = statistics.fmean(known)
     if len(known) == 1:
         return Summary(1, mean, None, None, None)
-    low, high = _interval(known, seed)
+    low, high = _interval(known)
     return Summary(len(known), mean, statistics.stdev(known), low, high)
 
 
-def _interval(values: Sequence[float], seed: int) -> tuple[float, float]:
+def _interval(values: Sequence[float]) -> tuple[float, float]:
     if min(values) == max(values):
         return values[0], values[0]
     result = stats.bootstrap(
@@ -89,7 +89,7 @@ def _interval(values: Sequence[float], seed: int) -> tuple[float, float]:
         n_resamples=RESAMPLES,
         confidence_level=CONFIDENCE,
         method="percentile",
-        **{_GENERATOR: np.random.default_rng(seed)},
+        **{_GENERATOR: np.random.default_rng(0)},
     )
     return float(result.confidence_interval.low), float(result.confidence_interval.high)
 

@@ -16,12 +16,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import itertools
+import statistics
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from vehicle_pf_tracker.evaluation.metrics import Metrics
+from vehicle_pf_tracker.evaluation.report.aggregates import (
+    COLUMNS,
+    NO_VALUE,
+    RANKED,
+    RECOVERED,
+    Aggregates,
+    Column,
+    Summaries,
+    counted,
+    interval_text,
+    listing,
+    mean_and_spread_text,
+    mean_text,
+)
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
 from vehicle_pf_tracker.evaluation.scores import OcclusionScore
+from vehicle_pf_tracker.evaluation.statistics import Summary
 
 NOTHING = "-"
 Rows: TypeAlias = list[list[str]]
@@ -85,39 +102,166 @@ class Table:
         return ["system", *titles], rows
 
 
-_LINES = (
-    ("error, RMSE, px", "rmse_px", 1),
-    ("error, RMSE while visible, px", "rmse_visible_px", 1),
-    ("error, median, px", "median_px", 1),
-    ("error, largest, px", "max_px", 1),
-    ("error below 15 px", "p_error_lt_15px", 3),
-    ("on target while visible", "on_target", 3),
-    ("TRACKING while visible", "visible_tracking", 3),
-    ("not TRACKING while hidden", "hidden_not_tracking", 3),
-    ("frames", "frames", 0),
-    ("frames scored", "frames_scored", 0),
-    ("time per step, median, ms", "step_ms_p50", 2),
-    ("time per step, 95 %, ms", "step_ms_p95", 2),
-)
-"""Label, name of the metric and decimals; occlusions stand before the modes."""
-_MODES = 6
+def overall_table(aggregates: Aggregates, keys: Collection[str] | None = None) -> Table:
+    """Show metrics, all if `keys` is None, as means over the recordings.
+
+    Recoveries are counted over all runs.
+    """
+
+    def text(label: str, summary: Summary | None, column: Column) -> str:
+        recovered, judged = aggregates.recoveries[label]
+        is_count = column is RECOVERED and judged
+        return f"{recovered} of {judged}" if is_count else mean_text(summary, column)
+
+    columns = [column for column in COLUMNS if keys is None or column.key in keys]
+    return _metrics_table(aggregates.overall, columns, text)
 
 
-def run_rows(metrics: Metrics) -> Rows:
-    """Return a row for each metric that the run has: its label with the unit, and its value."""
-    values = [(label, getattr(metrics, name), decimals) for label, name, decimals in _LINES]
-    values[_MODES:_MODES] = [line for one in metrics.occlusions for line in _occlusion_lines(one)]
-    return [[label, _text(value, decimals)] for label, value, decimals in values
-            if value is not None]  # fmt: skip
+def recording_table(aggregates: Aggregates, recording: str, columns: Sequence[Column]) -> Table:
+    """Show metrics of one recording, as means and spreads over the seeds."""
+    found = aggregates.recordings[recording]
+    table = {label: found[label] for label in aggregates.order if label in found}
+    return _metrics_table(
+        table, columns, lambda _, summary, column: mean_and_spread_text(summary, column)
+    )
 
 
-def _occlusion_lines(one: OcclusionScore) -> Iterator[tuple[str, float | str | None, int]]:
-    name = f"hidden {one.first_frame}-{one.last_frame}"
-    yield f"{name}: mean error inside, px", one.error_inside_px, 1
-    yield f"{name}: mean error after, px", one.error_after_px, 1
-    recovered = "not judged" if one.recovered is None else "yes" if one.recovered else "no"
-    yield f"{name}: recovered", recovered, 0
+def ranks_table(aggregates: Aggregates) -> Table:
+    """Show places with their ties and mean ranks, by each ranked metric."""
+    headers: list[Header] = []
+    rows: dict[str, list[TableCell]] = {label: [] for label in aggregates.order}
+    for column in RANKED:
+        if column.key not in aggregates.rankings:
+            continue
+        headers += [Header(f"{column.label}: place"), Header("mean rank")]
+        ranks = {rank.system: rank for rank in aggregates.rankings[column.key].ranks}
+        differ = any(rank.place > 1 for rank in ranks.values())
+        for label, row in rows.items():
+            if label not in ranks:
+                row += [TableCell(NO_VALUE), TableCell(NO_VALUE)]
+                continue
+            rank = ranks[label]
+            note = f"tied with {listing(rank.tied)}" if rank.tied else ""
+            place = f"{rank.place}{' =' if rank.tied else ''}"
+            row.append(TableCell(place, rank.place, differ and rank.place == 1, note))
+            row.append(TableCell(f"{rank.mean_rank:.2f}", rank.mean_rank))
+    return Table(headers, rows)
 
 
-def _text(value: float | str, decimals: int) -> str:
-    return value if isinstance(value, str) else f"{value:.{decimals}f}"
+def starts_table(aggregates: Aggregates) -> Table | None:
+    """Compare runs from shifted first boxes with those from the true one, by each ranked metric.
+
+    None without the former.
+    """
+    if aggregates.shifted is None:
+        return None
+    note = "Standard deviation over the shifted boxes of a recording, mean over the recordings."
+    headers = [
+        header
+        for column in RANKED
+        for header in (
+            Header(f"{column.label}: true box", column.unit),
+            Header("shifted", column.unit),
+            Header("spread", column.unit, note),
+        )
+    ]
+    rows = {
+        label: [
+            number_cell(value, f".{column.decimals}f")
+            for column in RANKED
+            for value in _start_values(aggregates, aggregates.shifted, label, column.key)
+        ]
+        for label in aggregates.order
+    }
+    return Table(headers, rows)
+
+
+def _start_values(
+    true: Aggregates, shifted: Aggregates, label: str, key: str
+) -> Iterator[float | None]:
+    """Give the means from the true and from shifted boxes, and the spread over the latter."""
+    for some in (true, shifted):
+        summary = some.overall.get(label, {}).get(key)
+        yield summary.mean if summary else None
+    spreads = [
+        found.spread
+        for by_system in shifted.recordings.values()
+        if (found := by_system.get(label, {}).get(key)) and found.spread is not None
+    ]
+    yield statistics.fmean(spreads) if spreads else None
+
+
+def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]]) -> Table | None:
+    """Show the recovery of each system from each total occlusion; None without any."""
+    by_system = {
+        label: [occlusion for run in some for occlusion in run.metrics.occlusions]
+        for label, some in runs.items()
+    }
+    spans = sorted({(o.first_frame, o.last_frame) for some in by_system.values() for o in some})
+    if not spans:
+        return None
+    rows = {
+        label: [
+            cell
+            for span in spans
+            for cell in _occlusion_cells([o for o in some if (o.first_frame, o.last_frame) == span])
+        ]
+        for label, some in by_system.items()
+    }
+    three = (
+        Header("recovered", "seeds", "Seeds after which the track was on the vehicle again."),
+        Header("error at exit", "px", "Mean error in the first frame after it."),
+        Header("return", "frames", "Median frames until the track stays on the vehicle."),
+    )
+    groups = [Header(f"frames {first} to {last}", span=3) for first, last in spans]
+    return Table(three * len(spans), rows, groups)
+
+
+def _occlusion_cells(seeds: Sequence[OcclusionScore]) -> Iterator[TableCell]:
+    """Summarise one occlusion over the seeds of one system."""
+    verdicts = [o.recovered for o in seeds if o.recovered is not None]
+    exits = [o.error_at_exit_px for o in seeds if o.error_at_exit_px is not None]
+    frames = [o.frames_to_recover for o in seeds if o.frames_to_recover is not None]
+    share = statistics.fmean(verdicts) if verdicts else None
+    text = f"{sum(verdicts)} of {len(verdicts)}" if verdicts else "not judged"
+    yield TableCell(text, share, share == 1)
+    yield number_cell(statistics.fmean(exits) if exits else None, ".1f")
+    note = f"in {counted(len(frames), 'seed')}"
+    yield number_cell(statistics.median(frames) if frames else None, ".0f", note)
+
+
+def _metrics_table(
+    table: Mapping[str, Summaries],
+    columns: Sequence[Column],
+    text: Callable[[str, Summary | None, Column], str],
+) -> Table:
+    kept = [column for column in columns if any(row.get(column.key) for row in table.values())]
+    best = {column.key: _best(table, column) for column in kept}
+
+    def cell(label: str, column: Column) -> TableCell:
+        summary = table[label].get(column.key)
+        value = summary.mean if summary else None
+        is_best = value is not None and round(value, column.decimals) == best[column.key]
+        within = interval_text(summary, column)
+        note = f"95 % interval of the mean: {within}" if within else ""
+        return TableCell(text(label, summary, column), value, is_best, note)
+
+    grouped = itertools.groupby(kept, lambda column: column.group)
+    return Table(
+        [Header(column.label, column.unit, column.help) for column in kept],
+        {label: [cell(label, column) for column in kept] for label in table},
+        [Header(name, span=len(list(group))) for name, group in grouped],
+    )
+
+
+def _best(table: Mapping[str, Summaries], column: Column) -> float | None:
+    """Return the best value as it is shown; None where none is better than all others."""
+    values = {round(s.mean, column.decimals) for row in table.values() if (s := row[column.key])}
+    if column.higher_is_better is None or len(values) < 2:
+        return None
+    return max(values) if column.higher_is_better else min(values)
+
+
+def number_cell(value: float | None, form: str, note: str = "") -> TableCell:
+    """Return the cell of a number, in a form such as ``.1f``; a dash for None."""
+    return TableCell(NO_VALUE if value is None else f"{value:{form}}", value, note=note)

@@ -27,13 +27,16 @@ import itertools
 import statistics
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import optuna
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell, VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.grid.running import Runner
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
 from vehicle_pf_tracker.evaluation.result_store import ResultStore
 from vehicle_pf_tracker.evaluation.search_space import Dimension, Objective
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means
@@ -41,12 +44,6 @@ from vehicle_pf_tracker.evaluation.tables import NOTHING
 from vehicle_pf_tracker.offline.output_files import csv_text
 from vehicle_pf_tracker.offline.processes import OnProgress
 from vehicle_pf_tracker.parameters.table import Value
-
-if TYPE_CHECKING:
-    import optuna
-
-    from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
-
 
 BATCH = 6
 """Trials proposed before the first of them is known: enough to keep a few workers busy, few enough
@@ -128,7 +125,7 @@ def search(
     """
     study = _study(what)
     space = {dimension.name: dimension.distribution() for dimension in what.space}
-    fail = _optuna().trial.TrialState.FAIL
+    fail = optuna.trial.TrialState.FAIL
     runs = len(what.sources) * len(seeds_of(what.base, what.seeds))
     trials: list[Trial] = []
     while len(trials) < count:
@@ -187,27 +184,17 @@ def _score(what: SearchTask, cells: Sequence[GridCell], store: ResultStore) -> f
 
 
 def _study(what: SearchTask) -> optuna.Study:
-    library = _optuna()
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the options below count as experimental in some versions
-        sampler = library.samplers.TPESampler(seed=what.sampler_seed, constant_liar=True)
-    direction = "maximize" if what.objective.maximise else "minimize"
-    study: optuna.Study = library.create_study(sampler=sampler, direction=direction)
+        sampler = optuna.samplers.TPESampler(seed=what.sampler_seed, constant_liar=True)
+    study = optuna.create_study(
+        sampler=sampler, direction="maximize" if what.objective.maximise else "minimize"
+    )
     base = dict(what.base.parameters)
     if all(dimension.covers(base[dimension.name]) for dimension in what.space):
         study.enqueue_trial({dimension.name: base[dimension.name] for dimension in what.space})
     return study
-
-
-def _optuna() -> Any:
-    try:
-        import optuna  # noqa: PLC0415 - an extra
-    except ModuleNotFoundError:
-        raise InputError(
-            "tuning needs the extra [evaluation]: `pip install 'vehicle_pf_tracker[evaluation]'`"
-        ) from None
-    optuna.logging.set_verbosity(optuna.logging.WARNING)
-    return optuna
 
 
 def to_csv(trials: Sequence[Trial], objective: Objective) -> str:
@@ -220,8 +207,7 @@ def to_csv(trials: Sequence[Trial], objective: Objective) -> str:
 TUNED, HELD_OUT = "tuned on", "held out"
 
 
-@dataclass(frozen=True, slots=True)
-class ComparedMetric:
+class ComparedMetric(NamedTuple):
     """A metric on one recording, or the mean over several.
 
     Attributes
@@ -250,10 +236,6 @@ class ComparedMetric:
     def change(self) -> float | None:
         """Difference of best minus base; None where either is unknown."""
         return None if self.base is None or self.best is None else self.best - self.base
-
-    def to_json(self) -> dict[str, Any]:
-        """Return plain values for JSON."""
-        return {**asdict(self), "change": self.change}
 
 
 def compare(

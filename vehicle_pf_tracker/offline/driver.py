@@ -22,7 +22,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, TypeVar
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
@@ -33,7 +33,7 @@ from vehicle_pf_tracker.image.target_pixels import Stillness, doubts
 from vehicle_pf_tracker.offline.drawing import Annotator, annotated
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame
-from vehicle_pf_tracker.offline.pictures import Pictures
+from vehicle_pf_tracker.offline.pictures import Numbered, Pictures
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.estimate import START, Estimate
@@ -43,12 +43,6 @@ from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TrackerError
 
 ItemT = TypeVar("ItemT")
-Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
-"""Frames with their numbers in the source."""
-_DEFAULT_RATE = 30.0
-"""Frame rate of a video whose stamps state none, 1/s."""
-RATE_FRAMES = 30
-"""Frames whose stamps give the video's rate: the median of a second forgives a gap."""
 
 
 class OfflineTracker:
@@ -96,7 +90,9 @@ class OfflineTracker:
         self._notices = list(self.session.tracker.kernels.notices)
         self._first_truth = first_truth if self.session.waiting else None
         self._limit_ns = max_diff_ns(max_diff)
-        self._localisation = _localisation(self.session)
+        road = self.session.settings.road
+        has_road = road.fixed_plane() is not None
+        self._localisation = Localisation(variant.name, road) if has_road else None
         self._on_road: list[Mapping[str, float]] = []
         self._off_road: Counter[str] = Counter()
         self._targets = targets
@@ -213,12 +209,6 @@ class OfflineTracker:
             self._off_road[self._localisation.objection] += 1
 
 
-def _localisation(session: Session) -> Localisation | None:
-    """Make the localisation where a road is set."""
-    road = session.settings.road
-    return Localisation(session.variant.name, road) if road.fixed_plane() else None
-
-
 def with_target(settings: SessionParameters, box: Box) -> SessionParameters:
     """Return `settings` with the target `box`."""
     return replace(settings, target=TargetParameters(box.x, box.y, box.width, box.height))
@@ -253,21 +243,18 @@ def follow(
     InputError
         If a target is invalid in its frame, or the video cannot be written.
     """
-    # The rate is that of the first second, so this much is read ahead of the video.
-    ahead = list(itertools.islice(frames, RATE_FRAMES if pictures.video else 1))
     rows: dict[str, list[EstimateRow]] = {name: [] for name in trackers}
-    if not ahead:
-        return rows
-    first, start_ns = ahead[0][0], ahead[0][1].stamp_ns
+    start_ns: int | None = None
     annotators = [
         Annotator(name if len(trackers) > 1 else "", particles=pictures.particles)
         for name in trackers
     ]
-    with pictures.drawing(frame_rate_of(ahead)) as take:
-        all_frames = (found for _, found in itertools.chain(ahead, frames))
-        for number, (found, following) in enumerate(_with_next(all_frames), start=first):
+    with pictures.drawing(frames) as (take, all_frames):
+        for (number, found), later in _with_next(all_frames):
+            following, is_first = later and later[1], start_ns is None
+            start_ns = found.stamp_ns if start_ns is None else start_ns
             of_frame = {
-                name: tracker.row(number, found, following, is_first=number == first)
+                name: tracker.row(number, found, following, is_first=is_first)
                 for name, tracker in trackers.items()
             }
             states = []
@@ -291,11 +278,3 @@ def _with_next(items: Iterable[ItemT]) -> Iterator[tuple[ItemT, ItemT | None]]:
     for current, following in itertools.pairwise(itertools.chain(items, [None])):
         assert current is not None
         yield current, following
-
-
-def frame_rate_of(frames: list[tuple[int, StampedFrame]]) -> float:
-    """Return the frame rate of `frames` by their stamps, 1/s."""
-    stamps = [found.stamp_ns for _, found in frames]
-    gaps = sorted(later - earlier for earlier, later in itertools.pairwise(stamps))
-    usual = gaps[len(gaps) // 2] if gaps else 0
-    return 1e9 / usual if usual > 0 else _DEFAULT_RATE

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -30,6 +31,7 @@ import numpy as np
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline.output_files import make_folder, replacing, write_picture
+from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.video import quiet_opencv
 
 Draw: TypeAlias = Callable[[], Frame]
@@ -49,6 +51,13 @@ _QUALITY = {"preset": "veryfast", "crf": "23"}
 """x264's own middle quality, with the preset that costs 4 ms for a frame of 640x360 px."""
 
 
+_DEFAULT_RATE = 30.0
+"""Frame rate of a video whose stamps state none, 1/s."""
+_RATE_FRAMES = 30
+"""Frames whose stamps give the video's rate: the median of a second forgives a gap."""
+
+Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
+"""Frames with their numbers in the source."""
 Write: TypeAlias = Callable[[Frame, float], None]
 """Appends an RGB frame to a video, which is shown from a time after the beginning on, s."""
 
@@ -237,11 +246,14 @@ class Pictures:
         return [NO_ENCODER] if self.video and not has_encoder() else []
 
     @contextmanager
-    def drawing(self, rate: float) -> Iterator[Take]:
-        """Give a function that takes each frame; `rate` is the usual number of them per second.
+    def drawing(self, frames: Numbered) -> Iterator[tuple[Take, Numbered]]:
+        """Give a function that takes each of the `frames`, and these again.
 
         A video that breaks off is removed, and is the run's `problem`: it costs no estimate.
         """
+        # The video's rate is that of the first second, so this much is read ahead of it.
+        ahead = list(itertools.islice(frames, _RATE_FRAMES if self.video else 0))
+        rate = _frame_rate([found.stamp_ns for _, found in ahead])
         with ExitStack() as stack:
             write: Write | None = None
             at, last_ns = 0.0, 0
@@ -265,7 +277,7 @@ class Pictures:
                     with self._noting():
                         stack.__exit__(type(error), error, None)
 
-            yield take
+            yield take, itertools.chain(ahead, frames)
             with self._noting():
                 stack.pop_all().close()
 
@@ -276,3 +288,10 @@ class Pictures:
             yield
         except InputError as error:
             self.problem = str(error)
+
+
+def _frame_rate(stamps: list[int]) -> float:
+    """Return the usual frame rate of stamps in ns, 1/s."""
+    gaps = sorted(later - earlier for earlier, later in itertools.pairwise(stamps))
+    usual = gaps[len(gaps) // 2] if gaps else 0
+    return 1e9 / usual if usual > 0 else _DEFAULT_RATE

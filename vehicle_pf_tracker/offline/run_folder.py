@@ -20,7 +20,6 @@ import hashlib
 import json
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from datetime import datetime, timezone
 from importlib import metadata
 from pathlib import Path
@@ -38,57 +37,53 @@ from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.trackers.session import Session
 
 
-@dataclass(frozen=True, slots=True)
-class RunInfo:
-    """Provenance of a run.
-
-    Attributes
-    ----------
-    command : sequence of str
-        Command line; empty where there was none.
-    recording, image_topic : str
-        Source of the images; the topic is empty where frames came from memory.
-    start_frame : int or None
-        Number of the frame that the target was first set in.
-    notices : sequence of str
-        Irregularities, a sentence each.
-    """
-
-    command: Sequence[str]
-    recording: str
-    image_topic: str
-    start_frame: int | None
-    notices: Sequence[str]
-
-
-def describe_run(info: RunInfo, session: Session) -> dict[str, Any]:
-    """Make the content of `run.json` for the run of one target.
+def describe_run(
+    session: Session, start_frame: int | None, command: Sequence[str], *source: Any
+) -> dict[str, Any]:
+    """Make the content of `run.json` for the run of one target; see `describe`.
 
     `seed` is the one in use: the drawn one where the parameter `seed` is -1; `kernels` likewise
     those that `auto` chose.
     """
     tracker, box = session.tracker, session.settings.target.box
     return {
-        **describe(info, session.variant.name, tracker.seed, tracker.parameters, session.settings),
+        **describe(
+            command,
+            *source,
+            variant=session.variant.name,
+            seed=tracker.seed,
+            parameters={**to_mapping(tracker.parameters), **to_mapping(session.settings)},
+        ),
         "kernels": tracker.kernels.name,
         "target": None if box is None else [box.x, box.y, box.width, box.height],
-        "start_frame": info.start_frame,
+        "start_frame": start_frame,
     }
 
 
-def describe(info: RunInfo, variant: str, seed: int, *parameters: object) -> dict[str, Any]:
-    """Make the part of `run.json` that every run has."""
-    values = [to_mapping(group) for group in parameters]
+def describe(
+    command: Sequence[str], source: str, topic: str, notices: Sequence[str], **facts: Any
+) -> dict[str, Any]:
+    """Make the part of `run.json` that every run has.
+
+    Parameters
+    ----------
+    command : sequence of str
+        Command line; empty where there was none.
+    source, topic : str
+        Source of the images; the topic is empty where frames came from memory.
+    notices : sequence of str
+        Irregularities, a sentence each.
+    **facts : Any
+        What ran, with its seed and parameters.
+    """
     return {
-        "command": list(info.command),
+        "command": list(command),
         "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
-        "recording": info.recording,
-        "image_topic": info.image_topic,
-        "variant": variant,
-        "seed": seed,
-        "parameters": {name: value for group in values for name, value in group.items()},
+        "recording": source,
+        "image_topic": topic,
+        **facts,
         "versions": versions(),
-        "notices": list(info.notices),
+        "notices": list(notices),
     }
 
 
@@ -116,39 +111,27 @@ DIGESTS = "digests.json"
 """File with the SHA-256 of every other file of a sealed folder, by name."""
 
 
-class RunFolder:
-    """Writes the results of one run; those of an earlier run are never left beside them.
+def write_run(
+    folder: Path,
+    rows: Sequence[EstimateRow],
+    description: Mapping[str, Any],
+    extra: Mapping[str, Sequence[float | None]] = MappingProxyType({}),
+) -> None:
+    """Write `estimates.csv` with the columns `extra`, and the description to `run.json`.
 
-    Parameters
-    ----------
-    path : Path
-        The folder; made where it is missing.
+    The folder is made where it is missing; no result of an earlier run is left beside these.
 
     Raises
     ------
     InputError
-        If nothing can be written there; also from every method.
+        If nothing can be written there.
     """
-
-    def __init__(self, path: Path) -> None:
-        self.path = make_folder(path)
-
-    def write_run(
-        self,
-        rows: Sequence[EstimateRow],
-        description: Mapping[str, Any],
-        extra: Mapping[str, Sequence[float | None]] = MappingProxyType({}),
-    ) -> None:
-        """Write `estimates.csv` with the columns `extra`, and the description to `run.json`."""
-        for name in (ESTIMATES, METRICS, RUN):
-            with output_errors(self.path / name):
-                (self.path / name).unlink(missing_ok=True)
-        write_estimates(self.path / ESTIMATES, rows, extra)
-        write_json(self.path / RUN, description)
-
-    def write_metrics(self, metrics: Mapping[str, object]) -> None:
-        """Write `metrics.json`: the numbers of the estimates against truth, by name."""
-        write_json(self.path / METRICS, metrics)
+    make_folder(folder)
+    for name in (ESTIMATES, METRICS, RUN):
+        with output_errors(folder / name):
+            (folder / name).unlink(missing_ok=True)
+    write_estimates(folder / ESTIMATES, rows, extra)
+    write_json(folder / RUN, description)
 
 
 def seal(folder: Path) -> None:

@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Mapping
 from functools import partial
 from types import MappingProxyType
@@ -25,11 +24,10 @@ from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles
-from vehicle_pf_tracker.offline.driver import RATE_FRAMES, Numbered, frame_rate_of
 from vehicle_pf_tracker.offline.estimates import clock_words
-from vehicle_pf_tracker.offline.live_page import LivePage
-from vehicle_pf_tracker.offline.pictures import Pictures
-from vehicle_pf_tracker.offline.traffic_pictures import HeatPicture, PathPicture
+from vehicle_pf_tracker.offline.page_server import LivePage
+from vehicle_pf_tracker.offline.pictures import Numbered, Pictures
+from vehicle_pf_tracker.offline.traffic_drawing import HeatPicture, PathPicture
 from vehicle_pf_tracker.offline.traffic_results import TrackFiles
 from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.recordings.reader import StampedFrame
@@ -125,13 +123,10 @@ class TrafficRun(CountedVehicles):
             If a target is invalid in its frame, or something cannot be written.
         """
         pictures, self._targets = pictures or Pictures(), targets
-        # The video's rate is that of the first second, so this much is read ahead of it.
-        ahead = list(itertools.islice(frames, RATE_FRAMES if pictures.video else 1))
-        if not ahead:
-            return
-        start_ns = ahead[0][1].stamp_ns
-        with pictures.drawing(frame_rate_of(ahead)) as take:
-            for number, found in itertools.chain(ahead, frames):
+        start_ns: int | None = None
+        with pictures.drawing(frames) as (take, all_frames):
+            for number, found in all_frames:
+                start_ns = found.stamp_ns if start_ns is None else start_ns
                 crossings = self._step(number, found)
                 if found.frame is None or crossings is None:
                     continue

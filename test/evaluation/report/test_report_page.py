@@ -22,7 +22,7 @@ from html.parser import HTMLParser
 import pytest
 from evaluation_samples import HIDDEN, NO_BASELINES, VARIANTS
 
-from vehicle_pf_tracker.evaluation.report import write_report
+from vehicle_pf_tracker.evaluation.report.writing import write_report
 
 VOID = {"meta", "link", "img", "br", "line", "path", "use", "rect", "input", "hr"}
 

@@ -34,8 +34,8 @@ from vehicle_pf_tracker.evaluation.grid.running import complete
 from vehicle_pf_tracker.evaluation.report import writing
 from vehicle_pf_tracker.evaluation.report.aggregates import COLUMNS, aggregate
 from vehicle_pf_tracker.evaluation.report.page import make_page
-from vehicle_pf_tracker.evaluation.report.page_tables import overall_table, starts_table
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
+from vehicle_pf_tracker.evaluation.tables import overall_table, starts_table
 from vehicle_pf_tracker.offline.output_files import write_json
 from vehicle_pf_tracker.offline.run_folder import seal
 

@@ -14,6 +14,8 @@
 
 import pytest
 
+pytest.importorskip("optuna", reason="the extra [evaluation] is not installed")
+
 from vehicle_pf_tracker.evaluation.search_space import OBJECTIVES
 from vehicle_pf_tracker.evaluation.tuning import (
     HELD_OUT,

@@ -20,7 +20,6 @@ import functools
 import shutil
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import astuple, dataclass, field, replace
-from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -40,13 +39,13 @@ from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.output_files import flush, make_folder, write_json
 from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.offline.run_folder import (
+    METRICS,
     RUN,
-    RunFolder,
-    RunInfo,
     damage,
+    describe,
     describe_run,
     seal,
-    versions,
+    write_run,
 )
 from vehicle_pf_tracker.trackers.registry import find_variant
 
@@ -103,9 +102,8 @@ def _run_variant(
     )
     rows = list(tracker.rows(recording.frames()))
     notices = [*recording.notices, *tracker.notices]
-    source = cell.source
-    info = RunInfo([], source.path, source.topic, tracker.start_frame, notices)
-    return rows, describe_run(info, tracker.session)
+    source = cell.source.path, cell.source.topic, notices
+    return rows, describe_run(tracker.session, tracker.start_frame, [], *source)
 
 
 def _first_truth(cell: GridCell, recording: Footage) -> Truth:
@@ -123,19 +121,19 @@ def _run_baseline(
         rows = list(baseline_rows(baseline, recording.frames(), first))
         opencv = baseline.versions["opencv"]
     started = (row.frame for row in rows if row.mode not in {WAITING, REJECTED})
-    return rows, {
-        "command": [],
-        "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
-        "recording": cell.source.path,
-        "image_topic": cell.source.topic,
-        "baseline": system.baseline,
-        "seed": cell.seed,
-        "target": list(astuple(first.box)),
-        "start_frame": next(started, None),
-        "parameters": dict(system.models),
-        "versions": {**versions(), "opencv": opencv},
-        "notices": recording.notices,
-    }
+    description = describe(
+        [],
+        cell.source.path,
+        cell.source.topic,
+        recording.notices,
+        baseline=system.baseline,
+        seed=cell.seed,
+        target=list(astuple(first.box)),
+        start_frame=next(started, None),
+        parameters=dict(system.models),
+    )
+    description["versions"]["opencv"] = opencv
+    return rows, description
 
 
 Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[tuple[GridCell, CellResult]]]
@@ -192,8 +190,7 @@ def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]
             write_json(partial / FAILED, {"reason": outcome.reason})
         else:
             keys = {"command": command, "key": cell.key()}
-            results = RunFolder(partial)
-            results.write_run(outcome.rows, {**outcome.run, **keys})
-            results.write_metrics(outcome.metrics.to_json())
+            write_run(partial, outcome.rows, {**outcome.run, **keys})
+            write_json(partial / METRICS, outcome.metrics.to_json())
             seal(partial)
     flush(folder.parent)

@@ -13,7 +13,3 @@
 # limitations under the License.
 
 """The report of an evaluation, as one page and as tables."""
-
-from vehicle_pf_tracker.evaluation.report.writing import Report, write_report
-
-__all__ = ["Report", "write_report"]

@@ -29,9 +29,9 @@ from matplotlib import rc_context
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.evaluation import tables
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
 from vehicle_pf_tracker.evaluation.plots import STYLES
-from vehicle_pf_tracker.evaluation.report import page_tables
 from vehicle_pf_tracker.evaluation.report.aggregates import (
     COLUMNS,
     RANKED,
@@ -112,11 +112,11 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         facts=_facts(evaluation),
         findings=findings(evaluation, aggregates),
         slots=slots,
-        overall=page_tables.overall_table(aggregates),
+        overall=tables.overall_table(aggregates),
         figures=figures,
-        ranks=page_tables.ranks_table(aggregates),
+        ranks=tables.ranks_table(aggregates),
         rank_notes=list(_rank_notes(aggregates)),
-        starts=page_tables.starts_table(aggregates),
+        starts=tables.starts_table(aggregates),
         curves=[name for name in CURVES if name in figures],
         recordings=[
             _section(evaluation, aggregates, entry, images) for entry in evaluation.recordings
@@ -173,8 +173,8 @@ def _section(
     return {
         "name": entry.name,
         "facts": _recording_facts(entry, truths),
-        "table": page_tables.recording_table(aggregates, entry.name, shown),
-        "occlusions": page_tables.occlusions_table(runs),
+        "table": tables.recording_table(aggregates, entry.name, shown),
+        "occlusions": tables.occlusions_table(runs),
         "figure": ERRORS + safe_name(entry.name),
         "strips": strips,
         "note": note,

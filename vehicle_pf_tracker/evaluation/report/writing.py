@@ -37,18 +37,18 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
 )
 from vehicle_pf_tracker.evaluation.report.figures import write_figures
 from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
-from vehicle_pf_tracker.evaluation.report.page_tables import (
-    overall_table,
-    ranks_table,
-    recording_table,
-    starts_table,
-)
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredEvaluation,
     ScoredRun,
     score_folder,
 )
-from vehicle_pf_tracker.evaluation.tables import markdown
+from vehicle_pf_tracker.evaluation.tables import (
+    markdown,
+    overall_table,
+    ranks_table,
+    recording_table,
+    starts_table,
+)
 from vehicle_pf_tracker.offline.output_files import csv_text, make_folder, write_json, write_text
 from vehicle_pf_tracker.trackers.estimate import Mode
 
