@@ -337,7 +337,7 @@ def test_no_class_of_ours_hides_a_private_name_of_rclpys_classes(modules):
     assert "_parameter_overrides" in theirs
     heirs = (
         "ros.node.image_node", "ros.node.tracker_node",
-        "ros.node.process", "ros.traffic.traffic_node",
+        "ros.process", "ros.traffic.traffic_node",
     )  # fmt: skip
     for name in heirs:
         assert not names_defined(modules[name].tree) & theirs, name
