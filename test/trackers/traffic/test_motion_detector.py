@@ -103,6 +103,12 @@ def test_a_thin_rim_is_cut_off():
     assert edges.tolist() == [[20, 40, 60, 70]]
 
 
+def test_a_line_of_one_row_or_column_is_no_error():
+    lines = mask((10, 5, 150, 6), (3, 10, 4, 118))
+    edges, _ = BlobReader().read(lines, np.empty((0, 4)))
+    assert len(edges) >= 2
+
+
 def test_a_lorry_of_one_colour_does_not_melt_into_the_background():
     detector = MotionDetector()
     rng = np.random.default_rng(0)

@@ -20,9 +20,9 @@ predictions of the vehicles that are followed tell, and the size that vehicles h
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import cv2
 import numpy as np
@@ -38,7 +38,6 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
 )
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
-Pixels: TypeAlias = npt.NDArray[np.bool_]
 
 _LEAST_AREA = 0.0003
 """Smallest area of a vehicle, of the image: 23 px in 320 x 240."""
@@ -54,7 +53,7 @@ _PIECE = 0.8
 """Share of a blob inside a prediction above which it is a piece of that vehicle."""
 _REACH = 1.25
 """Distance from a prediction's centre, of its half size, within which a pixel can be its own."""
-_ASPECT, _ASPECT_SPREAD = np.log(0.8), 0.3
+_ASPECT, _ASPECT_SPREAD = math.log(0.8), 0.3
 """Usual logarithm of height over width, to start from, and its standard deviation."""
 _ASPECT_RATE = 0.02
 """Rate at which the usual aspect follows blobs of one vehicle each."""
@@ -68,12 +67,12 @@ _OWN = 0.15
 """Share of a blob above which a part of it can be a vehicle."""
 _SHAPED = 100
 """Least area in px of a blob that has a shape."""
-_FULLNESS, _FULLNESS_SPREAD = np.log(0.8), 0.2
+_FULLNESS, _FULLNESS_SPREAD = math.log(0.8), 0.2
 """Usual logarithm of a vehicle's share of its box, to start from, and its standard deviation."""
 _SIZE_SPREAD, _MOST_SIZE_COST = 0.2, 4.0
 """Standard deviation of the logarithm of a car's size, and most cost of another size: a lorry is
 twice as large, and has to stay whole."""
-_SPECK = np.log(0.4) / _SIZE_SPREAD
+_SPECK = math.log(0.4) / _SIZE_SPREAD
 """Deviation from the usual size below which a box is of leaves, captions or noise: a motorcycle has
 two thirds of a car's size, and a car beside many lorries half of the usual one."""
 _SIZES_NEEDED, _SIZE_MEMORY = 50, 0.998
@@ -84,12 +83,42 @@ _SCALE, _SINGULAR = 400.0, 1e-4
 all vehicles have driven on one line, the size beside it is taken to be the same."""
 
 
-@dataclass(frozen=True, slots=True)
-class Piece:
-    """Part of a vehicle: edges (4,) in px of the mask, and area in px."""
+class Piece(NamedTuple):
+    """Part of a vehicle: edges in px of the mask, and its area in px."""
 
-    edges: Array
+    left: float
+    top: float
+    right: float
+    bottom: float
     area: float
+
+    @property
+    def sides(self) -> tuple[float, float]:
+        """Width and height in px."""
+        return self.right - self.left, self.bottom - self.top
+
+    @property
+    def log_aspect(self) -> float:
+        """Logarithm of height over width."""
+        width, height = self.sides
+        return math.log(height / width)
+
+    @property
+    def log_fullness(self) -> float:
+        """Logarithm of the share of the box that moves."""
+        width, height = self.sides
+        return math.log(self.area / (width * height))
+
+    @property
+    def edges(self) -> Array:
+        """Left, top, right and bottom, (4,)."""
+        return np.array(self[:4])
+
+    def is_free(self, shape: tuple[int, ...]) -> bool:
+        """Tell whether no border of the image cuts the box."""
+        height, width = shape
+        inside = self.right < width - 1 and self.bottom < height - 1
+        return min(self.left, self.top) > 1 and inside
 
 
 class UsualSize:
@@ -97,33 +126,34 @@ class UsualSize:
 
     def __init__(self) -> None:
         self._squares, self._sums, self._count = np.zeros((3, 3)), np.zeros(3), 0
+        self._slopes: list[float] = []
 
-    def learn(self, edges: Array) -> None:
-        """Add the box (4,) of one vehicle; all count alike, near and far ones."""
-        size, place = _size_and_place(edges)
+    def learn(self, piece: Piece) -> None:
+        """Add the box of one vehicle; all count alike, near and far ones."""
+        size = math.sqrt(math.prod(piece.sides))
+        place = np.array([(piece.left + piece.right) / 2 / _SCALE, piece.bottom / _SCALE, 1.0])
         self._squares = _SIZE_MEMORY * self._squares + np.outer(place, place) / size**2
         self._sums = _SIZE_MEMORY * self._sums + place / size
         self._count += 1
 
-    def deviation(self, edges: Array) -> float:
+    def settle(self) -> None:
+        """Fit the usual sizes for the next image."""
+        if self._count >= _SIZES_NEEDED:
+            solved = np.linalg.lstsq(self._squares, self._sums, rcond=_SINGULAR)
+            self._slopes = solved[0].tolist()
+
+    def deviation(self, piece: Piece) -> float:
         """Logarithm of a box's size over the usual one, in its spread; 0 while none is known."""
-        if self._count < _SIZES_NEEDED:
+        if not self._slopes:
             return 0.0
-        size, place = _size_and_place(edges)
-        usual = float(place @ np.linalg.lstsq(self._squares, self._sums, rcond=_SINGULAR)[0])
-        return float(np.log(size / max(usual, 1.0))) / _SIZE_SPREAD
+        across, down, level = self._slopes
+        usual = ((piece.left + piece.right) / 2 * across + piece.bottom * down) / _SCALE + level
+        return math.log(math.sqrt(math.prod(piece.sides)) / max(usual, 1.0)) / _SIZE_SPREAD
 
-    def cost(self, edges: Array) -> float:
-        """Squared deviation of a box (4,), of a larger one not more than lorries cost."""
-        apart = self.deviation(edges)
+    def cost(self, piece: Piece) -> float:
+        """Squared deviation of a box, of a larger one not more than lorries cost."""
+        apart = self.deviation(piece)
         return apart**2 if apart < 0 else min(apart**2, _MOST_SIZE_COST)
-
-
-def _size_and_place(edges: Array) -> tuple[float, Array]:
-    """Geometric mean of a box's sides, and the middle of its lower edge with a 1 beside it."""
-    left, top, right, bottom = edges.tolist()
-    place = np.array([(left + right) / 2 / _SCALE, bottom / _SCALE, 1.0])
-    return float(np.sqrt((right - left) * (bottom - top))), place
 
 
 class BlobReader:
@@ -137,8 +167,8 @@ class BlobReader:
 
     def __init__(self, numbers: TrafficNumbers = SHIPPED) -> None:
         self._numbers = numbers
-        self._aspect = float(_ASPECT)
-        self._fullness = float(_FULLNESS)
+        self._aspect = _ASPECT
+        self._fullness = _FULLNESS
         self._sizes = UsualSize()
 
     def read(self, mask: Mask, predicted: Array) -> tuple[Array, Array]:
@@ -158,43 +188,43 @@ class BlobReader:
         fullness : (N,) array
             Share of each box that moves.
         """
+        self._sizes.settle()
         least = max(_LEAST_AREA * mask.size, _LEAST_PIECE)
         found: list[Piece] = []
         pieces: dict[int, list[Piece]] = {}
+        room = areas(predicted)
         for part, box in _components(mask):
-            members = np.flatnonzero(intersections(box, predicted) > _COVERED * areas(predicted))
+            members = np.flatnonzero(intersections(box, predicted) > _COVERED * room)
             if self._is_divided(box, predicted, members):
                 found += _divided(part, box, predicted[members])
                 continue
             for piece in self._apart(part, *box[:2].astype(int).tolist()):
                 self._learn_shape(piece, mask.shape, len(members))
                 inside = intersections(piece.edges, predicted)
-                if len(inside) and inside.max() > _PIECE * areas(piece.edges):
+                if len(inside) and inside.max() > _PIECE * math.prod(piece.sides):
                     pieces.setdefault(int(inside.argmax()), []).append(piece)
                 else:
                     found.append(piece)
         for own in pieces.values():
             found += self._grouped(own)
-        found = [
-            piece
-            for piece in found
-            if piece.area >= least
-            and (
-                self._sizes.deviation(piece.edges) > _SPECK or not _is_free(piece.edges, mask.shape)
-            )
-        ]
-        edges = np.array([piece.edges for piece in found]).reshape(-1, 4)
-        area = np.array([piece.area for piece in found])
-        return edges, area / areas(edges)
+        boxes = np.array([one for one in found if self._is_vehicle(one, least, mask.shape)])
+        boxes = boxes.reshape(-1, len(Piece._fields))
+        return boxes[:, :4], boxes[:, 4] / areas(boxes[:, :4])
 
-    def _apart(self, part: Pixels, x: int, y: int) -> list[Piece]:
+    def _is_vehicle(self, piece: Piece, least: float, shape: tuple[int, ...]) -> bool:
+        """Test whether a piece is large enough; one that the border cuts may be smaller."""
+        if piece.area < least:
+            return False
+        return self._sizes.deviation(piece) > _SPECK or not piece.is_free(shape)
+
+    def _apart(self, part: Mask, x: int, y: int) -> list[Piece]:
         """Divide a blob again and again, while its parts look more like vehicles than the whole."""
         whole = _piece(part, x, y)
-        if whole.area < _SHAPED:
+        if whole.area < _SHAPED or self._shape_cost(whole) <= self._numbers.apart:
             return [whole]
-        cuts = [_cut(part, axis) for axis in (0, 1)]
+        cuts = [_cut(part, axis) for axis in (0, 1) if part.shape[axis] > 1]
         pieces = [[_piece(half, x + u, y + v) for half, u, v in halves] for halves in cuts]
-        best = min((0, 1), key=lambda axis: self._worst(pieces[axis]))
+        best = min(range(len(cuts)), key=lambda axis: self._worst(pieces[axis]))
         if not self._are_several(pieces[best], whole):
             return [whole]
         return [piece for half, u, v in cuts[best] for piece in self._apart(half, x + u, y + v)]
@@ -218,9 +248,9 @@ class BlobReader:
 
     def _shape_cost(self, piece: Piece) -> float:
         """Squared standard deviations of aspect, fullness and size from the usual ones."""
-        aspect = self._aspect_cost(piece.edges[np.newaxis])[0]
-        fullness = np.log(piece.area / areas(piece.edges)) - self._fullness
-        return float(aspect + (fullness / _FULLNESS_SPREAD) ** 2 + self._sizes.cost(piece.edges))
+        aspect = (piece.log_aspect - self._aspect) / _ASPECT_SPREAD
+        fullness = (piece.log_fullness - self._fullness) / _FULLNESS_SPREAD
+        return aspect**2 + fullness**2 + self._sizes.cost(piece)
 
     def _is_divided(self, box: Array, predicted: Array, members: npt.NDArray[np.intp]) -> bool:
         """Test for several vehicles in a blob: none fits alone, and the aspects suggest it."""
@@ -230,35 +260,40 @@ class BlobReader:
         return bool(apart < self._aspect_cost(box[np.newaxis])[0] + _SPLIT_MARGIN)
 
     def _aspect_cost(self, edges: Array) -> Array:
-        return np.asarray(((_log_aspect(edges) - self._aspect) / _ASPECT_SPREAD) ** 2)
+        sides = np.maximum(edges[:, 2:] - edges[:, :2], 1.0)
+        return np.asarray(
+            ((np.log(sides[:, 1] / sides[:, 0]) - self._aspect) / _ASPECT_SPREAD) ** 2
+        )
 
     def _learn_shape(self, piece: Piece, shape: tuple[int, ...], members: int) -> None:
-        box = piece.edges
-        sides = box[2:] - box[:2]
-        if members == 1 and _is_free(box, shape) and sides.min() > _ASPECT_SIDE:
-            aspect = float(_log_aspect(box[np.newaxis])[0])
-            self._aspect += _ASPECT_RATE * (aspect - self._aspect)
-            self._sizes.learn(box)
-            fullness = float(np.log(piece.area / areas(box)))
-            self._fullness += _ASPECT_RATE * (fullness - self._fullness)
+        if members == 1 and piece.is_free(shape) and min(piece.sides) > _ASPECT_SIDE:
+            self._aspect += _ASPECT_RATE * (piece.log_aspect - self._aspect)
+            self._sizes.learn(piece)
+            self._fullness += _ASPECT_RATE * (piece.log_fullness - self._fullness)
 
 
-def _piece(part: Pixels, x: int, y: int) -> Piece:
-    """Make a piece of the pixels of a mask whose corner is at (x, y)."""
-    return Piece(_trimmed(part, x, y), float(part.sum()))
-
-
-def _components(mask: Mask) -> Iterator[tuple[Pixels, Array]]:
+def _components(mask: Mask) -> Iterator[tuple[Mask, Array]]:
     """Divide a mask into what hangs together: pixels within a box (4,), and this box."""
     count, labels, stats, _ = cv2.connectedComponentsWithStats(mask)
     for index in range(1, count):
         x, y, width, height, area = stats[index].tolist()
         if area >= _LEAST_PIECE:
             part = labels[y : y + height, x : x + width] == index
-            yield part, np.array([x, y, x + width, y + height], dtype=np.float64)
+            yield part.view(np.uint8), np.array([x, y, x + width, y + height], dtype=np.float64)
 
 
-def _cut(part: Pixels, axis: int) -> list[tuple[Pixels, int, int]]:
+def _piece(part: Mask, x: int, y: int) -> Piece:
+    """Make a piece of the pixels of a mask whose corner is at (x, y), without its thin rim."""
+    edges = []
+    for axis in (0, 1):
+        sums = cv2.reduce(part, axis, cv2.REDUCE_SUM, dtype=cv2.CV_32S).ravel()
+        kept = np.flatnonzero(sums >= _TRIMMED * sums.max())
+        edges.append((int(kept[0]), int(kept[-1]) + 1))
+    (left, right), (top, bottom) = edges
+    return Piece(x + left, y + top, x + right, y + bottom, int(sums.sum()))
+
+
+def _cut(part: Mask, axis: int) -> list[tuple[Mask, int, int]]:
     """Cut a blob between two rows, or columns, where the boxes of its parts have the least area.
 
     Each part comes with its left and upper end in the blob, whose borders all have pixels.
@@ -270,27 +305,16 @@ def _cut(part: Pixels, axis: int) -> list[tuple[Pixels, int, int]]:
     before = np.maximum.accumulate(high) - np.minimum.accumulate(low)
     behind = (np.maximum.accumulate(high[::-1]) - np.minimum.accumulate(low[::-1]))[::-1]
     counts = np.arange(1, len(lines))
-    sums = before[:-1] * counts + behind[1:] * (len(lines) - counts)
-    first = np.indices(part.shape)[axis] <= (sums.argmin() if len(sums) else 0)
+    first = int((before[:-1] * counts + behind[1:] * (len(lines) - counts)).argmin()) + 1
     halves = []
-    for half in (part & first, part & ~first):
-        u, v, width, height = cv2.boundingRect(half.astype(np.uint8))
-        halves.append((half[v : v + height, u : u + width], u, v))
+    for half, start in zip(np.split(part, [first], axis=axis), (0, first), strict=True):
+        u, v, width, height = cv2.boundingRect(np.ascontiguousarray(half))
+        cropped = half[v : v + height, u : u + width]
+        halves.append((cropped, u + start * axis, v + start * (1 - axis)))
     return halves
 
 
-def _is_free(edges: Array, shape: tuple[int, ...]) -> bool:
-    """Tell whether no border of the image cuts a box."""
-    height, width = shape
-    return bool(edges[:2].min() > 1 and edges[2] < width - 1 and edges[3] < height - 1)
-
-
-def _log_aspect(edges: Array) -> Array:
-    sides = np.maximum(edges[:, 2:] - edges[:, :2], 1.0)
-    return np.asarray(np.log(sides[:, 1] / sides[:, 0]))
-
-
-def _divided(part: Pixels, box: Array, predicted: Array) -> list[Piece]:
+def _divided(part: Mask, box: Array, predicted: Array) -> list[Piece]:
     """Give each pixel of a blob to the prediction that it is nearest to, in its half sizes."""
     rows, columns = np.nonzero(part)
     points = np.column_stack([columns, rows]) + box[:2] + 0.5
@@ -302,23 +326,15 @@ def _divided(part: Pixels, box: Array, predicted: Array) -> list[Piece]:
     for owner in range(len(predicted)):
         own = points[owners == owner]
         if len(own):
-            edges = np.concatenate([own.min(axis=0) - 0.5, own.max(axis=0) + 0.5])
-            pieces.append(Piece(edges, float(len(own))))
+            (left, top), (right, bottom) = own.min(axis=0) - 0.5, own.max(axis=0) + 0.5
+            pieces.append(Piece(left, top, right, bottom, len(own)))
     return pieces
-
-
-def _trimmed(part: Pixels, x: int, y: int) -> Array:
-    """Edges of a blob without its thin rim."""
-    by_column, by_row = part.sum(axis=0), part.sum(axis=1)
-    columns = np.flatnonzero(by_column >= _TRIMMED * by_column.max())
-    rows = np.flatnonzero(by_row >= _TRIMMED * by_row.max())
-    return np.array([x + columns[0], y + rows[0], x + columns[-1] + 1, y + rows[-1] + 1], float)
 
 
 def _joined(pieces: list[Piece]) -> Piece:
     """Join pieces of one vehicle; specks that happen to be in its prediction are none."""
     largest = max(piece.area for piece in pieces)
-    pieces = [piece for piece in pieces if piece.area > _NOTABLE * largest]
-    edges = np.array([piece.edges for piece in pieces])
-    box = np.concatenate([edges[:, :2].min(axis=0), edges[:, 2:].max(axis=0)])
-    return Piece(box, sum(piece.area for piece in pieces))
+    left, top, right, bottom, area = zip(
+        *(piece for piece in pieces if piece.area > _NOTABLE * largest), strict=True
+    )
+    return Piece(min(left), min(top), max(right), max(bottom), sum(area))
