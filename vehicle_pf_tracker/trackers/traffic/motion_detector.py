@@ -24,7 +24,6 @@ one colour hides a place for seconds, and would melt in.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import astuple
 from typing import Any
 
 import cv2
@@ -324,8 +323,8 @@ def _reduced(frame: Frame) -> tuple[npt.NDArray[np.uint8], float]:
 
 def _edges(tracks: Sequence[TrackEstimate]) -> Array:
     """Edges (T, 4) of vehicles in px."""
-    boxes = np.array([astuple(track.box) for track in tracks]).reshape(-1, 4)
-    return np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
+    corners = [(*box.corners[0], *box.corners[2]) for box in (track.box for track in tracks)]
+    return np.array(corners).reshape(-1, 4)
 
 
 def _predicted(tracks: Sequence[TrackEstimate]) -> Array:
