@@ -184,24 +184,27 @@ def test_a_signal_ends_it_well(bench, start, folder, number, loop):
     assert "Failed to publish" not in process.output  # a log line after the end of ROS
 
 
-def test_a_folder_that_vanishes_and_appears_again(bench, start, folder):
+@pytest.fixture
+def vanished(bench, start, folder):
+    """A source whose folder has vanished, and its images until then."""
     process = start(folder, loop=True)
     images = bench.collect(Image, "image")
     bench.wait_for(lambda: images)
     folder.rename(folder.with_name("elsewhere"))
     process.wait_for_output("trying again after 1 s")
+    return process, images
+
+
+def test_a_folder_that_vanishes_and_appears_again(bench, vanished, folder):
+    process, images = vanished
     folder.with_name("elsewhere").rename(folder)
     process.wait_for_output("images again after")
     before = len(images)
     bench.wait_for(lambda: len(images) > before + 1)
 
 
-def test_a_signal_is_obeyed_while_the_source_is_away(bench, start, folder):
-    process = start(folder, loop=True)
-    images = bench.collect(Image, "image")
-    bench.wait_for(lambda: images)
-    folder.rename(folder.with_name("elsewhere"))
-    process.wait_for_output("trying again after 1 s")
+def test_a_signal_is_obeyed_while_the_source_is_away(vanished):
+    process, _ = vanished
     process.send(signal.SIGTERM)
     assert process.wait() == 0
 

@@ -49,7 +49,7 @@ from vehicle_pf_tracker.recordings.source import Source, frame_at
 from vehicle_pf_tracker.road.plane import Pair
 
 Document: TypeAlias = dict[str, Any]
-"""What was drawn, by section, as a file of `pick` has it."""
+"""Drawn shapes by section, as in a file of `pick`."""
 
 PAIR_FORM = "{pixel: [u, v], road: [x, y]}, …"
 TARGETS, PAIRS = "targets", "pairs"

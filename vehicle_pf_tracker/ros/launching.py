@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the launch files share, and files of cameras.
+"""Arguments, nodes and files that the launch files share; files of cameras.
 
 `launch`, which is not on PyPI, is imported where it is used.
 """
@@ -66,6 +66,11 @@ ARGUMENTS = {
     "foxglove": ("false", "Start Foxglove's bridge, and write a layout for the node"),
 }  # fmt: skip
 """Default and description of each argument of ``tracker.launch.py``."""
+
+_KEYS = ("topic", "variant", "transport", "target", "params_file", "parameters")
+"""Of a camera in a file of cameras."""
+_TARGET = ("x", "y", "width", "height")
+"""Of its target."""
 
 
 def declared(arguments: Mapping[str, tuple[str, str]]) -> list[Any]:
@@ -151,10 +156,6 @@ def parameter_file(given: str, variant: str, share: str) -> str:
     path = Path(given) if given else Path(share, "config", f"{find_node(variant).name}.yaml")
     check_yaml_file(path, "parameter file")
     return str(path)
-
-
-_KEYS = ("topic", "variant", "transport", "target", "params_file", "parameters")
-_TARGET = ("x", "y", "width", "height")
 
 
 @cache

@@ -152,6 +152,7 @@ def test_a_killed_node_goes_on_with_its_target(bench, start_node, folder):
     first.wait()
     second = start_node("pf", *keep)
     second.wait_for_output("going on with the target")
+    second.wait_for_output(", following ")  # in its last words before it waits for images
     modes = bench.collect(DiagnosticArray, "/pf_tracker/mode")
     bench.publish_until(
         lambda: modes and modes[-1].status[0].message == "TRACKING", camera,

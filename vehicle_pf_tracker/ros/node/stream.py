@@ -124,7 +124,7 @@ class Stream(NodeStream):
     @property
     def target_words(self) -> str:
         """Description of the next target, for people."""
-        box = self._configuration.session.target.box
+        box = self.asked or self._configuration.session.target.box
         return f"following {box}" if box else "waiting for a target on ~/set_target"
 
     @property

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What `fusion` believes of the vehicle, what it has learnt, and what one step is made from."""
+"""State of `fusion`, its memory of the vehicle, and the input of one step."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Work(Flag):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class State:
-    """What is believed of the vehicle after a frame.
+    """Belief about the vehicle after a frame.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ class State:
 
 @dataclass(slots=True, eq=False)
 class Memory:
-    """What has been learnt of the vehicle and its surroundings; it changes in place."""
+    """Appearance, motion and surroundings learnt so far; it changes in place."""
 
     appearance: Appearance = field(init=False)
     camera: CameraFlow = field(default_factory=CameraFlow)
