@@ -22,8 +22,9 @@ from vehicle_pf_tracker.trackers.traffic.association import FrameDetections, fit
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
 from vehicle_pf_tracker.trackers.traffic.detections import DetectionEvidence, Detections
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
-from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
+from vehicle_pf_tracker.trackers.traffic.parameters import RoadMotionParameters, TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.track import predict
+from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 SIZE = (320, 240)
 SCORE = 0.8
@@ -118,3 +119,13 @@ def test_a_detector_that_misses_all_vehicles_at_once_has_failed():
 
 def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
     assert min(missed([200.0, 200.0])) > 0
+
+
+def test_what_drives_at_the_horizon_does_not_make_vehicles_small():
+    tracker = TrafficTracker(TrafficParameters(motion=RoadMotionParameters(horizon=0.2)))
+    frame = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    for way in range(0, 120, 3):
+        tracker.step(frame, Detections.make([(40 + way, 20, 30, 30)]))
+    for way in range(0, 120, 3):
+        estimates = tracker.step(frame, Detections.make([(40 + way, 150, 60, 50)]))
+    assert any(one.identity for one in estimates if one.box.y > 100)

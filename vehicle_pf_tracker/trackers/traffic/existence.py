@@ -57,6 +57,9 @@ _SURELY_DRIVES = 50.0
 _SMALLEST = 0.25
 """Size of the smallest vehicle on the road, of the usual one, by which large ones count more: a
 motorcycle among lorries. Smaller ones that drive are parts of vehicles."""
+_LARGEST = 1.0
+"""Largest size on the road that is learnt: a box that reaches the horizon has no known distance,
+and one that was far too large would make all others small for ever."""
 _SIZE_MEMORY = 0.998
 """Weight of the detections before in the usual size: some minutes."""
 _STANDING = 0.2
@@ -158,7 +161,7 @@ class Existence:
         if track.has_driven or track.given:
             if track.given or track.state.speed_ratio > _MOVING:
                 self._evidence.learn(sample, True)
-                size = track.state.road_size
+                size = min(track.state.road_size, _LARGEST)
                 self._sizes = _SIZE_MEMORY * self._sizes + (size, size**2)
             return False
         known = track.confirmed or track.log_odds >= self.parameters.birth.evidence
