@@ -14,6 +14,8 @@
 
 """Evidence that tracks are vehicles."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from traffic_samples import DRIVE, track
@@ -22,9 +24,8 @@ from vehicle_pf_tracker.trackers.traffic.association import FrameDetections, fit
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
 from vehicle_pf_tracker.trackers.traffic.detections import DetectionEvidence, Detections
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
-from vehicle_pf_tracker.trackers.traffic.parameters import RoadMotionParameters, TrafficParameters
+from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.track import predict
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 SIZE = (320, 240)
 SCORE = 0.8
@@ -122,10 +123,13 @@ def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
 
 
 def test_what_drives_at_the_horizon_does_not_make_vehicles_small():
-    tracker = TrafficTracker(TrafficParameters(motion=RoadMotionParameters(horizon=0.2)))
-    frame = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
-    for way in range(0, 120, 3):
-        tracker.step(frame, Detections.make([(40 + way, 20, 30, 30)]))
-    for way in range(0, 120, 3):
-        estimates = tracker.step(frame, Detections.make([(40 + way, 150, 60, 50)]))
-    assert any(one.identity for one in estimates if one.box.y > 100)
+    evidence = DetectionEvidence()
+    existence = Existence(TrafficParameters(), evidence)
+    for bottom in (50, 200):
+        one = track(1, 40.0, bottom - 30.0, confirmed=True)
+        for way in range(0, 120, 3):
+            predict([one], 48.0, 1.0 if way else 0.0, replace(DRIVE, acceleration=0.001))
+            detections = found(evidence, (40 + way, bottom - 50, 60, 50))
+            one.state.measure(detections.edges[0], np.ones(4))
+            existence.detected(one, detections, 0, 0.0)
+        assert one.has_driven
