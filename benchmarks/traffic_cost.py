@@ -36,14 +36,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from laboratory.scenes.mot_folder import write_mot_folder
+from laboratory.scenes.traffic_scene import TrafficScene
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.scenes.compositing import stream
-from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.scenes.roads import Carriageway, any_car, countryside
 from vehicle_pf_tracker.scenes.scene import Camera
-from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector

@@ -37,12 +37,12 @@ from pathlib import Path
 import numpy as np
 
 from laboratory.scenes import make_traffic_scene
+from laboratory.scenes.mot_folder import write_mot_folder
 from laboratory.traffic_spread import HEAD, judged, shortened, summary
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION
 from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
-from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, TrafficNumbers
 
 TRAINING = {

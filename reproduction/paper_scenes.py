@@ -29,12 +29,13 @@ from typing import TypeAlias
 
 from laboratory import scenes as laboratory_scenes
 from laboratory.scenes.drives import cross, dense, near_traffic, tree_shadows
+from laboratory.scenes.turns import RADIUS, TurningDrive
 from vehicle_pf_tracker.core.truth import TOTAL_BELOW
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes import catalogue
 from vehicle_pf_tracker.scenes.catalogue import SceneKind
 from vehicle_pf_tracker.scenes.compositing import stream
-from vehicle_pf_tracker.scenes.drive import LANE, RADIUS, Drive, DriveParameters
+from vehicle_pf_tracker.scenes.drive import LANE, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.drives import (
     bridge_at,
     clear,
@@ -43,7 +44,6 @@ from vehicle_pf_tracker.scenes.drives import (
     posts_at,
     sign_at,
     trees_at,
-    turning,
 )
 from vehicle_pf_tracker.scenes.models import Model, Pace
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
@@ -129,7 +129,7 @@ def van_at(drive: Drive, share: float, frames: float) -> list[Actor]:
 
 
 def _turn_past_trees(parameters: DriveParameters, seed: int) -> Scene:
-    drive = turning(parameters, seed)
+    drive = TurningDrive(parameters, seed)
     return drive.scene(trees_at(drive, (0.2, 0.36)), behind=())
 
 
@@ -196,9 +196,8 @@ BEFORE, PARTIAL, FULL = 40, 30, 20
 
 def _turn_behind_trees(parameters: DriveParameters, seed: int) -> Scene:
     """Turn behind the thick crowns of two trees on the near side."""
-    drive = turning(parameters, seed)
+    drive = TurningDrive(parameters, seed)
     rng = stream(seed, "trees")
-    assert drive.corner is not None
     top = drive.row - RADIUS * math.sin(ELEVATION) - 1.1 * drive.target.size[1]
     foot = drive.road.rows.stop + 40
     front = [
@@ -293,4 +292,4 @@ def make_scene(
     name: str, *, seed: int = 0, settings: Mapping[str, object] | Sequence[str] = ()
 ) -> Scene:
     """Make the scene `name`, as `vehicle_pf_tracker.scenes.catalogue.make_scene` does."""
-    return catalogue.make_scene(name, seed=seed, settings=settings, scenes=SCENES)
+    return catalogue.scene_of(SCENES, name, seed=seed, settings=settings)

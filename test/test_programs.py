@@ -28,11 +28,12 @@ import cv2
 import pytest
 from unmeasured import unmeasured_environment
 
+from laboratory.scenes import make_traffic_scene
+from laboratory.scenes.mot_folder import write_mot_folder
 from reproduction.catalogue import EXPERIMENTS
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines import VARIABLE, baseline_python
-from vehicle_pf_tracker.scenes.catalogue import make_scene, make_traffic_scene
-from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
+from vehicle_pf_tracker.scenes.catalogue import make_scene
 
 pytestmark = pytest.mark.slow
 

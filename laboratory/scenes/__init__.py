@@ -34,14 +34,19 @@ from laboratory.scenes.drives import (
     illumination,
     shadows,
 )
+from laboratory.scenes.flow import TrafficSceneParameters
 from laboratory.scenes.road import RoadSceneParameters, road
 from laboratory.scenes.traffic_close import CloseParameters, close_scene
 from laboratory.scenes.traffic_perspective import PerspectiveParameters, perspective_scene
+from laboratory.scenes.traffic_scene import TrafficScene, traffic
+from laboratory.scenes.turns import turn, turn_occluded
 from vehicle_pf_tracker.scenes import catalogue
 from vehicle_pf_tracker.scenes.catalogue import SceneKind
 from vehicle_pf_tracker.scenes.drive import DriveParameters
 
 SCENES = catalogue.SCENES | {
+    "turn": SceneKind(DriveParameters, turn, "the target turns into a side road"),
+    "turn_occluded": SceneKind(DriveParameters, turn_occluded, "it turns behind a house"),
     "cross": SceneKind(DriveParameters, cross, "a coach crosses the road in front of the target"),
     "dense": SceneKind(DriveParameters, dense, "full lanes; vehicles hide parts of the target"),
     "shadows": SceneKind(ShadowParameters, shadows, "strong shadows of trees across the road"),
@@ -52,7 +57,39 @@ SCENES = catalogue.SCENES | {
 }
 """All scenes with one target, by name."""
 
-TRAFFIC_SCENES = catalogue.TRAFFIC_SCENES | {
+
+def _traffic(summary: str, **settings: object) -> SceneKind[TrafficScene]:
+    return SceneKind(TrafficSceneParameters, traffic, summary, settings)
+
+
+TRAFFIC_SCENES: dict[str, SceneKind[TrafficScene]] = {
+    "traffic-pair": _traffic(
+        "a car overtakes behind a lorry, which hides it",
+        vehicles=2, directions=1, lanes=2, lorries=0.5, frames=240,
+    ),
+    "traffic-lanes": _traffic(
+        "twenty vehicles; the fast ones change lanes",
+        vehicles=20, changing=True, gap=14.0, lorries=0.2, frames=350,
+    ),
+    "traffic-queue": _traffic(
+        "all wait at a red light, and go on", vehicles=24, lorries=0.0, flow="queue", frames=540
+    ),
+    "traffic-waves": _traffic("stop and go", vehicles=30, flow="waves", gap=12.0, frames=600),
+    "traffic-lorries": _traffic(
+        "lorries hide several cars at once",
+        vehicles=24, lanes=2, lorries=0.25, gap=12.0, frames=500,
+    ),
+    "traffic-bridge": _traffic(
+        "a bridge hides every vehicle once", vehicles=16, bridges=1, bridge_width=90.0
+    ),
+    "traffic-forty": _traffic(
+        "forty vehicles, about 180 total occlusions",
+        vehicles=40, bridges=5, bridge_width=58.0, lorries=0.05, frames=650,
+    ),
+    "traffic-eighty": _traffic(
+        "eighty vehicles in eight lanes",
+        vehicles=80, lanes=4, gap=9.0, changing=True, flow="waves", frames=600,
+    ),
     "traffic-gantry": SceneKind(
         PerspectiveParameters,
         perspective_scene,
@@ -108,8 +145,8 @@ TRAFFIC_SCENES = catalogue.TRAFFIC_SCENES | {
         "a close road before a shaking camera; each vehicle is in view for about a second",
         {"vehicles": 24, "speed": 50.0, "gap": 22.0, "frames": 420, "frame_rate": 25.0},
     ),
-}
-"""All scenes with many vehicles, by name."""
+}  # fmt: skip
+"""The scenes with many vehicles, by name."""
 
-make_scene = partial(catalogue.make_scene, scenes=SCENES)
-make_traffic_scene = partial(catalogue.make_traffic_scene, scenes=TRAFFIC_SCENES)
+make_scene = partial(catalogue.scene_of, SCENES)
+make_traffic_scene = partial(catalogue.scene_of, TRAFFIC_SCENES)

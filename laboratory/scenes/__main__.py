@@ -21,11 +21,11 @@ import sys
 from pathlib import Path
 
 from laboratory.scenes import SCENES, TRAFFIC_SCENES, make_scene, make_traffic_scene
+from laboratory.scenes.mot_folder import SIMULATED_DETECTORS, write_mot_folder
 from laboratory.scenes.traffic_close import BRIEF, CloseScene
 from laboratory.scenes.traffic_perspective import PerspectiveScene, road_file
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.cli.synth import record_scene
-from vehicle_pf_tracker.scenes.mot_folder import SIMULATED_DETECTORS, write_mot_folder
 
 
 def main() -> int:

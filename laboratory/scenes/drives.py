@@ -21,12 +21,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from laboratory.scenes.turns import side_road
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, overlap, stream
 from vehicle_pf_tracker.scenes.drive import LANE, PAINTS, Drive, DriveParameters
-from vehicle_pf_tracker.scenes.models import Bend, Model, Pace, Pose, standing
-from vehicle_pf_tracker.scenes.roads import convoy, side_road
+from vehicle_pf_tracker.scenes.models import Model, Pace, Pose, standing, straight
+from vehicle_pf_tracker.scenes.roads import convoy
 from vehicle_pf_tracker.scenes.scene import DISTURBANCES, Actor, OutdoorCamera, Scene
 from vehicle_pf_tracker.scenes.scenery import value_noise
 from vehicle_pf_tracker.scenes.solids import ELEVATION, SHADE
@@ -216,7 +217,7 @@ def _crossing_coach(drive: Drive, frame: float) -> list[Actor]:
     heading = CROSSING - math.pi if drive.rightward else -CROSSING
     pace = Pace(((frame, 0.9 * drive.parameters.speed),))
     model = Model(coach((190, 60, 48), (230, 226, 216)), drive.scale)
-    return list(model.on(Bend(Pose(x, y, heading, drive.scale), pace)))
+    return list(model.on(straight(Pose(x, y, heading, drive.scale), pace)))
 
 
 def _crossing(drive: Drive, frame: float) -> tuple[float, float]:

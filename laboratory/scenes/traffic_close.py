@@ -27,18 +27,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from laboratory.scenes.flow import TrafficSceneParameters, drive
+from laboratory.scenes.mot_folder import SimulatedDetector, false_alarm
 from laboratory.scenes.perspective import RoadCamera, RoadMarks, ground_picture, looking
 from laboratory.scenes.traffic_perspective import LANE_WIDTH, OnRoad, actors_of, any_car, order_of
+from laboratory.scenes.traffic_scene import TrafficScene, VehicleTruth
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.camera import Lens
 from vehicle_pf_tracker.scenes.compositing import Image, stream
-from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters, drive
-from vehicle_pf_tracker.scenes.mot_folder import SimulatedDetector, false_alarm
 from vehicle_pf_tracker.scenes.scene import MARGIN, Disturbance, OutdoorCamera
-from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, VehicleTruth
 
 WIDTH, HEIGHT = 384, 256
 _FIELD = math.radians(44)

@@ -25,6 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from laboratory.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from laboratory.scenes.perspective import (
     RoadCamera,
     RoadMarks,
@@ -32,6 +33,7 @@ from laboratory.scenes.perspective import (
     ground_picture,
     looking,
 )
+from laboratory.scenes.traffic_scene import TrafficScene
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.road import format_pairs
@@ -39,11 +41,9 @@ from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.camera import Lens
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.scenes.compositing import stream
-from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from vehicle_pf_tracker.scenes.roads import PAINTS
 from vehicle_pf_tracker.scenes.scene import Actor, Camera
 from vehicle_pf_tracker.scenes.solids import Face
-from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene
 from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon, tinted, van
 
 WIDTH, HEIGHT = 640, 360

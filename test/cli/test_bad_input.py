@@ -196,7 +196,6 @@ def test_a_scene_setting_that_does_not_fit(fails, tmp_path, words, message):
         (("import", "none.mp4", "out"), "none.mp4", 1),
         (("import", "notes.mp4", "out"), "notes.mp4", 1),
         (("synth", "bars2", "out"), "no scene 'bars2' (did you mean 'bars'?)", 1),
-        (("synth", "trafic-pair", "out"), "'trafic-pair' (did you mean 'traffic-pair'?)", 1),
         (("synth", "bar", "out", "--set", "widht=3"), "setting 'widht' (did you mean 'width'?)", 1),
         (("params", "mfps"), "no variant 'mfps' (did you mean 'mfpf'?)", 1),
     ],

@@ -83,10 +83,6 @@ def test_a_scene_that_is_not_done_leaves_nothing(tmp_path, number):
     assert end_in_the_middle(tmp_path, number, "synth", "highway", "rec") == []
 
 
-def test_a_folder_of_many_vehicles_that_is_not_done_leaves_nothing(tmp_path):
-    assert end_in_the_middle(tmp_path, signal.SIGTERM, "synth", "traffic-pair", "mot") == []
-
-
 def test_a_video_that_is_not_done_leaves_nothing(tmp_path):
     assert end_in_the_middle(tmp_path, signal.SIGTERM, "synth", "highway", "a.mp4") == []
 

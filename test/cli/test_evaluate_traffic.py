@@ -18,10 +18,10 @@ import sys
 
 import pytest
 
+from laboratory.scenes import make_traffic_scene
+from laboratory.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.evaluation import baselines as client
-from vehicle_pf_tracker.scenes.catalogue import make_traffic_scene
-from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 
 WORKER = """
 import json, sys

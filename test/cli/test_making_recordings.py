@@ -102,22 +102,3 @@ def test_the_list_names_scenes_and_settings(capsys):
     out = capsys.readouterr().out
     assert all(f"{name}: {kind.summary}" in out for name, kind in SCENES.items())
     assert "  width=30.0 [px, from 0 to 120]: " in out
-    assert "traffic-pair: a car overtakes behind a lorry, which hides it\n" in out
-    assert "  the settings of traffic with vehicles=2, directions=1, " in out
-
-
-def test_traffic_becomes_a_folder_of_mot_challenge(tmp_path, capsys):
-    call("synth", "traffic-pair", tmp_path / "pair", "--set", "frames=3")
-    assert (
-        "3 frames of 640x360 px at 30 frames/s, with truth of 2 vehicles" in capsys.readouterr().out
-    )
-    assert len(list((tmp_path / "pair" / "img1").iterdir())) == 3
-    assert (tmp_path / "pair" / "det" / "good.txt").is_file()
-
-
-@pytest.mark.parametrize(
-    "words", [["clip.mp4"], ["out", "--format", "raw"], ["out", "--overwrite"]]
-)
-def test_traffic_becomes_nothing_else(tmp_path, capsys, words):
-    assert main(["synth", "traffic-pair", str(tmp_path / words[0]), *words[1:]]) == 2
-    assert "is written as a new MOTChallenge folder" in capsys.readouterr().err

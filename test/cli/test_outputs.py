@@ -188,7 +188,6 @@ def hold(here):
         ("folder", "out", ["report", "out"]),
         ("path", "out", ["import", "frames", "out"]),
         ("path", "out", ["synth", "bar", "out"]),
-        ("path", "out", ["synth", "traffic-pair", "out"]),
         ("path", "out.mp4", ["synth", "bar", "out.mp4"]),
         ("path", "out.yaml", ["pick", "bag", "-o", "out.yaml"]),
         ("path", "out.png", ["road", "calibrate", "bag", *PAIRS, "--grid", "out.png"]),

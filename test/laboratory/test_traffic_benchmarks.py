@@ -18,6 +18,8 @@ import numpy as np
 import pytest
 
 from benchmarks.traffic_cost import made, place
+from laboratory.scenes import make_traffic_scene
+from laboratory.scenes.mot_folder import write_mot_folder
 from laboratory.traffic_clips import Row, read_truth, report
 from laboratory.traffic_fit import draw_settings, fitted
 from laboratory.traffic_occluders import judged
@@ -25,8 +27,6 @@ from laboratory.traffic_perturbed import PERTURBATIONS
 from laboratory.traffic_spread import Run, summary
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
-from vehicle_pf_tracker.scenes.catalogue import make_traffic_scene
-from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, TrafficNumbers
 
 

@@ -20,13 +20,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from laboratory.scenes.turns import Bend
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.models import (
-    Bend,
     Model,
     Pace,
     Pose,
     moving,
+    straight,
     swaying,
     wave,
 )
@@ -70,7 +71,9 @@ def test_a_right_turn_of_one_who_drives_left_goes_away_too():
 
 
 def test_swaying_adds_its_swings():
-    pose = swaying(Bend(START, Pace.steady(1.0)), wave(2, 40, 0), wave(0.5, 20, math.pi / 2))(10)
+    pose = swaying(straight(START, Pace.steady(1.0)), wave(2, 40, 0), wave(0.5, 20, math.pi / 2))(
+        10
+    )
     assert (pose.x, pose.y) == pytest.approx((112, 199.5))
     box = swaying(moving(BOX, 1), wave(2, 40, 0), wave(0.5, 20, math.pi / 2))(10)
     assert (box.x, box.y, box.width) == pytest.approx((22, 19.5, 4))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`synth`: render a synthetic scene to a recording or a video, or traffic to a folder."""
+"""`synth`: render a synthetic scene to a recording or a video."""
 
 from __future__ import annotations
 
@@ -24,7 +24,6 @@ from typing import Any
 from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notice
 from vehicle_pf_tracker.cli.requests import Names, OverwriteOption, option, positional, switch
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.output_files import replacing
@@ -32,14 +31,7 @@ from vehicle_pf_tracker.offline.pictures import NO_ENCODER, SUFFIX, has_encoder,
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.recordings.importing import FORMATS
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
-from vehicle_pf_tracker.scenes.catalogue import (
-    SCENES,
-    TRAFFIC_SCENES,
-    make_scene,
-    make_traffic_scene,
-)
-from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters
-from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
+from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.scenes.scene import Scene
 
 
@@ -48,13 +40,12 @@ class Request(OverwriteOption):
     """Request of `synth`."""
 
     scene: str | None = positional(
-        nargs="?", choices=Names((*SCENES, *TRAFFIC_SCENES)), metavar="SCENE",
-        help=f"one of: {', '.join((*SCENES, *TRAFFIC_SCENES))}",
+        nargs="?", choices=Names(tuple(SCENES)), metavar="SCENE",
+        help=f"one of: {', '.join(SCENES)}",
     )  # fmt: skip
     out: Path | None = positional(
         nargs="?", metavar="OUT",
-        help="rosbag2 folder to write; or a video, NAME.mp4, with its truth in NAME.csv; the "
-        "scenes traffic-* are written as MOTChallenge folders",
+        help="rosbag2 folder to write; or a video, NAME.mp4, with its truth in NAME.csv",
     )  # fmt: skip
     list: bool = switch(help="list the scenes and their settings")
     seed: int = option(default=0, help="changes textures, noise and traffic (default: 0)")
@@ -74,14 +65,6 @@ def run(request: Request) -> int:
         return 0
     if request.scene is None or request.out is None:
         raise UsageError("synth needs SCENE and OUT; `synth --list` shows the scenes")
-    if request.scene in TRAFFIC_SCENES:
-        return _run_traffic(request, request.scene, request.out)
-    if request.scene not in SCENES:
-        names = (*SCENES, *TRAFFIC_SCENES)
-        raise InputError(
-            f"there is no scene {request.scene!r}{suggestion(request.scene, names)}; choose one of "
-            f"{', '.join(names)}"
-        )
     scene = make_scene(request.scene, seed=request.seed, settings=request.settings)
     facts = (
         f"{request.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
@@ -98,21 +81,6 @@ def run(request: Request) -> int:
     if not has_encoder():
         tell_notice(NO_ENCODER)
     print(f"{facts}; the truth is in {truth}, and begins with --target {_words(box)}")
-    return 0
-
-
-def _run_traffic(request: Request, name: str, out: Path) -> int:
-    if request.format or request.overwrite or out.suffix == SUFFIX:
-        raise UsageError(
-            f"{name} is written as a new MOTChallenge folder: no video, --format or --overwrite"
-        )
-    scene = make_traffic_scene(name, seed=request.seed, settings=request.settings)
-    with claimed([out], [], overwrite=False), counting("rendered") as progress:
-        write_mot_folder(scene, out, request.seed, progress)
-    print(
-        f"{out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
-        f"at {scene.frame_rate:g} frames/s, with truth of {len(scene.vehicles)} vehicles"
-    )
     return 0
 
 
@@ -164,12 +132,6 @@ def _listing() -> Iterator[str]:
     for name, kind in SCENES.items():
         yield f"{name}: {kind.summary}"
         yield from _settings(kind.parameters)
-    for name, traffic in TRAFFIC_SCENES.items():
-        yield f"{name}: {traffic.summary}"
-        changed = (f"{key}={value}" for key, value in traffic.settings.items())
-        yield f"  the settings of traffic with {', '.join(changed)}"
-    yield "traffic:"
-    yield from _settings(TrafficSceneParameters)
 
 
 def _settings(parameters: type[Any]) -> Iterator[str]:

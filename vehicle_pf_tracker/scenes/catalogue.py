@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The scenes by name, with one target or with many vehicles, and how to make one."""
+"""The scenes by name, and how to make one."""
 
 from __future__ import annotations
 
@@ -26,9 +26,7 @@ from vehicle_pf_tracker.scenes import drives
 from vehicle_pf_tracker.scenes.compositing import check_seed
 from vehicle_pf_tracker.scenes.drive import DriveParameters, HighwayParameters, highway
 from vehicle_pf_tracker.scenes.drives import BarParameters, BrakingParameters, HidingParameters
-from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters
 from vehicle_pf_tracker.scenes.scene import Scene
-from vehicle_pf_tracker.scenes.traffic_scene import TrafficScene, traffic
 
 SceneT = TypeVar("SceneT")
 
@@ -76,94 +74,40 @@ SCENES: dict[str, SceneKind[Scene]] = {
     ),
     "clear": SceneKind(DriveParameters, drives.clear, "nothing in the way of the target"),
     "braking": SceneKind(BrakingParameters, drives.braking, "the speed changes under a bridge"),
-    "turn": SceneKind(DriveParameters, drives.turn, "the target turns into a side road"),
-    "turn_occluded": SceneKind(DriveParameters, drives.turn_occluded, "it turns behind a house"),
 }
-"""The scenes with one target, by name."""
-
-
-def _traffic(summary: str, **settings: object) -> SceneKind[TrafficScene]:
-    return SceneKind(TrafficSceneParameters, traffic, summary, settings)
-
-
-TRAFFIC_SCENES: dict[str, SceneKind[TrafficScene]] = {
-    "traffic-pair": _traffic(
-        "a car overtakes behind a lorry, which hides it",
-        vehicles=2, directions=1, lanes=2, lorries=0.5, frames=240,
-    ),
-    "traffic-lanes": _traffic(
-        "twenty vehicles; the fast ones change lanes",
-        vehicles=20, changing=True, gap=14.0, lorries=0.2, frames=350,
-    ),
-    "traffic-queue": _traffic(
-        "all wait at a red light, and go on", vehicles=24, lorries=0.0, flow="queue", frames=540
-    ),
-    "traffic-waves": _traffic("stop and go", vehicles=30, flow="waves", gap=12.0, frames=600),
-    "traffic-lorries": _traffic(
-        "lorries hide several cars at once",
-        vehicles=24, lanes=2, lorries=0.25, gap=12.0, frames=500,
-    ),
-    "traffic-bridge": _traffic(
-        "a bridge hides every vehicle once", vehicles=16, bridges=1, bridge_width=90.0
-    ),
-    "traffic-forty": _traffic(
-        "forty vehicles, about 180 total occlusions",
-        vehicles=40, bridges=5, bridge_width=58.0, lorries=0.05, frames=650,
-    ),
-    "traffic-eighty": _traffic(
-        "eighty vehicles in eight lanes",
-        vehicles=80, lanes=4, gap=9.0, changing=True, flow="waves", frames=600,
-    ),
-}  # fmt: skip
-"""The scenes with many vehicles, by name."""
+"""The scenes by name."""
 
 
 Settings: TypeAlias = Mapping[str, object] | Sequence[str]
 """Parameters of a scene by name, or ``key=value`` words."""
 
 
-def make_scene(
-    name: str,
-    *,
-    seed: int = 0,
-    settings: Settings = (),
-    scenes: Mapping[str, SceneKind[Scene]] = SCENES,
-) -> Scene:
-    """Make the scene `name`.
+def make_scene(name: str, *, seed: int = 0, settings: Settings = ()) -> Scene:
+    """Make the scene `name` of `SCENES`; see `scene_of`."""
+    return scene_of(SCENES, name, seed=seed, settings=settings)
+
+
+def scene_of(
+    scenes: Mapping[str, SceneKind[SceneT]], name: str, *, seed: int = 0, settings: Settings = ()
+) -> SceneT:
+    """Make the scene `name` of a catalogue.
 
     Parameters
     ----------
+    scenes : mapping of str to SceneKind
+        The scenes to choose from.
     name : str
         A key of `scenes`.
     seed : int
         Integer >= 0: changes textures, noise and all that is random in the scene.
     settings : mapping or sequence of str
         Scene parameters by name, or ``key=value`` words.
-    scenes : mapping of str to SceneKind
-        The scenes to choose from.
 
     Raises
     ------
     InputError
         If the scene or a setting is unknown (naming the known ones), or a value does not fit.
     """
-    return _make(scenes, name, seed, settings)
-
-
-def make_traffic_scene(
-    name: str,
-    *,
-    seed: int = 0,
-    settings: Settings = (),
-    scenes: Mapping[str, SceneKind[TrafficScene]] = TRAFFIC_SCENES,
-) -> TrafficScene:
-    """Make the scene `name` with many vehicles; see `make_scene`."""
-    return _make(scenes, name, seed, settings)
-
-
-def _make(
-    scenes: Mapping[str, SceneKind[SceneT]], name: str, seed: int, settings: Settings
-) -> SceneT:
     if name not in scenes:
         raise InputError(
             f"there is no scene {name!r}{suggestion(name, scenes)}; choose one of "

@@ -30,13 +30,13 @@ import numpy as np
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.compositing import Colour, Image, stream
 from vehicle_pf_tracker.scenes.models import (
-    Bend,
     Course,
     Model,
     Pace,
     Pose,
     Wave,
     moving,
+    straight,
     swaying,
     wave,
 )
@@ -49,7 +49,6 @@ from vehicle_pf_tracker.scenes.roads import (
     convoy,
     countryside,
     dual_carriageway,
-    side_road,
     town,
 )
 from vehicle_pf_tracker.scenes.scene import (
@@ -63,16 +62,12 @@ from vehicle_pf_tracker.scenes.scene import (
     stamps_parameter,
 )
 from vehicle_pf_tracker.scenes.scenery import bridge
-from vehicle_pf_tracker.scenes.solids import ELEVATION, Face
+from vehicle_pf_tracker.scenes.solids import Face
 from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon, suv, truck
 
 SIZES = {"640x480": (640, 480), "768x576": (768, 576)}
 FREE = 10
 """Free pixels between the vehicle and the image's sides in the first and the last frame."""
-RADIUS = 60.0
-"""Radius of a turn on the ground, px."""
-SIDE_ROAD = 44.0
-"""Width of each of the two lanes of a side road, px."""
 LANE = 1
 """The target's lane, counted from the far side; there is one farther and one nearer."""
 
@@ -122,18 +117,9 @@ class Drive:
         Seed of the scene.
     pace : Pace or None
         The target's speed over time, from frame 0; None keeps the speed chosen.
-    corner : float or None
-        The place where the target turns into a side road, away from the viewer; such a road has
-        no second carriageway.
     """
 
-    def __init__(
-        self,
-        parameters: DriveParameters,
-        seed: int,
-        pace: Pace | None = None,
-        corner: float | None = None,
-    ) -> None:
+    def __init__(self, parameters: DriveParameters, seed: int, pace: Pace | None = None) -> None:
         self.parameters, self.seed = parameters, seed
         self.image_size = SIZES[parameters.resolution]
         self.width, self.height = (size + 2 * MARGIN for size in self.image_size)
@@ -145,17 +131,16 @@ class Drive:
         self.target = Model(self.faces, self.scale)
         self.start = MARGIN + FREE + self.target.size[0] / 2 + self.rng.uniform(2, 6)
         self.pace = pace or Pace.steady(parameters.speed)
-        self.corner = corner
 
     @property
     def frame_count(self) -> int:
         """Number of frames until the target gets near the edge of the image it leaves by."""
-        if self.corner is None:
-            end = self.width - MARGIN - FREE - self.target.size[0] / 2 - 2
-        else:
-            up = (self.row - MARGIN - FREE - self.target.size[0]) / math.sin(ELEVATION)
-            end = self.corner + RADIUS * math.pi / 2 + up - RADIUS
-        return int(self.frame_at(end)) + 1
+        return int(self.frame_at(self._end)) + 1
+
+    @property
+    def _end(self) -> float:
+        """Place of the target's middle in the last frame."""
+        return self.width - MARGIN - FREE - self.target.size[0] / 2 - 2
 
     @property
     def row(self) -> float:
@@ -176,11 +161,8 @@ class Drive:
 
     def course(self, s: float, pace: Pace, lane: int = LANE) -> Course:
         """Make the course along `lane` of a vehicle whose middle is at `s` when `pace` starts."""
-        heading, left = (0.0, 1) if self.rightward else (math.pi, -1)
-        start = Pose(self.x(s), self.road.middle(lane), heading, self.scale)
-        if self.corner is None:
-            return Bend(start, pace)
-        return Bend(start, pace, self.corner - s, RADIUS, left * math.pi / 2)
+        heading = 0.0 if self.rightward else math.pi
+        return straight(Pose(self.x(s), self.road.middle(lane), heading, self.scale), pace)
 
     def sways(self, course: Course, name: str = "sway") -> Course:
         """Add a human hand to a course: at most 1.5 px along the road and 0.5 across."""
@@ -212,14 +194,11 @@ class Drive:
 
     def backdrop(self) -> Image:
         """Draw the empty road in its surroundings."""
+        return self._ground((self.road, self.opposite), stream(self.seed, "backdrop"))
+
+    def _ground(self, roads: Sequence[Carriageway], rng: np.random.Generator) -> Image:
         draw = town if self.parameters.surroundings == "town" else countryside
-        rng = stream(self.seed, "backdrop")
-        if self.corner is None:
-            return draw((self.height, self.width), (self.road, self.opposite), rng)
-        picture = draw((self.height, self.width), (self.road,), rng)
-        middle = self.x(self.corner + RADIUS + 0.5 * SIDE_ROAD)
-        side_road(picture, (middle, -1.0), (middle, self.road.top + 4.0), 2 * SIDE_ROAD, rng)
-        return picture
+        return draw((self.height, self.width), roads, rng)
 
     def scene(self, front: Iterable[Actor] = (), *, behind: Iterable[Actor] | None = None) -> Scene:
         """Make the scene: the target between what is `behind` it and what is in `front` of it.

@@ -16,18 +16,17 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.compositing import Image, Sprite, stream
-from vehicle_pf_tracker.scenes.drive import LANE, RADIUS, Drive, DriveParameters
+from vehicle_pf_tracker.scenes.drive import LANE, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.models import Pace, moving, standing
 from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene, noise_parameter, stamps_parameter
 from vehicle_pf_tracker.scenes.scenery import bridge as make_bridge
-from vehicle_pf_tracker.scenes.scenery import house, pillar, plain, post, sign, tree
-from vehicle_pf_tracker.scenes.solids import ELEVATION, draw
+from vehicle_pf_tracker.scenes.scenery import pillar, plain, post, sign, tree
+from vehicle_pf_tracker.scenes.solids import draw
 from vehicle_pf_tracker.scenes.vehicles import car, coach
 
 WIDTH, HEIGHT = 640, 480
@@ -237,31 +236,3 @@ def braking(parameters: BrakingParameters, seed: int) -> Scene:
     )
     mean = (before + after) / 2 / before
     return drive.scene(bridge_at(drive, 0.5, parameters.hidden * mean))
-
-
-def turn(parameters: DriveParameters, seed: int) -> Scene:
-    """Make the scene: the target turns into a side road, away from the viewer."""
-    return turning(parameters, seed).scene(behind=())
-
-
-def turn_occluded(parameters: DriveParameters, seed: int) -> Scene:
-    """Make the scene: the target turns into a side road behind a house."""
-    drive = turning(parameters, seed)
-    return drive.scene(house_at_corner(drive), behind=())
-
-
-def turning(parameters: DriveParameters, seed: int) -> Drive:
-    """Make a drive that turns into a side road a little before the middle of the image."""
-    corner = Drive(parameters, seed).along(0.42 + stream(seed, "corner").uniform(-0.02, 0.02))
-    return Drive(parameters, seed, corner=corner)
-
-
-def house_at_corner(drive: Drive) -> list[Actor]:
-    """Build a house on the near side that hides the turn of `drive`, which has a corner."""
-    assert drive.corner is not None
-    length, height = drive.target.size
-    near, far = drive.corner - 0.7 * length, drive.corner + RADIUS + 0.6 * length
-    left = min(drive.x(near), drive.x(far))
-    top = drive.row - RADIUS * math.sin(ELEVATION) - 1.2 * height
-    box = Box(left, top, far - near, drive.road.rows.stop + 50 - top)
-    return house(box, (196, 178, 150), stream(drive.seed, "house"))

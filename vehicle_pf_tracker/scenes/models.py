@@ -107,45 +107,16 @@ class Pace:
         return high
 
 
-@dataclass(frozen=True, slots=True)
-class Bend:
-    """Drives straight, then along an arc, and straight on; as flat ground looks from `ELEVATION`.
+def straight(start: Pose, pace: Pace) -> Course:
+    """Return the course that goes straight on from `start`, as flat ground looks."""
+    east, north = math.cos(start.heading), math.sin(start.heading)
 
-    Attributes
-    ----------
-    start : Pose
-        The pose from which `pace` counts.
-    pace : Pace
-        Distance on the ground, px.
-    straight, radius : float
-        Length before the arc and radius of the arc, px.
-    angle : float
-        Change of heading, at most pi/2, to the left if positive, rad; 0 goes straight for ever.
-    """
+    def course(frame: float) -> Pose:
+        gone = pace(frame)
+        y = start.y - gone * north * math.sin(ELEVATION)
+        return replace(start, x=start.x + gone * east, y=y)
 
-    start: Pose
-    pace: Pace
-    straight: float = 0.0
-    radius: float = 1.0
-    angle: float = 0.0
-
-    def __call__(self, frame: float) -> Pose:
-        """Give the pose in `frame`."""
-        gone = self.pace(frame)
-        before = gone if self.angle == 0 else min(gone, self.straight)
-        arc = min(gone - before, self.radius * abs(self.angle))
-        after = gone - before - arc
-        side = math.copysign(1.0, self.angle)
-        turn = side * arc / self.radius
-        along = before + self.radius * abs(math.sin(turn)) + after * math.cos(turn)
-        across = side * self.radius * (1 - math.cos(turn)) + after * math.sin(turn)
-        east, north = _rotated(along, across, self.start.heading)
-        return Pose(
-            self.start.x + east,
-            self.start.y - north * math.sin(ELEVATION),
-            self.start.heading + turn,
-            self.start.scale,
-        )
+    return course
 
 
 def swaying(
@@ -158,11 +129,6 @@ def swaying(
         return replace(placed, x=placed.x + surge(frame), y=placed.y + weave(frame))
 
     return swayed
-
-
-def _rotated(along: float, across: float, heading: float) -> tuple[float, float]:
-    cosine, sine = math.cos(heading), math.sin(heading)
-    return along * cosine - across * sine, along * sine + across * cosine
 
 
 PLATE: Colour = (226, 226, 216)

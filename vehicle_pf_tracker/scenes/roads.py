@@ -29,7 +29,7 @@ from typing import TypeAlias
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, cells_inside
+from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite
 from vehicle_pf_tracker.scenes.models import SHADOW_OPACITY, moving
 from vehicle_pf_tracker.scenes.scene import Actor, Path
 from vehicle_pf_tracker.scenes.scenery import PAINT, asphalt, concrete, foliage, grass, value_noise
@@ -197,28 +197,6 @@ def town(shape: tuple[int, int], roads: Sequence[Carriageway], rng: np.random.Ge
     hedge(picture, 0, top - 60, rng)
     _pave(picture, roads, rng)
     return picture
-
-
-def side_road(
-    picture: Image,
-    begin: tuple[float, float],
-    end: tuple[float, float],
-    width: float,
-    rng: np.random.Generator,
-) -> None:
-    """Draw a road with a dashed middle line from `begin` to `end` (x, y), `width` px across."""
-    (x0, y0), (x1, y1) = begin, end
-    sides = (-width / 2 - 3, width / 2 + 3), (-width / 2, width / 2)
-    for (left, right), light in zip(sides, (1.25, 1.0), strict=True):
-        outline = np.array([(x0 + left, y0), (x0 + right, y0), (x1 + right, y1), (x1 + left, y1)])
-        window, inside = cells_inside(outline, *picture.shape[:2])
-        rows, columns = inside.shape
-        ground = asphalt((columns, rows), rng).transpose(1, 0, 2) * np.float32(light)
-        picture[window.slices][inside] = ground[inside]
-    for row in range(max(round(y0), 0), min(round(y1), picture.shape[0])):
-        if row % 24 < 13:
-            column = round(x0 + (x1 - x0) * (row - y0) / (y1 - y0))
-            picture[row, max(column - 1, 0) : max(column + 1, 0)] = (206, 206, 198)
 
 
 def _pave(picture: Image, roads: Sequence[Carriageway], rng: np.random.Generator) -> None:

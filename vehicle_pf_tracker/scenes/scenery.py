@@ -116,7 +116,7 @@ def concrete(shape: tuple[int, int], rng: np.random.Generator) -> Image:
     return _tinted((164, 161, 152), shade)
 
 
-def _standing(colour: Array, box: Box) -> Actor:
+def opaque(colour: Array, box: Box) -> Actor:
     """Make an opaque thing that stands in `box` for ever."""
     return Actor(Sprite(colour.clip(0, 255), np.ones(colour.shape[:2])), standing(box))
 
@@ -126,14 +126,14 @@ def pillar(middle: float, width: float, height: int, rng: np.random.Generator) -
     columns = max(round(width), 1)
     light = 0.34 - 0.12 * np.abs(np.linspace(-0.6, 1, columns))
     colour = concrete((height, columns), rng) * light[np.newaxis, :, np.newaxis]
-    return [_standing(colour, Box(middle - width / 2, 0.0, width, height))]
+    return [opaque(colour, Box(middle - width / 2, 0.0, width, height))]
 
 
 def post(middle: float, width: float, top: float, bottom: float) -> list[Actor]:
     """Make a lamp post or a pole, lit from the right."""
     light = np.linspace(0.55, 1.05, max(round(4 * width), 4))
     colour = np.asarray(STEEL) * light[np.newaxis, :, np.newaxis]
-    return [_standing(colour, Box(middle - width / 2, top, width, bottom - top))]
+    return [opaque(colour, Box(middle - width / 2, top, width, bottom - top))]
 
 
 def sign(
@@ -164,24 +164,7 @@ def sign(
     colour[3:-3, 3:6] = colour[3:-3, -6:-3] = 226
     for line in range(14, rows - 18, 22):
         _lettering(colour[line : line + 11, 14 : 14 + int(columns * rng.uniform(0.4, 0.8))], rng)
-    return [*posts, _standing(colour, Box(middle - width / 2, top, width, bottom - top))]
-
-
-def house(box: Box, walls: Colour, rng: np.random.Generator) -> list[Actor]:
-    """Make the rear of a house with two rows of windows under a roof of tiles, filling `box`."""
-    rows, columns = round(box.height), round(box.width)
-    colour = concrete((rows, columns), rng) / 164 * np.asarray(walls)
-    eaves = round(rows * 0.3)
-    colour[:eaves] = concrete((eaves, columns), rng) / 164 * np.asarray((138.0, 76.0, 58.0))
-    colour[:eaves:4] *= 0.82
-    colour[eaves : eaves + 3] *= 0.6
-    for top in (round(rows * 0.4), round(rows * 0.7)):
-        for left in range(10, columns - 18, 26):
-            colour[top : top + round(rows * 0.17), left : left + 13] = (62, 72, 84)
-            colour[
-                top + round(rows * 0.17) : top + round(rows * 0.17) + 2, left - 1 : left + 14
-            ] = 205
-    return [_standing(colour, box)]
+    return [*posts, opaque(colour, Box(middle - width / 2, top, width, bottom - top))]
 
 
 def tree(

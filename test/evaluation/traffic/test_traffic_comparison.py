@@ -19,6 +19,8 @@ import json
 import numpy as np
 import pytest
 
+from laboratory.scenes import make_traffic_scene
+from laboratory.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.traffic.comparison import (
     MOTION,
@@ -28,8 +30,6 @@ from vehicle_pf_tracker.evaluation.traffic.comparison import (
     write_traffic_report,
 )
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
-from vehicle_pf_tracker.scenes.catalogue import make_traffic_scene
-from vehicle_pf_tracker.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 

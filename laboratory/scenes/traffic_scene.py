@@ -21,11 +21,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from laboratory.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.scenes.compositing import PixelWindow, overlap, stream
-from vehicle_pf_tracker.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from vehicle_pf_tracker.scenes.roads import PAINTS, Carriageway, Lane, Vehicle, any_car, countryside
 from vehicle_pf_tracker.scenes.scene import Actor, Camera, Path, Stage
 from vehicle_pf_tracker.scenes.scenery import bridge
