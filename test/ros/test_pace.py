@@ -21,7 +21,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from vehicle_pf_tracker.ros.source_outputs import Pace
+from vehicle_pf_tracker.ros.video_source import Pace
 
 MS = 1_000_000
 

@@ -99,14 +99,9 @@ class Request(RosOptions, TopicOption, OverwriteOption):
     )
     loop: bool = switch("-l", help="restart at the end")
     delay: float = option("-d", type=_seconds, default=0.0, metavar="S", help="wait before playing")
-    start_paused: bool = switch(help="begin paused, until ~/resume is called")
     topics: Sequence[str] = option(
         type=_absolute, nargs="+", default=[], metavar="TOPIC", help="play these topics only"
     )
-    exclude: Sequence[str] = option(
-        "--exclude", "--exclude-topics", type=_absolute, nargs="+", default=[], metavar="TOPIC",
-        help="play all but these topics",
-    )  # fmt: skip
     remap: Sequence[tuple[str, str]] = option(
         "-m", nargs="+", action="extend", default=[], type=_remapping,
         metavar="FROM:=TO", help="publish a recorded topic under another name",

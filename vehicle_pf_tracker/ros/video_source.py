@@ -19,7 +19,7 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,9 @@ from typing import Any
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -34,11 +37,13 @@ from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs
 from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, Footage, Picture
 from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
+from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
 from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_nodes
-from vehicle_pf_tracker.ros.source_outputs import ImageOutputs, Pace, read_calibration
 
 _NAME = "video_source"
+_DEPTH = 5
+"""Images kept for a slow subscriber. Reliable, since that serves both kinds of subscribers."""
 _LATE = 1.0
 """Seconds behind the source's rate that are worth a warning: more than a hiccup of the disk."""
 _SAY_AGAIN = 10.0
@@ -55,7 +60,7 @@ _LOOK_EVERY = 0.1
 _USAGE = """\
 usage: video_source SOURCE [--ros-args -p NAME:=VALUE -r image:=TOPIC ...]
 SOURCE is a video file, a folder of images, a camera's index or a stream's URL. Parameters: source,
-fps, loop, frame_id, compressed, jpeg_quality, camera_info_url."""
+fps, loop, frame_id."""
 
 
 @dataclass(frozen=True)
@@ -71,13 +76,6 @@ class Settings:
     )  # fmt: skip
     loop: bool = parameter(False, "Begin a video or a folder again at its end", read_only=True)
     frame_id: str = parameter("camera", "Frame of the images' headers", read_only=True)
-    compressed: bool = parameter(
-        False, "Publish JPEG images too, on image/compressed", read_only=True
-    )
-    jpeg_quality: int = parameter(95, "Quality of the JPEG images", bounds=(1, 100), read_only=True)
-    camera_info_url: str = parameter(
-        "", "Calibration YAML, a path or file:///URL; published as camera_info", read_only=True
-    )
 
 
 def declare(node: Node) -> Settings:
@@ -98,6 +96,47 @@ def declare(node: Node) -> Settings:
     return settings
 
 
+class Pace:
+    """Stamps for the images of one pass through a source.
+
+    Images of a file keep the intervals that it states: the first is stamped by the clock, and the
+    others follow, so that stamps do not carry the jitter of this process. Live images are stamped
+    by the clock as they come.
+
+    Parameters
+    ----------
+    clock : callable
+        Returns the present time in ns.
+    stop : threading.Event
+        Ends every wait.
+    """
+
+    def __init__(self, clock: Callable[[], int], stop: threading.Event) -> None:
+        self._clock, self._stop, self._is_live = clock, stop, False
+        self._began: tuple[int, int, float] | None = None
+        self.last = 0
+
+    def begin(self, *, is_live: bool) -> None:
+        """Begin a pass, of images that come by themselves where `is_live`."""
+        self._began, self._is_live = None, is_live
+
+    def stamp(self, recorded_ns: int) -> int:
+        """Return the stamp of an image with the source's own time, once it is due.
+
+        It is later than any before. Returns early when the process ends.
+        """
+        if self._is_live:
+            self.last = max(self._clock(), self.last + 1)
+            return self.last
+        if self._began is None:
+            self._began = recorded_ns, max(self._clock(), self.last + 1), time.monotonic()
+        first, stamped, when = self._began
+        passed = recorded_ns - first
+        self._stop.wait(max(when + passed / 1e9 - time.monotonic(), 0.0))
+        self.last = stamped + passed
+        return self.last
+
+
 class VideoSourceNode(Node):  # type: ignore[misc]
     """Publishes images of a source from a thread of its own.
 
@@ -116,7 +155,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
     Raises
     ------
     InputError
-        If there is no source, or a parameter or the calibration cannot be used.
+        If there is no source, or a parameter cannot be used.
     """
 
     def __init__(self, source: str = "", **keywords: Any) -> None:
@@ -126,11 +165,11 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         if not self._source_name:
             raise InputError("give a source: `video_source SOURCE`, or -p source:=SOURCE")
         self._settings = settings
-        url = settings.camera_info_url
-        self._outputs = ImageOutputs(
-            self,
-            jpeg_quality=settings.jpeg_quality if settings.compressed else None,
-            calibration=read_calibration(url) if url else None,
+        self._image = self.create_publisher(
+            Image,
+            "image",
+            QoSProfile(depth=_DEPTH),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
         self._is_live = False
         self._stop = threading.Event()
@@ -216,8 +255,9 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         header.stamp.sec, header.stamp.nanosec = divmod(stamp, 1_000_000_000)
         if not self._shown:
             width, height = frame_size(picture.frame)
-            self.get_logger().info(f"{width}x{height} px on {self._outputs.topic}")
-        self._outputs.publish(header, picture.frame)
+            self.get_logger().info(f"{width}x{height} px on {self._image.topic_name}")
+        if self._image.get_subscription_count():
+            self._image.publish(image_message(header, picture.frame))
         self._shown += 1
         self._note_image(stamp)
 

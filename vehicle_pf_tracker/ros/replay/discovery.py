@@ -71,13 +71,10 @@ class Spinner:
             self._executor.spin_once(timeout_sec=min(left, _SLICE))
         return True
 
-    def until_time(self, moment: float, unless: Callable[[], bool] = lambda: False) -> None:
-        """Wait until the monotonic clock shows `moment` s; one callback runs even if it is late.
-
-        `unless` ends the wait early.
-        """
+    def until_time(self, moment: float) -> None:
+        """Wait until the monotonic clock shows `moment` s; one callback runs even if it is late."""
         left = 0.0
-        while left >= 0 and not unless():
+        while left >= 0:
             self.check()
             self._executor.spin_once(timeout_sec=min(max(left, 0.0), _SLICE))
             left = moment - time.monotonic()

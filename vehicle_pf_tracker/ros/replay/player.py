@@ -17,15 +17,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 
 from rclpy.node import Node
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
-from vehicle_pf_tracker.ros.replay.controls import Controls, Pace, PlaybackClock
 from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Lookout, Spinner
+from vehicle_pf_tracker.ros.replay.pacing import Pace, PlaybackClock
 from vehicle_pf_tracker.ros.replay.publishing import TopicPublisher, make_publishers
 from vehicle_pf_tracker.ros.replay.replay_options import Progress, ReplayOptions, ReplayReport
 from vehicle_pf_tracker.ros.replay.tracker_link import Targets, TrackerLink, starting_target
@@ -75,10 +75,7 @@ class Player:
         self._links: list[TrackerLink] = []
         self._frame = 0
         self._skipped: list[str] = []
-        rate = options.rate or (None if options.lockstep else 1.0)
-        self._pace = Pace(rate)
-        length = self._span()[1] * 1e-9
-        self._controls = Controls(node, rate or 0.0, length, is_paused=options.start_paused)
+        self._pace = Pace(options.rate or (None if options.lockstep else 1.0))
         self._clock = PlaybackClock(node, self._pace, options.clock) if options.clock else None
 
     def run(self) -> ReplayReport:
@@ -163,63 +160,30 @@ class Player:
             for link in self._links:
                 link.answers.begin_pass()
             targets.begin_pass()
-            position: float | None = 0.0
-            while position is not None:
-                position = self._play_from(position, targets)
+            self._play_once(targets)
             self._await_acknowledgement()
             self._await_last_answers()
             if not self._options.loop:
                 return
 
-    def _play_from(self, position: float, targets: Targets) -> float | None:
-        """Play from `position` s to the end; return another position if the user asks for it."""
-        begin_ns, length_ns = self._span()
-        self._pace.restart()
-        for message in self._selected(position):
-            if self._is_image(message):
-                targets.before(self._frame + 1)
-            self._await_turn(message)
-            if (target := self._controls.take_target()) is not None:
-                return target
-            if self._publish(message) and self._is_image(message):
-                self._follow(message)
-            now = (message.log_time_ns - begin_ns) * 1e-9
-            self._controls.reach(now)
-            if self._is_image(message):
-                self._on_progress(Progress(self._frames, now, length_ns * 1e-9))
-        return None
-
-    def _await_turn(self, message: RecordedMessage) -> None:
-        """Wait until a message is due, or the user asks for another position."""
-        controls = self._controls
-        while controls.target is None:
-            has_changed = controls.watch()
-            if not controls.is_paused:
-                self._spinner.until_time(self._pace.due(message.log_time_ns), has_changed)
-            elif controls.steps:
-                controls.steps -= 1
-                return
-            else:
-                self._spinner.until(has_changed)
-            if not has_changed():
-                return
-            self._pace.set_rate(controls.rate or None)
-
-    def _selected(self, position: float) -> Iterator[RecordedMessage]:
-        options, duration = self._options, self._options.playback_duration
-        return self._recording.messages(
-            set(self._publishers),
-            options.start_offset + position,
-            None if duration is None else max(duration - position, 0.0),
-        )
-
-    def _span(self) -> tuple[int, int]:
-        """Log time at which the part to play begins, and its length, in ns."""
-        begin_ns = self._recording.start_ns + round(self._options.start_offset * 1e9)
+    def _play_once(self, targets: Targets) -> None:
+        options = self._options
+        begin_ns = self._recording.start_ns + round(options.start_offset * 1e9)
         length_ns = max(self._recording.end_ns - begin_ns, 0)
-        if self._options.playback_duration is not None:
-            length_ns = min(length_ns, round(self._options.playback_duration * 1e9))
-        return begin_ns, length_ns
+        if options.playback_duration is not None:
+            length_ns = min(length_ns, round(options.playback_duration * 1e9))
+        for message in self._recording.messages(
+            set(self._publishers), options.start_offset, options.playback_duration
+        ):
+            is_image = self._is_image(message)
+            if is_image:
+                targets.before(self._frame + 1)
+            self._spinner.until_time(self._pace.due(message.log_time_ns))
+            if self._publish(message) and is_image:
+                self._follow(message)
+            if is_image:
+                position = (message.log_time_ns - begin_ns) * 1e-9
+                self._on_progress(Progress(self._frames, position, length_ns * 1e-9))
 
     def _is_image(self, message: RecordedMessage) -> bool:
         return message.topic == self._recording.image_topic

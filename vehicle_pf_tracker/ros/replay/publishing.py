@@ -189,8 +189,7 @@ def _make_publisher(
 def _check_names(recording: Recording, options: ReplayOptions) -> None:
     known = {topic.name for topic in recording.topics}
     played = {_played_name(topic, options) for topic in recording.topics}
-    chosen = {*options.topics, *options.exclude}
-    unknown = chosen - known | {*options.remap} - known - played
+    unknown = {*options.topics} - known | {*options.remap} - known - played
     if unknown:
         raise InputError(
             f"the recording {recording.path} has no topic {', '.join(sorted(unknown))}; "
@@ -207,8 +206,7 @@ def _check_names(recording: Recording, options: ReplayOptions) -> None:
 
 
 def _is_chosen(topic: TopicInfo, options: ReplayOptions) -> bool:
-    is_named = not options.topics or topic.name in options.topics
-    return is_named and topic.name not in options.exclude
+    return not options.topics or topic.name in options.topics
 
 
 def _is_decompressed(topic: TopicInfo, options: ReplayOptions) -> bool:

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import yaml
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.offline.estimates import EstimateRow
@@ -41,12 +41,8 @@ class ReplayOptions:
         Begin again at the end; stamps go back then.
     delay : float
         Wait so many seconds before the first message.
-    start_paused : bool
-        Begin paused, until ``~/resume`` or ``~/play_next`` is called.
     topics : tuple of str
         Play these topics only; empty for all. The image topic is among them only if named.
-    exclude : tuple of str
-        Play all but these.
     remap : mapping of str to str
         Recorded topic to the name it is published under.
     clock : float or None
@@ -74,9 +70,7 @@ class ReplayOptions:
     playback_duration: float | None = None
     loop: bool = False
     delay: float = 0.0
-    start_paused: bool = False
     topics: tuple[str, ...] = ()
-    exclude: tuple[str, ...] = ()
     remap: Mapping[str, str] = field(default_factory=dict)
     clock: float | None = None
     wait_for_subscribers: bool = False
@@ -148,43 +142,29 @@ class ReplayReport:
     interrupted: bool = False
 
 
-_DEEPEST = 100_000
-"""Messages; so many small ones are kept without harm, and a larger number is a mistake."""
-
-
 def recorded_qos(offered: str, depth: int) -> QoSProfile:
-    """Return the QoS to publish a recorded topic with.
+    """Return the QoS to publish a recorded topic with: reliable, and latched if it was.
 
-    Latched topics (transient local) stay latched, with their depth. All are published reliably:
-    that suits best-effort subscriptions too, and lock-step needs it.
+    Reliable publishers suit best-effort subscriptions too, and lock-step needs them.
 
     Parameters
     ----------
     offered : str
         The recorded profiles as the recording's YAML text; may be empty or damaged.
     depth : int
-        Depth of topics that are not latched.
+        Number of messages to keep.
     """
-    profiles = [one for one in _listed(offered) if isinstance(one, dict)]
+    profiles = _listed(offered)
     # rosbag2 writes names since Jazzy, and the numbers of rmw before.
-    is_latched = profiles and all(
-        one.get("durability") in ("transient_local", 1) for one in profiles
-    )
-    if not is_latched:
-        return QoSProfile(depth=depth)
-    depths = [one.get("depth") for one in profiles]
-    known = [one for one in depths if isinstance(one, int) and 0 < one <= _DEEPEST]
-    is_all = any(one.get("history") in ("keep_all", 2) for one in profiles)
-    return QoSProfile(
-        history=HistoryPolicy.KEEP_ALL if is_all else HistoryPolicy.KEEP_LAST,
-        depth=max(known, default=1),
-        durability=DurabilityPolicy.TRANSIENT_LOCAL,
-    )
+    latched = ("transient_local", 1)
+    if profiles and all(one.get("durability") in latched for one in profiles):
+        return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    return QoSProfile(depth=depth)
 
 
-def _listed(text: str) -> list[Any]:
+def _listed(text: str) -> list[dict[str, Any]]:
     try:
         found = yaml.safe_load(text)
     except (yaml.YAMLError, ValueError, RecursionError):
         return []
-    return found if isinstance(found, list) else []
+    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
