@@ -101,7 +101,9 @@ def table(results: Sequence[Result]) -> str:
 def main() -> int:
     """Run all systems over all cases."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("sequences", type=Path, help="folder of recordings or frame folders")
+    parser.add_argument(
+        "sequences", type=Path, nargs="+", help="folders of recordings or frame folders"
+    )
     parser.add_argument("--cameras", type=Path, default=Path("benchmarks/cameras.csv"))
     parser.add_argument("--changes", nargs="+", default=list(CHANGES), choices=list(CHANGES))
     parser.add_argument("--seed", type=int, default=0, help="seed of cases and trackers")

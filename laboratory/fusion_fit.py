@@ -243,7 +243,9 @@ def report_progress(done: int, total: int | None) -> None:
 def main() -> int:
     """Fit, judge, write both."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("sequences", type=Path, help="folder of recordings or frame folders")
+    parser.add_argument(
+        "sequences", type=Path, nargs="+", help="folders of recordings or frame folders"
+    )
     parser.add_argument("--cameras", type=Path, default=Path("benchmarks/cameras.csv"))
     parser.add_argument("--budget", type=int, default=48, help="settings that are tried")
     parser.add_argument("--cases", type=int, default=3, help="cases of each sequence to fit to")

@@ -156,7 +156,9 @@ def reliability_figure(results: Sequence[Result]) -> Figure:
 def main() -> int:
     """Run, and write tables and figure."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("sequences", type=Path, help="folder of recordings or frame folders")
+    parser.add_argument(
+        "sequences", type=Path, nargs="+", help="folders of recordings or frame folders"
+    )
     parser.add_argument("--cameras", type=Path, default=Path("benchmarks/cameras.csv"))
     parser.add_argument("--seeds", type=int, default=5, help="seeds of the plain sequences")
     parser.add_argument("--hard", type=int, default=6, help="hard cases of each sequence")
