@@ -18,7 +18,6 @@ import os
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -91,60 +90,3 @@ def test_the_folder_of_ones_choice_is_used(copy, tmp_path):
     index.write_bytes(b"torn")
     told = run(copy, tmp_path / "cache", NUMBA_CACHE_DIR=str(folder))
     assert told.startswith("8 0 compiled kernels cannot be kept on disk (")
-
-
-FIRST_START = """
-from vehicle_pf_tracker.image.kernels.interface import load_kernels
-load_kernels("numba")
-from vehicle_pf_tracker.image.kernels.numba_windows import place_windows
-print(len(place_windows.stats.cache_hits), len(place_windows.stats.cache_misses))
-"""
-
-
-@pytest.mark.slow
-def test_a_first_start_lets_another_process_compile(tmp_path):
-    pytest.importorskip("numba", reason="numba is not installed")
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
-    command = [sys.executable, "-c", FIRST_START]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["1", "0"]  # loaded: somebody else has compiled it
-
-
-SLEEPER = """
-import os, pathlib, time
-pathlib.Path("pid").write_text(str(os.getpid()))
-time.sleep(60)
-"""
-
-
-def is_running(process):
-    """Test whether there is such a process that nobody only has to collect."""
-    try:
-        return Path("/proc", process, "stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux can do it")
-def test_a_process_that_compiles_ends_with_the_one_that_started_it(tmp_path):
-    (tmp_path / "sleeper.py").write_text(SLEEPER)
-    code = (
-        "import sys; sys.path.insert(0, '.')\n"
-        "from vehicle_pf_tracker.image.kernels.interface import compile_elsewhere\n"
-        "compile_elsewhere('sleeper')\n"
-    )
-    parent = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path)
-    child = None
-    try:
-        deadline = time.monotonic() + 30
-        while not child and time.monotonic() < deadline:
-            time.sleep(0.05)
-            child = (tmp_path / "pid").exists() and (tmp_path / "pid").read_text()
-        assert child
-    finally:
-        parent.kill()
-        parent.wait()
-    deadline = time.monotonic() + 10
-    while is_running(child) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert not is_running(child)

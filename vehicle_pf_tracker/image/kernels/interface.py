@@ -12,19 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The kernels that measure windows: interface, implementation in OpenCV and numpy, and choice.
-
-numba's are compiled for the first time in a process of their own.
-"""
+"""The kernels that measure windows: interface, implementation in OpenCV and numpy, and choice."""
 
 from __future__ import annotations
 
 import functools
 import importlib
 import importlib.util
-import os
-import subprocess
-import sys
 from collections.abc import Sequence
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -95,10 +89,6 @@ class Kernels:
 
 CHOICES = ("auto", "opencv", "numba")
 
-_NUMBA = "vehicle_pf_tracker.image.kernels.numba_kernels"
-_JIT = "vehicle_pf_tracker.image.kernels.numba_jit"
-"""A small part that all other kernels need, which tells whether the cache is filled."""
-
 
 def load_kernels(choice: str) -> Kernels:
     """Make kernels that are ready for use, with everything compiled or loaded.
@@ -137,10 +127,7 @@ def takes_long(choice: str) -> bool:
 def load_numba() -> Kernels:
     """Make numba's kernels, with everything compiled or loaded; once in a process."""
     # Imported late: it takes half a second, and only here is it known to be needed.
-    jit = importlib.import_module(_JIT)
-    if jit.has_filled_cache():
-        compile_elsewhere(_NUMBA)
-    kernels: Kernels = importlib.import_module(_NUMBA).NumbaKernels()
+    kernels: Kernels = importlib.import_module(f"{__package__}.numba_kernels").NumbaKernels()
     return kernels
 
 
@@ -149,30 +136,3 @@ def _fallback_notices(error: ImportError) -> list[str]:
     if isinstance(error, ModuleNotFoundError) and error.name == "numba":
         return []
     return [f"numba is installed but cannot be imported ({error}); the OpenCV kernels are used"]
-
-
-_COMPILING = "VEHICLE_PF_TRACKER_COMPILES"
-"""Variable that tells a process that it was started to compile, so that it starts no other one."""
-_END_WITH_PARENT = (
-    "import ctypes, signal, sys;"
-    "getattr(ctypes.CDLL(None), 'prctl', lambda *_: 0)(1, int(signal.SIGTERM))"
-)
-"""Code by which a process ends with the one that started it, where the system is Linux."""
-
-
-def compile_elsewhere(module: str) -> None:
-    """Import `module`, which compiles kernels, in a process that ends and leaves them on disk.
-
-    LLVM keeps what it has allocated: a process that compiles all kernels stays 150 MB larger.
-    """
-    if _COMPILING in os.environ:
-        return
-    code = f"{_END_WITH_PARENT}; sys.path[:] = {sys.path!r}; import {module}"
-    subprocess.run(
-        [sys.executable, "-c", code],
-        env={**os.environ, _COMPILING: "1"},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        check=False,  # what it did not compile is compiled here
-    )

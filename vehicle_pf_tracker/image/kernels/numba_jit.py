@@ -41,8 +41,6 @@ NOT_KEPT = (
 )
 
 _notices: list[str] = []
-_filled: list[str] = []
-"""Names of the functions that were compiled by this process and kept on disk."""
 
 
 def compiled(*signatures: Any) -> Callable[[FunctionT], FunctionT]:
@@ -78,18 +76,10 @@ def notices() -> list[str]:
     return list(_notices)
 
 
-def has_filled_cache() -> bool:
-    """Test whether a function was compiled by this process, and none could not be kept on disk."""
-    return bool(_filled) and not _notices
-
-
 def _compile(function: FunctionT, signatures: list[Any], *, keep: bool) -> FunctionT:
     result: FunctionT = numba.njit(signatures, cache=keep, fastmath={"reassoc", "contract"})(
         function
     )
-    statistics = getattr(result, "stats", None)  # none with NUMBA_DISABLE_JIT
-    if keep and statistics is not None and statistics.cache_misses:
-        _filled.append(function.__name__)
     return result
 
 
