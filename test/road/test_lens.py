@@ -46,6 +46,10 @@ def test_distortion_is_that_of_opencv(lens):
     assert lens.to_pixels(ideal) == pytest.approx(theirs.reshape(-1, 2) + 0.5, abs=1e-9)
 
 
+def test_no_points_are_no_pixels(lens):
+    assert lens.to_ideal(np.empty((0, 2))).shape == lens.to_pixels(np.empty((0, 2))).shape == (0, 2)
+
+
 def test_removal_undoes_the_distortion(lens):
     ideal = lens.to_ideal(PIXELS)
     assert np.abs(ideal - PIXELS).max() > 1

@@ -22,6 +22,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
@@ -108,9 +109,15 @@ class Lens:
         return np.asarray(rays * self.focal + self.matrix[:2, 2])
 
     def _distorted(self, rays: Array) -> Array:
+        if not rays.size:  # OpenCV refuses none
+            return rays
+        points, coefficients = rays.reshape(1, -1, 2), np.array(self.coefficients)
         if self.model == "equidistant":
-            return _fisheye(rays, self.coefficients)
-        return _polynomial(rays, (*self.coefficients, *(0.0,) * (8 - len(self.coefficients))))
+            bent = cv2.fisheye.distortPoints(points, np.eye(3), coefficients)
+        else:
+            forward, still = np.dstack([points, np.ones(points.shape[:2])]), np.zeros(3)
+            bent = cv2.projectPoints(forward, still, still, np.eye(3), coefficients)[0]
+        return np.asarray(bent, np.float64).reshape(rays.shape)
 
     def _undistorted(self, distorted: Array) -> Array:
         """Invert the distortion by Newton's method, with derivatives by differences."""
@@ -133,33 +140,6 @@ class Lens:
             turned = (rays * distorted).sum(axis=-1) < -_TOLERANCE
         rays[~(off < _TOLERANCE) | turned] = np.nan
         return rays
-
-
-def _polynomial(rays: Array, coefficients: tuple[float, ...]) -> Array:
-    """Distort by the radial ratio (k1 k2 k3 over k4 k5 k6) and the tangential p1 p2."""
-    k1, k2, p1, p2, k3, k4, k5, k6 = coefficients
-    x, y = np.moveaxis(rays, -1, 0)
-    r2 = x * x + y * y
-    radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)))
-    return np.stack(
-        [
-            x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
-            y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y,
-        ],
-        axis=-1,
-    )
-
-
-def _fisheye(rays: Array, coefficients: tuple[float, ...]) -> Array:
-    """Distort by the angle from the axis: its polynomial is the distance in the image."""
-    k1, k2, k3, k4 = coefficients
-    radius = np.linalg.norm(rays, axis=-1, keepdims=True)
-    angle = np.arctan(radius)
-    a2 = angle * angle
-    bent = angle * (1 + a2 * (k1 + a2 * (k2 + a2 * (k3 + a2 * k4))))
-    # Towards the axis the ratio tends to 1.
-    ratio = np.divide(bent, radius, out=np.ones_like(radius), where=radius > 0)
-    return np.asarray(rays * ratio)
 
 
 _UNIT = 1e-2
