@@ -153,11 +153,9 @@ class SurfacePoints:
         self.stretch = shared_motion.shared_stretch(before[found], after[found], size)
         positions[alive] = after
         alive[alive] = found
-        place = 0
-        for points in self.sets:
-            part = slice(place, place + len(points.alive))
+        for index, points in enumerate(self.sets):
+            part = slice(index * _GRID**2, (index + 1) * _GRID**2)
             points.positions, points.alive = positions[part], alive[part]
-            place = part.stop
 
 
 @functools.cache
