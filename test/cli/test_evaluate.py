@@ -67,13 +67,6 @@ def test_a_folder_of_recordings_is_evaluated(bags, tmp_path, capsys):
     }
 
 
-def test_shifted_first_boxes_are_run_and_shown(bags, tmp_path, capsys):
-    words = [bags / "one", "--variants", "ms", "--shifted-starts"]
-    assert evaluate(tmp_path / "out", *words) == 0
-    assert "shifted starts" in capsys.readouterr().out
-    assert len(list((tmp_path / "out" / "cells" / "one" / "ms").iterdir())) == 13
-
-
 def test_an_rmse_beyond_the_limit_fails(bags, tmp_path, capsys):
     assert evaluate(tmp_path / "out", bags, *QUICK, "--max-rmse", "50") == 0
     assert evaluate(tmp_path / "out", bags, *QUICK, "--max-rmse", "0.01") == 1

@@ -18,9 +18,8 @@
 
     evaluation.json                                      the plan
     recordings/<recording>/truth.csv
-    cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json, run.json and digests.json; or
+    cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json and run.json; or
     cells/<recording>/<system>/seed-<n>/failed.json      {"reason": a sentence}
-    cells/<recording>/<system>/seed-<n>-<start>/         the same from a shifted first box
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.offline.output_files import write_csv
-from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN, damage
+from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 
 
@@ -177,8 +176,6 @@ class EvaluationFolder:
         See the plan for the order.
     seeds : tuple of int
         See the plan for the order.
-    shifted : tuple of str
-        Names of the shifted first boxes.
 
     Raises
     ------
@@ -199,7 +196,6 @@ class EvaluationFolder:
         try:
             self.recordings = tuple(_source(entry) for entry in self.plan["recordings"])
             self.seeds = tuple(map(int, self.plan["seeds"]))
-            self.shifted = tuple(map(str, self.plan.get("shifted_starts", ())))
             self.systems = tuple(_system(entry, self.seeds) for entry in self.plan["systems"])
         except (KeyError, TypeError, ValueError) as error:
             raise InputError(f"the plan {path / PLAN} is broken: {error!r}") from error
@@ -209,26 +205,21 @@ class EvaluationFolder:
         path = self.path / "recordings" / recording / TRUTH
         return read_truth(path) if path.is_file() else {}
 
-    def cell(self, recording: str, system: str, seed: int, start: str = "") -> Cell:
+    def cell(self, recording: str, system: str, seed: int) -> Cell:
         """Read one cell of the grid."""
-        folder = cell_folder(self.path, recording, system, seed, start)
+        folder = cell_folder(self.path, recording, system, seed)
         if (folder / FAILED).is_file():
             reason = str(read_document(folder / FAILED).get("reason", "no reason was given"))
             return Cell(None, {}, reason)
         if not (folder / ESTIMATES).is_file():
             return Cell(None, {}, "it was not run")
-        fault = damage(folder)
-        if fault:
-            reason = f"its stored result is damaged: {fault}; the same `evaluate` runs it again"
-            return Cell(None, {}, reason)
         rows = tuple(read_estimates(folder / ESTIMATES))
         return Cell(rows, read_document(folder / RUN), "")
 
 
-def cell_folder(folder: Path, recording: str, system: str, seed: int, start: str = "") -> Path:
-    """Return the folder of one cell of the evaluation in `folder`; `start` names a shifted box."""
-    name = f"seed-{seed}-{start}" if start else f"seed-{seed}"
-    return folder / "cells" / recording / safe_name(system) / name
+def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:
+    """Return the folder of one cell of the evaluation in `folder`."""
+    return folder / "cells" / recording / safe_name(system) / f"seed-{seed}"
 
 
 def safe_name(label: str) -> str:

@@ -148,49 +148,6 @@ def ranks_table(aggregates: Aggregates) -> Table:
     return Table(headers, rows)
 
 
-def starts_table(aggregates: Aggregates) -> Table | None:
-    """Compare runs from shifted first boxes with those from the true one, by each ranked metric.
-
-    None without the former.
-    """
-    if aggregates.shifted is None:
-        return None
-    note = "Standard deviation over the shifted boxes of a recording, mean over the recordings."
-    headers = [
-        header
-        for column in RANKED
-        for header in (
-            Header(f"{column.label}: true box", column.unit),
-            Header("shifted", column.unit),
-            Header("spread", column.unit, note),
-        )
-    ]
-    rows = {
-        label: [
-            number_cell(value, f".{column.decimals}f")
-            for column in RANKED
-            for value in _start_values(aggregates, aggregates.shifted, label, column.key)
-        ]
-        for label in aggregates.order
-    }
-    return Table(headers, rows)
-
-
-def _start_values(
-    true: Aggregates, shifted: Aggregates, label: str, key: str
-) -> Iterator[float | None]:
-    """Give the means from the true and from shifted boxes, and the spread over the latter."""
-    for some in (true, shifted):
-        summary = some.overall.get(label, {}).get(key)
-        yield summary.mean if summary else None
-    spreads = [
-        found.spread
-        for by_system in shifted.recordings.values()
-        if (found := by_system.get(label, {}).get(key)) and found.spread is not None
-    ]
-    yield statistics.fmean(spreads) if spreads else None
-
-
 def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]]) -> Table | None:
     """Show the recovery of each system from each total occlusion; None without any."""
     by_system = {

@@ -15,11 +15,8 @@
 import csv
 import io
 import json
-import shutil
 import statistics
-from dataclasses import replace
 
-import evaluation_samples as samples
 import pytest
 from evaluation_samples import ALONE, HIDDEN, SEEDS, VARIANTS
 
@@ -29,15 +26,11 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     cell_folder,
     read_document,
 )
-from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts
-from vehicle_pf_tracker.evaluation.grid.running import complete
 from vehicle_pf_tracker.evaluation.report import writing
 from vehicle_pf_tracker.evaluation.report.aggregates import COLUMNS, aggregate
-from vehicle_pf_tracker.evaluation.report.page import make_page
-from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
-from vehicle_pf_tracker.evaluation.tables import overall_table, starts_table
+from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
+from vehicle_pf_tracker.evaluation.tables import overall_table
 from vehicle_pf_tracker.offline.output_files import write_json
-from vehicle_pf_tracker.offline.run_folder import seal
 
 
 @pytest.fixture(scope="module")
@@ -48,17 +41,6 @@ def evaluation(made_evaluation):
 @pytest.fixture(scope="module")
 def aggregates(evaluation):
     return aggregate(evaluation)
-
-
-@pytest.fixture(scope="module")
-def shifted(tmp_path_factory):
-    """An evaluation with shifted first boxes, of which one has no result."""
-    folder = tmp_path_factory.mktemp("shifted")
-    plan = samples.make_plan(samples.write_recordings(folder))
-    plan = replace(plan, shifted=shifted_starts())
-    complete(plan, folder / "out", samples.here, samples.silent)
-    shutil.rmtree(cell_folder(folder / "out", "free", "ms", 0, "left"))
-    return score_folder(EvaluationFolder(folder / "out"))
 
 
 def stored(made_evaluation, recording, system, key):
@@ -118,38 +100,11 @@ def test_csv_has_a_line_for_each_mean(evaluation, aggregates):
     assert {r["metric"] for r in overall} <= {column.key for column in COLUMNS}
 
 
-def test_shifted_first_boxes_are_compared_with_the_true_one(shifted):
-    aggregates = aggregate(shifted)
-    values = [
-        [read_document(path)["success_auc"] for path in shifted.folder.path.glob(cells)]
-        for cells in (f"cells/{name}/ms/seed-0-*/metrics.json" for name in HIDDEN)
-    ]
-    expected = [
-        aggregate(replace(shifted, shifted=())).overall["ms"]["success_auc"].mean,
-        statistics.fmean(map(statistics.fmean, values)),
-        statistics.fmean(map(statistics.stdev, values)),
-    ]
-    cells = starts_table(aggregates).rows["ms"]
-    assert [cell.value for cell in cells[:3]] == pytest.approx(expected)
-    assert min(map(len, values)) == 11 and expected[2] > 0
-    rows = csv.DictReader(io.StringIO(writing.summary_csv(aggregates)))
-    counts = [row["count"] for row in rows if row["start"] == "shifted"
-              and (row["system"], row["metric"]) == ("ms", "rmse_px")]  # fmt: skip
-    assert counts == ["2", "12", "11"]
-    text = writing.summary_markdown(shifted, aggregates)
-    assert "## Shifted starts\n" in text and "1 of 54 cells have no result" in text
-    assert "| ms | free | 0 left | it was not run |" in text
-    page = make_page(shifted, aggregates, images=False)
-    assert 'id="starts"' in page and "free: seed 0 left" in page
-
-
 def test_results_of_different_versions_are_told(evaluation_copy, capsys):
     folder = cell_folder(evaluation_copy, "free", "pf", 1)
     run = read_document(folder / "run.json")
     write_json(folder / "run.json", {**run, "versions": {**run["versions"], "opencv": "0.9.0"}})
-    (folder / "digests.json").unlink()
-    seal(folder)
-    assert main(["report", str(evaluation_copy), "--no-images"]) == 0
+    assert main(["report", str(evaluation_copy)]) == 0
     said = f"different versions are compared: opencv 0.9.0 and {run['versions']['opencv']}; "
     assert capsys.readouterr().err.count(said) == 1
     assert said in (evaluation_copy / "report.html").read_text()
@@ -162,7 +117,6 @@ def test_json_is_json_and_has_everything(evaluation, aggregates):
     assert set(document["recordings"]) == set(HIDDEN)
     assert document["rankings"]["rmse_px"]["recordings"] == len(HIDDEN)
     assert len(document["failed"]) == len(HIDDEN)
-    assert document["shifted"] is None
     assert not any("versions" in sentence for sentence in document["findings"])
 
 
@@ -186,9 +140,3 @@ def test_latex_escapes_what_it_must_and_marks_the_best(aggregates):
     for label, cells in overall_table(aggregates, ["success_auc"]).rows.items():
         (best,) = [cell.best for cell in cells]
         assert (rf"& \textbf{{{cells[0].text}}} &" in lines[label]) == best
-
-
-def test_the_typical_run_has_the_median_error(evaluation):
-    runs = evaluation.of("free", "pf")
-    assert typical(runs).metrics.rmse_px == min(run.metrics.rmse_px for run in runs)
-    assert typical([]) is None

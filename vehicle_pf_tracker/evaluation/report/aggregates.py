@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
@@ -197,9 +197,6 @@ class Aggregates:
         Rankings by the key of a ranked column.
     recoveries : mapping of str to (int, int)
         Total occlusions recovered from and judged, of all runs of a system.
-    shifted : Aggregates or None
-        The same of the runs from shifted first boxes, where there are any; their spreads are over
-        the boxes.
     """
 
     order: tuple[str, ...]
@@ -207,12 +204,10 @@ class Aggregates:
     overall: Mapping[str, Summaries]
     rankings: Mapping[str, Ranking]
     recoveries: Mapping[str, tuple[int, int]]
-    shifted: Aggregates | None
 
 
 def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     """Summarise all runs."""
-    shifted = evaluation.shifted
     runs = {s.label: some for s in evaluation.systems if (some := evaluation.of(system=s.label))}
     values = {
         label: {column.key: _values(some, column) for column in COLUMNS}
@@ -254,7 +249,6 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
         },
         rankings=rankings,
         recoveries={label: _recoveries(runs[label]) for label in order},
-        shifted=aggregate(replace(evaluation, runs=shifted, shifted=())) if shifted else None,
     )
 
 
@@ -276,7 +270,7 @@ def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
     """State the leader, the systems statistically tied with it, and missing results."""
     best = (_best(aggregates, column) for column in (PRECISION, RMSE, RECOVERED))
     failed = len(evaluation.failed)
-    cells = counted(len(evaluation.runs) + len(evaluation.shifted) + failed, "cell")
+    cells = counted(len(evaluation.runs) + failed, "cell")
     result = f"All {cells} of the grid have a result."
     if failed:
         result = f"{failed} of {cells} have no result; see Failed cells."
