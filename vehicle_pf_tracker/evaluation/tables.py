@@ -24,15 +24,14 @@ from typing import TypeAlias
 
 from vehicle_pf_tracker.evaluation.report.aggregates import (
     COLUMNS,
+    COMPARED,
     NO_VALUE,
-    RANKED,
     RECOVERED,
     Aggregates,
     Column,
     Summaries,
     counted,
     interval_text,
-    listing,
     mean_and_spread_text,
     mean_text,
 )
@@ -126,26 +125,21 @@ def recording_table(aggregates: Aggregates, recording: str, columns: Sequence[Co
     )
 
 
-def ranks_table(aggregates: Aggregates) -> Table:
-    """Show places with their ties and mean ranks, by each ranked metric."""
-    headers: list[Header] = []
-    rows: dict[str, list[TableCell]] = {label: [] for label in aggregates.order}
-    for column in RANKED:
-        if column.key not in aggregates.rankings:
-            continue
-        headers += [Header(f"{column.label}: place"), Header("mean rank")]
-        ranks = {rank.system: rank for rank in aggregates.rankings[column.key].ranks}
-        differ = any(rank.place > 1 for rank in ranks.values())
-        for label, row in rows.items():
-            if label not in ranks:
-                row += [TableCell(NO_VALUE), TableCell(NO_VALUE)]
-                continue
-            rank = ranks[label]
-            note = f"tied with {listing(rank.tied)}" if rank.tied else ""
-            place = f"{rank.place}{' =' if rank.tied else ''}"
-            row.append(TableCell(place, rank.place, differ and rank.place == 1, note))
-            row.append(TableCell(f"{rank.mean_rank:.2f}", rank.mean_rank))
-    return Table(headers, rows)
+def behind_table(aggregates: Aggregates) -> Table:
+    """Show how far each system is behind the first, recording by recording."""
+    rows = {
+        label: [_difference(found[column.key], column) for column in COMPARED]
+        for label, found in aggregates.behind.items()
+    }
+    return Table([Header(column.label, column.unit) for column in COMPARED], rows)
+
+
+def _difference(found: Summary | None, column: Column) -> TableCell:
+    if found is None:
+        return TableCell(NO_VALUE)
+    within = interval_text(found, column)
+    text = f"{found.mean:+.{column.decimals}f}" + (f" ({within})" if within else "")
+    return TableCell(text, found.mean)
 
 
 def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]]) -> Table | None:

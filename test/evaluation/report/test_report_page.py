@@ -118,8 +118,9 @@ def test_it_says_how_it_was_made_and_what_failed(page):
     assert "40" in page.text("strong")  # num_particles was set
 
 
-def test_two_recordings_are_too_few_to_rank_by_and_it_says_so(page):
-    assert "2 recordings cannot tell systems apart" in page.text("li")
+def test_differences_to_the_first_have_intervals(page):
+    rows = page.text("td")
+    assert re.search(r"[+-]0\.\d{3} \(-?\d\.\d{3} to -?\d\.\d{3}\)", rows)
 
 
 def test_colours_come_from_the_scheme(page, text):

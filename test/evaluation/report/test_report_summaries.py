@@ -16,6 +16,7 @@ import csv
 import io
 import json
 import statistics
+from dataclasses import astuple
 
 import pytest
 from evaluation_samples import ALONE, HIDDEN, SEEDS, VARIANTS
@@ -29,7 +30,8 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
 from vehicle_pf_tracker.evaluation.report import writing
 from vehicle_pf_tracker.evaluation.report.aggregates import COLUMNS, aggregate
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
-from vehicle_pf_tracker.evaluation.tables import overall_table
+from vehicle_pf_tracker.evaluation.statistics import summarise
+from vehicle_pf_tracker.evaluation.tables import behind_table, overall_table
 from vehicle_pf_tracker.offline.output_files import write_json
 
 
@@ -72,11 +74,23 @@ def test_means_are_taken_over_seeds_and_then_over_recordings(aggregates, made_ev
     )
 
 
-def test_the_best_mean_rank_comes_first(aggregates):
-    ranks = [rank.mean_rank for rank in aggregates.rankings["success_auc"].ranks]
-    assert ranks == sorted(ranks)
-    assert aggregates.order == tuple(r.system for r in aggregates.rankings["success_auc"].ranks)
+def test_the_best_comes_first_and_the_others_are_compared_with_it_by_recording(
+    aggregates, made_evaluation
+):
     assert set(aggregates.order) == set(VARIANTS)  # the baseline has no result
+    means = [aggregates.overall[label]["success_auc"].mean for label in aggregates.order]
+    assert means == sorted(means, reverse=True)
+    first, *others = aggregates.order
+    for label in others:
+        pairs = [
+            [statistics.fmean(stored(made_evaluation, name, one, "rmse_px")) for name in HIDDEN]
+            for one in (label, first)
+        ]
+        expected = summarise([value - best for value, best in zip(*pairs, strict=True)])
+        found = aggregates.behind[label]["rmse_px"]
+        assert astuple(found) == pytest.approx(astuple(expected))
+        cell = behind_table(aggregates).rows[label][2]
+        assert cell.text == f"{found.mean:+.1f} ({found.low:.1f} to {found.high:.1f})"
 
 
 def test_recoveries_are_counted_over_all_runs(aggregates, evaluation):
@@ -115,19 +129,19 @@ def test_json_is_json_and_has_everything(evaluation, aggregates):
     document = json.loads(json.dumps(document, allow_nan=False))
     assert document["overall"]["pf"]["rmse_px"]["count"] == len(HIDDEN)
     assert set(document["recordings"]) == set(HIDDEN)
-    assert document["rankings"]["rmse_px"]["recordings"] == len(HIDDEN)
+    assert document["behind"][aggregates.order[1]]["rmse_px"]["count"] == len(HIDDEN)
     assert len(document["failed"]) == len(HIDDEN)
-    assert not any("versions" in sentence for sentence in document["findings"])
+    assert not any("versions" in sentence for sentence in document["notes"])
 
 
 def test_markdown_has_a_table_for_each_recording_and_every_failed_cell(evaluation, aggregates):
     text = writing.summary_markdown(evaluation, aggregates)
     assert text.startswith("# Trackers compared: evaluation\n")
     assert [line[3:] for line in text.splitlines() if line.startswith("## ")] == [
-        "Means over recordings", "Ranks", *HIDDEN, "Failed cells",
+        "Means over recordings", "Differences to the first", *HIDDEN, "Failed cells",
     ]  # fmt: skip
     tables = [line for line in text.splitlines() if line.startswith("| pf |")]
-    assert len(tables) == 2 + len(HIDDEN)
+    assert len(tables) == 1 + (aggregates.order[0] != "pf") + len(HIDDEN)
     assert text.count("| baseline:csrt |") == len(HIDDEN)
 
 

@@ -12,23 +12,18 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The metrics of a report, their summaries over seeds and recordings, and its findings."""
+"""The metrics of a report, and their summaries over seeds and recordings."""
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
-from vehicle_pf_tracker.evaluation.statistics import (
-    FEWEST_RECORDINGS,
-    Ranking,
-    Summary,
-    rank_systems,
-    summarise,
-)
+from vehicle_pf_tracker.evaluation.statistics import Summary, summarise
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,8 +122,8 @@ SUCCESS, PRECISION, RMSE, RECOVERED, STEP = (
     _BY_KEY[key] for key in ("success_auc", "precision_20px", "rmse_px", "recovered", "step_ms_p50")
 )
 
-RANKED = (SUCCESS, PRECISION, RMSE)
-"""Metrics that systems are ranked by; the first one orders the tables."""
+COMPARED = (SUCCESS, PRECISION, RMSE)
+"""Metrics that systems are compared by; the first one orders the tables."""
 
 
 NO_VALUE = "–"
@@ -160,18 +155,6 @@ def interval_text(summary: Summary | None, column: Column) -> str:
     return f"{low} to {high}"
 
 
-def p_value_text(value: float | None) -> str:
-    """Return a p value as it is usually printed."""
-    if value is None:
-        return NO_VALUE
-    return "< 0.001" if value < 0.001 else f"{value:.3f}"
-
-
-def listing(names: Sequence[str]) -> str:
-    """Return ``a``, ``a and b``, or ``a, b and c``."""
-    return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
-
-
 def counted(count: int, noun: str) -> str:
     """Return ``1 frame``, ``2 frames``."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
@@ -193,8 +176,8 @@ class Aggregates:
         Summaries over seeds, by recording and system.
     overall : mapping of system to Summaries
         Summaries over the means of the recordings, so that long ones do not outweigh short ones.
-    rankings : mapping of str to Ranking
-        Rankings by the key of a ranked column.
+    behind : mapping of str to Summaries
+        Differences to the first system over the recordings that both have, by system.
     recoveries : mapping of str to (int, int)
         Total occlusions recovered from and judged, of all runs of a system.
     """
@@ -202,7 +185,7 @@ class Aggregates:
     order: tuple[str, ...]
     recordings: Mapping[str, Mapping[str, Summaries]]
     overall: Mapping[str, Summaries]
-    rankings: Mapping[str, Ranking]
+    behind: Mapping[str, Summaries]
     recoveries: Mapping[str, tuple[int, int]]
 
 
@@ -220,19 +203,12 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
         }
         for label, columns in values.items()
     }
-    rankings = {
-        column.key: ranking
-        for column in RANKED
-        if (
-            ranking := rank_systems(
-                {label: columns[column.key] for label, columns in means.items()},
-                higher_is_better=bool(column.higher_is_better),
-            )
-        )
-    }
-    main = RANKED[0].key
-    ranked = [rank.system for rank in rankings[main].ranks] if main in rankings else []
-    order = (*ranked, *(label for label in runs if label not in ranked))
+    main = COMPARED[0].key
+
+    def mean(label: str) -> float:
+        return statistics.fmean(means[label][main].values()) if means[label][main] else -math.inf
+
+    order = tuple(sorted(runs, key=mean, reverse=True))
     return Aggregates(
         order=order,
         recordings={
@@ -247,7 +223,13 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
             label: {key: summarise(list(found.values())) for key, found in means[label].items()}
             for label in order
         },
-        rankings=rankings,
+        behind={
+            label: {
+                column.key: _differences(means[label][column.key], means[order[0]][column.key])
+                for column in COMPARED
+            }
+            for label in order[1:]
+        },
         recoveries={label: _recoveries(runs[label]) for label in order},
     )
 
@@ -266,53 +248,5 @@ def _recoveries(runs: Sequence[ScoredRun]) -> tuple[int, int]:
     return sum(judged), len(judged)
 
 
-def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
-    """State the leader, the systems statistically tied with it, and missing results."""
-    best = (_best(aggregates, column) for column in (PRECISION, RMSE, RECOVERED))
-    failed = len(evaluation.failed)
-    cells = counted(len(evaluation.runs) + failed, "cell")
-    result = f"All {cells} of the grid have a result."
-    if failed:
-        result = f"{failed} of {cells} have no result; see Failed cells."
-    return [*_leader(aggregates), *filter(None, best), result, *evaluation.mixed_versions]
-
-
-def _leader(aggregates: Aggregates) -> list[str]:
-    column = RANKED[0]
-    ranking = aggregates.rankings.get(column.key)
-    if ranking is None:
-        return ["There is no truth to rank the systems by."]
-    leader = ranking.ranks[0]
-    summary = aggregates.overall[leader.system].get(column.key)
-    within = interval_text(summary, column)
-    text = (
-        f"{leader.system} has the best mean rank by {column.label}, "
-        f"whose mean is {mean_text(summary, column)}"
-    )
-    sentences = [f"{text} (95 % interval {within})." if within else f"{text}."]
-    if ranking.critical_difference is None and len(ranking.ranks) > 1:
-        sentences.append(
-            f"{counted(ranking.recordings, 'recording')} cannot tell systems apart: "
-            f"ranks need at least {FEWEST_RECORDINGS}."
-        )
-    elif leader.tied:
-        sentences.append(
-            f"{counted(ranking.recordings, 'recording')} cannot tell it apart from "
-            f"{listing(leader.tied)}."
-        )
-    return sentences
-
-
-def _best(aggregates: Aggregates, column: Column) -> str:
-    known = {
-        label: round(summary.mean, column.decimals)
-        for label, summaries in aggregates.overall.items()
-        if (summary := summaries.get(column.key)) is not None
-    }
-    if len(known) < 2:
-        return ""
-    best = max(known.values()) if column.higher_is_better else min(known.values())
-    leaders = [label for label, value in known.items() if value == best]
-    unit = f" {column.unit}" if column.unit else ""
-    end = "Highest" if column.higher_is_better else "Lowest"
-    return f"{end} mean of {column.label}: {listing(leaders)}, {best:.{column.decimals}f}{unit}."
+def _differences(values: Mapping[str, float], first: Mapping[str, float]) -> Summary | None:
+    return summarise([value - first[name] for name, value in values.items() if name in first])

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
 from vehicle_pf_tracker.evaluation.metrics import Curve
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
-from vehicle_pf_tracker.evaluation.report.aggregates import RANKED, Aggregates
+from vehicle_pf_tracker.evaluation.report.aggregates import COMPARED, Aggregates
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 from vehicle_pf_tracker.offline.output_files import make_folder, replacing
@@ -204,11 +204,11 @@ def _curves(
 
 
 def _intervals(aggregates: Aggregates) -> Drawn | None:
-    """Draw the first ranked metric of all systems, with intervals.
+    """Draw the first compared metric of all systems, with intervals.
 
     Small dots are the means on the recordings.
     """
-    column = RANKED[0]
+    column = COMPARED[0]
     overall = {label: aggregates.overall[label].get(column.key) for label in aggregates.order}
     rows = {label: summary for label, summary in overall.items() if summary is not None}
     if not rows:

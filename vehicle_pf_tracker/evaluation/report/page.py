@@ -21,7 +21,7 @@ import io
 import re
 import shlex
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -31,14 +31,7 @@ from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation import tables
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
 from vehicle_pf_tracker.evaluation.plots import STYLES
-from vehicle_pf_tracker.evaluation.report.aggregates import (
-    COLUMNS,
-    RANKED,
-    Aggregates,
-    counted,
-    findings,
-    p_value_text,
-)
+from vehicle_pf_tracker.evaluation.report.aggregates import COLUMNS, Aggregates, counted
 from vehicle_pf_tracker.evaluation.report.figures import (
     COLOURS,
     CURVES,
@@ -95,12 +88,11 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
         "report.html",
         title=title(evaluation),
         facts=_facts(evaluation),
-        findings=findings(evaluation, aggregates),
+        notes=evaluation.notes,
         slots=slots,
         overall=tables.overall_table(aggregates),
         figures=figures,
-        ranks=tables.ranks_table(aggregates),
-        rank_notes=list(_rank_notes(aggregates)),
+        behind=tables.behind_table(aggregates),
         curves=[name for name in CURVES if name in figures],
         recordings=[_section(evaluation, aggregates, entry) for entry in evaluation.recordings],
         systems=evaluation.systems,
@@ -129,19 +121,6 @@ def _facts(evaluation: ScoredEvaluation) -> str:
         "seed": evaluation.folder.seeds,
     }
     return " × ".join(counted(len(some), noun) for noun, some in counts.items())
-
-
-def _rank_notes(aggregates: Aggregates) -> Iterator[str]:
-    for column in RANKED:
-        ranking = aggregates.rankings.get(column.key)
-        if ranking is None:
-            continue
-        parts = [f"{column.label}: {counted(ranking.recordings, 'recording')}"]
-        if ranking.friedman_p is not None:
-            parts.append(f"Friedman p {p_value_text(ranking.friedman_p)}")
-        if ranking.critical_difference is not None:
-            parts.append(f"critical difference of mean ranks {ranking.critical_difference:.2f}")
-        yield ", ".join(parts)
 
 
 def _section(evaluation: ScoredEvaluation, aggregates: Aggregates, entry: Source) -> dict[str, Any]:

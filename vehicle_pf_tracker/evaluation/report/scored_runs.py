@@ -111,6 +111,15 @@ class ScoredEvaluation:
         ]
 
     @property
+    def notes(self) -> list[str]:
+        """Say how many cells have a result, and whether versions are mixed."""
+        cells, failed = len(self.runs) + len(self.failed), len(self.failed)
+        result = f"All {cells} cells of the grid have a result."
+        if failed:
+            result = f"{failed} of {cells} cells have no result; see Failed cells."
+        return [result, *self.mixed_versions]
+
+    @property
     def mixed_versions(self) -> list[str]:
         """A sentence where runs were made with different versions; baselines have their own."""
         ours = {one.label for one in self.systems if not one.kind.startswith("baseline:")}

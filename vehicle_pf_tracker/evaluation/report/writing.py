@@ -32,15 +32,14 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     SUCCESS,
     Aggregates,
     aggregate,
-    findings,
 )
 from vehicle_pf_tracker.evaluation.report.figures import write_figures
 from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, score_folder
 from vehicle_pf_tracker.evaluation.tables import (
+    behind_table,
     markdown,
     overall_table,
-    ranks_table,
     recording_table,
 )
 from vehicle_pf_tracker.offline.output_files import csv_text, write_json, write_text
@@ -55,12 +54,12 @@ _LATEX = str.maketrans(
 
 
 def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
-    """Return the findings, the means, the ranks and each recording as Markdown."""
+    """Return the notes, the means, the differences and each recording as Markdown."""
     parts = [f"# {title(evaluation)}\n"]
-    parts.append("".join(f"- {line}\n" for line in findings(evaluation, aggregates)))
+    parts.append("".join(f"- {line}\n" for line in evaluation.notes))
     tables = {
         "Means over recordings": overall_table(aggregates),
-        "Ranks": ranks_table(aggregates),
+        "Differences to the first": behind_table(aggregates),
         **{
             entry.name: recording_table(aggregates, entry.name, COLUMNS)
             for entry in evaluation.recordings
@@ -112,7 +111,7 @@ def _tex(text: str) -> str:
 def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, Any]:
     """Return everything as plain values."""
     return {
-        "format": 2,
+        "format": 3,
         "metrics": {
             column.key: {
                 "label": column.label,
@@ -122,7 +121,7 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
             }
             for column in COLUMNS
         },
-        "findings": findings(evaluation, aggregates),
+        "notes": evaluation.notes,
         "failed": [asdict(cell) for cell in evaluation.failed],
         **asdict(aggregates),
     }
