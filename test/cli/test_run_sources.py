@@ -33,7 +33,7 @@ from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline import pictures
 from vehicle_pf_tracker.offline.estimates import read_estimates
-from vehicle_pf_tracker.recordings.messages import deserialize
+from vehicle_pf_tracker.recordings.messages import IMAGE_ANNOTATIONS, deserialize
 from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
 
 
@@ -335,7 +335,7 @@ def test_without_the_encoder_the_remedy_is_said_and_nothing_is_left(
 
 def annotations(recording, topic):
     return [
-        deserialize(memoryview(message.data), "foxglove_msgs/msg/ImageAnnotations").texts[0].text
+        [text.text for text in deserialize(memoryview(message.data), IMAGE_ANNOTATIONS).texts]
         for message in recording.messages({topic})
     ]
 
@@ -349,7 +349,9 @@ def test_a_run_as_a_recording_has_images_estimates_and_annotations(run, video, t
     rows = estimates(tmp_path / "out" / "late")
     assert [found.stamp_ns for found in bag.frames()] == [row.stamp_ns for row in rows]
     found = annotations(bag, "/pf_tracker/late/annotations")
-    assert [text.split(" ")[:2] for text in found] == [["late", row.mode] for row in rows]
+    assert [row.mode for row in rows[:4]] == ["WAITING"] * 4 and found[:4] == [[]] * 4
+    words = [f"late {row.mode} {row.confidence:.2f}" for row in rows[4:]]
+    assert [text for texts in found for text in texts] == words
     assert len(list(bag.messages({"/pf_tracker/_1/box"}))) == 8
     # An image comes before its estimates, and the file is in the order of time.
     stamps = [message.log_time_ns for message in bag.messages()]
@@ -363,4 +365,4 @@ def test_a_recorded_run_of_one_target_keeps_the_truth_of_its_part(run, tmp_path)
     truths, images = Recording(bag).truth(), list(Recording(bag).frames())
     assert [truth.stamp_ns for truth in truths] == [found.stamp_ns for found in images]
     assert len(images) == COUNT - 2
-    assert annotations(Recording(bag), "/pf_tracker/annotations")[0].startswith("TRACKING")
+    assert annotations(Recording(bag), "/pf_tracker/annotations")[0][0].startswith("TRACKING")
