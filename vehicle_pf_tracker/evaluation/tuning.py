@@ -41,10 +41,10 @@ from optuna.study import StudyDirection
 from optuna.trial import FrozenTrial, TrialState
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.cache_key import result_key
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell, VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.grid.running import Runner
-from vehicle_pf_tracker.evaluation.result_store import result_key
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means
 from vehicle_pf_tracker.offline.processes import OnProgress
 from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, specs, unknown_name

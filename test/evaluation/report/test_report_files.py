@@ -23,7 +23,7 @@ from evaluation_samples import HIDDEN
 
 from vehicle_pf_tracker.cli.main import main
 
-FIGURES = {"intervals", "success", "precision", "normalised", *(f"errors_{n}" for n in HIDDEN)}
+FIGURES = {"success", "precision", "normalised", *(f"errors_{n}" for n in HIDDEN)}
 WORDS = ["--figures", "svg,png,pdf,svg"]
 
 

@@ -105,9 +105,9 @@ def test_pictures_and_tables_can_be_read_out(page):
 def test_it_shows_all_systems_and_recordings(page):
     assert set(VARIANTS) <= {data for tag, data in page.texts if tag == "span"}
     assert {data for tag, data in page.texts if tag == "h3"} >= set(HIDDEN)
-    # The intervals, three curves, and for each recording the errors over time.
+    # Three curves, and for each recording the errors over time.
     figures = [svg for svg in page.all("svg") if svg.get("role") == "img"]
-    assert len(figures) == 4 + len(HIDDEN)
+    assert len(figures) == 3 + len(HIDDEN)
 
 
 def test_it_says_how_it_was_made_and_what_failed(page):

@@ -25,6 +25,7 @@ from typing import Any
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.evaluation.cache_key import result_key, variant_modules
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     FORMAT,
     PLAN,
@@ -34,7 +35,6 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     safe_name,
     write_truth,
 )
-from vehicle_pf_tracker.evaluation.result_store import result_key, variant_modules
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.run_folder import versions
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
