@@ -22,13 +22,9 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, NO_VALUE, RECOVERED, Column
 from vehicle_pf_tracker.evaluation.report.aggregates import (
-    COLUMNS,
-    COMPARED,
-    NO_VALUE,
-    RECOVERED,
     Aggregates,
-    Column,
     Summaries,
     counted,
     interval_text,

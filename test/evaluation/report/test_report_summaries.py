@@ -22,13 +22,14 @@ import pytest
 from evaluation_samples import ALONE, HIDDEN, SEEDS, VARIANTS
 
 from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.evaluation.columns import COLUMNS
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     EvaluationFolder,
     cell_folder,
     read_document,
 )
 from vehicle_pf_tracker.evaluation.report import writing
-from vehicle_pf_tracker.evaluation.report.aggregates import COLUMNS, aggregate
+from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
 from vehicle_pf_tracker.evaluation.statistics import summarise
 from vehicle_pf_tracker.evaluation.tables import behind_table, overall_table

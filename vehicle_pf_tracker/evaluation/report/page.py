@@ -29,9 +29,10 @@ from matplotlib import rc_context
 
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation import tables
+from vehicle_pf_tracker.evaluation.columns import COLUMNS
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
 from vehicle_pf_tracker.evaluation.plots import STYLES
-from vehicle_pf_tracker.evaluation.report.aggregates import COLUMNS, Aggregates, counted
+from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, counted
 from vehicle_pf_tracker.evaluation.report.figures import (
     COLOURS,
     CURVES,

@@ -21,8 +21,7 @@ from dataclasses import asdict, astuple
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.report.aggregates import (
+from vehicle_pf_tracker.evaluation.columns import (
     COLUMNS,
     NO_VALUE,
     PRECISION,
@@ -30,9 +29,9 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     RMSE,
     STEP,
     SUCCESS,
-    Aggregates,
-    aggregate,
 )
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
+from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, aggregate
 from vehicle_pf_tracker.evaluation.report.figures import write_figures
 from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, score_folder
