@@ -124,8 +124,8 @@ def run_traffic(request: TrafficRequest) -> int:
         }
     tables = write_traffic_report(results, request.output, options)
     for title, table in tables.items():
-        print_rows(*table.texts(), title)
-    print(f"the report is {request.output / NAME}.html, and {NAME}.md beside it")
+        print_rows(*table, title)
+    print(f"the report is {request.output / NAME}.md")
     return 0
 
 
