@@ -101,21 +101,20 @@ def read_truth(path: Path) -> dict[int, Truth]:
     InputError
         If there is no such file, or a line of it is not as `write_truth` writes it.
     """
-    lines = list(csv.reader(read_text(path, "the truth").splitlines()))
-    if lines[:1] != [list(COLUMNS)]:
+    lines = csv.DictReader(read_text(path, "the truth").splitlines())
+    if lines.fieldnames is None or tuple(lines.fieldnames) != COLUMNS:
         raise InputError(f"the truth {path} must begin with the line {','.join(COLUMNS)}")
-    return dict(_row(path, number, line) for number, line in enumerate(lines[1:], start=2))
-
-
-def _row(path: Path, number: int, line: Sequence[str]) -> tuple[int, Truth]:
     try:
-        frame, stamp_ns, *numbers, occlusion = line
-        box = Box(*map(float, numbers))
-        if not all(abs(value) <= LARGEST_PX for value in astuple(box)):
-            raise ValueError(f"a box beyond {LARGEST_PX:.0f} px")
-        return int(frame), Truth(int(stamp_ns), box, Occlusion[occlusion.upper()])
+        return {int(line["frame"]): _truth(line) for line in lines}
     except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"line {number} of the truth {path} is broken: {error}") from error
+        raise InputError(f"line {lines.line_num} of the truth {path} is broken: {error}") from error
+
+
+def _truth(line: Mapping[str, str]) -> Truth:
+    box = Box(*(float(line[name]) for name in ("x", "y", "width", "height")))
+    if not all(abs(value) <= LARGEST_PX for value in astuple(box)):
+        raise ValueError(f"a box beyond {LARGEST_PX:.0f} px")
+    return Truth(int(line["stamp_ns"]), box, Occlusion[line["occlusion"].upper()])
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,7 +193,7 @@ class EvaluationFolder:
                 f"{self.plan['format']}, not {FORMAT}): evaluate again into another folder"
             )
         try:
-            self.recordings = tuple(_source(entry) for entry in self.plan["recordings"])
+            self.recordings = tuple(Source(**entry) for entry in self.plan["recordings"])
             self.seeds = tuple(map(int, self.plan["seeds"]))
             self.systems = tuple(_system(entry, self.seeds) for entry in self.plan["systems"])
         except (KeyError, TypeError, ValueError) as error:
@@ -243,12 +242,6 @@ def read_document(path: Path) -> dict[str, Any]:
     if not isinstance(document, dict):
         raise InputError(f"{path} does not hold a JSON object")
     return document
-
-
-def _source(entry: Mapping[str, Any]) -> Source:
-    name, path, topic, digest = (str(entry[key]) for key in ("name", "path", "topic", "digest"))
-    frames, width, height = (int(entry[key]) for key in ("frames", "width", "height"))
-    return Source(name, path, topic, frames, width, height, digest, entry.get("identity"))
 
 
 def _system(entry: Mapping[str, Any], seeds: Sequence[int]) -> SystemEntry:
