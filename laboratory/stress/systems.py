@@ -27,8 +27,8 @@ from typing import Any, Protocol
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_row
+from vehicle_pf_tracker.evaluation.cache_key import variant_modules
 from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, System, VariantSystem
-from vehicle_pf_tracker.evaluation.result_store import variant_modules
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, to_mapping
 from vehicle_pf_tracker.trackers.estimate import Estimate

@@ -57,9 +57,9 @@ def test_a_comparison_is_written_and_shown(folder, tmp_path, monkeypatch, capsys
     shown = capsys.readouterr().out
     assert "pair, good" in shown
     assert "pair, motion" in shown
-    assert "traffic.html" in shown
+    assert "traffic.md" in shown
     assert {path.name for path in out.iterdir()} == {
-        "traffic.html", "traffic.md", "traffic.csv", "traffic.json"
+        "traffic.md", "traffic.csv", "traffic.json"
     }  # fmt: skip
     assert "| ocsort-low | 1.5 | 1.5 |" in (out / "traffic.md").read_text()
     assert '"lost_after=1.5"' in (out / "traffic.json").read_text()
@@ -68,7 +68,7 @@ def test_a_comparison_is_written_and_shown(folder, tmp_path, monkeypatch, capsys
 @pytest.mark.parametrize(
     ("words", "status", "sentence"),
     [
-        (["--traffic", "{folder}", "--write", "otb"], 2, "--write does not go with --traffic"),
+        (["--traffic", "{folder}", "--figures", "svg"], 2, "--figures does not go with --traffic"),
         (["{folder}", "--detections", "good"], 2, "--detections does not go without --traffic"),
         (["--traffic", "{folder}", "--detections", "god"], 1, "'god' is not a file of det/ (did"),
         (["--traffic", "{folder}", "--set", "lost=1"], 1, "lost"),

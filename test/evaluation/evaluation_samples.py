@@ -101,10 +101,10 @@ def results(folder):
         if path.name == "estimates.csv":
             rows = list(csv.DictReader(path.open()))
             found[name] = [{k: v for k, v in row.items() if k != "step_ms"} for row in rows]
-        elif path.suffix == ".json" and path.name != "digests.json":
+        elif path.suffix == ".json":
             document = json.loads(path.read_text())
             left = {k: v for k, v in document.items() if k not in NOT_DECIDED_BY_THE_INPUT}
             found[name] = left
-        elif path.is_file() and path.name != "digests.json":
+        elif path.is_file():
             found[name] = path.read_bytes()
     return found

@@ -33,21 +33,11 @@ if TYPE_CHECKING:
 class ReportParts(VerbRequest):
     """Parts of a report."""
 
-    images: bool = option(
-        "--no-images", action="store_false",
-        help="leave the stills of the recordings out of report.html",
-    )  # fmt: skip
     figures: tuple[str, ...] = option(
         type=partial(names_in, known=("pdf", "svg", "png"), what="a format"),
         default=(), metavar="FORMATS",
         help="write every figure to DIR/figures, sized for a paper of two columns; FORMATS are "
         "pdf, svg or png, several with commas",
-    )  # fmt: skip
-    write: tuple[str, ...] = option(
-        type=partial(names_in, known=("otb", "vot", "mot"), what="a toolkit"),
-        default=(), metavar="TOOLKITS",
-        help="write every run to DIR/results as other toolkits read it; TOOLKITS are otb, vot or "
-        "mot, several with commas",
     )  # fmt: skip
 
 
@@ -72,13 +62,7 @@ def write(folder: Path, request: ReportParts) -> Report:
     from vehicle_pf_tracker.evaluation.report.writing import write_report
 
     with stages("report") as on_stage:
-        report = write_report(
-            folder,
-            images=request.images,
-            figures=request.figures,
-            toolkits=request.write,
-            on_stage=on_stage,
-        )
+        report = write_report(folder, figures=request.figures, on_stage=on_stage)
     tell_notices(report.evaluation.mixed_versions)
     print(f"the report is {report.paths[0]}")
     return report

@@ -17,8 +17,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.requests import (
@@ -27,7 +28,6 @@ from vehicle_pf_tracker.cli.requests import (
     option,
     positional,
     positive,
-    switch,
 )
 from vehicle_pf_tracker.cli.tracking_options import with_file
 from vehicle_pf_tracker.core.errors import InputError
@@ -50,84 +50,29 @@ ALL, ALL_BASELINES = "all", "baselines"
 _BASELINES_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not models)
 
 
-@dataclass(frozen=True)
-class ParameterSet:
-    """Named parameters; for one variant, or (None) for all that accept them."""
-
-    name: str
-    variant: str | None = None
-    files: list[Path] = field(default_factory=list)
-    assignments: list[str] = field(default_factory=list)
+Set: TypeAlias = tuple[list[Path], list[str]]
+"""Files and assignments of a set of parameters."""
+_NONE: Set = ([], [])
 
 
-def read_sets(
-    files: Iterable[str], assignments: Iterable[str]
-) -> tuple[list[str], list[ParameterSet]]:
-    """Return the assignments that hold everywhere, and the sets in the order they are named.
+def parameter_sets(
+    files: Iterable[Path], assignments: Iterable[str]
+) -> tuple[list[str], dict[str, Set]]:
+    """Return the assignments that hold everywhere, and the sets of parameters by their labels.
 
-    Parameters
-    ----------
-    files : iterable of str
-        Each ``LABEL=FILE`` or ``VARIANT@LABEL=FILE``.
-    assignments : iterable of str
-        Each ``NAME=VALUE``, with ``LABEL:`` or ``VARIANT@LABEL:`` before it if it is for a set.
-
-    Raises
-    ------
-    UsageError
-        If one is malformed.
+    A file is a set that is labelled by its stem; ``LABEL:NAME=VALUE`` makes or completes one.
     """
     everywhere: list[str] = []
-    sets: dict[str, ParameterSet] = {}
-
-    def named(label: str) -> ParameterSet:
-        variant, at, name = label.rpartition("@")
-        if not name or (at and not variant):
-            raise UsageError(
-                f"{label!r} is not a label of a parameter set: give LABEL or VARIANT@LABEL"
-            )
-        return sets.setdefault(label, ParameterSet(name, variant or None))
-
-    for word in files:
-        label, equals, file = word.partition("=")
-        if not (equals and file):
-            raise UsageError(f"--params expects LABEL=FILE, not {word!r}")
-        named(label).files.append(Path(file))
+    sets: dict[str, Set] = {}
+    for file in files:
+        sets.setdefault(file.stem, ([], []))[0].append(file)
     for word in assignments:
         label = word.partition("=")[0].rpartition(":")[0]
         if label:
-            named(label).assignments.append(word[len(label) + 1 :])
+            sets.setdefault(label, ([], []))[1].append(word[len(label) + 1 :])
         else:
             everywhere.append(word)
-    return everywhere, list(sets.values())
-
-
-def _fitting_systems(
-    variants: Sequence[Variant], sets: Iterable[ParameterSet], everywhere: Sequence[str]
-) -> tuple[dict[str, list[System]], list[str]]:
-    """Return each variant with the sets that fit it, and notes on those that do not.
-
-    Raises
-    ------
-    InputError
-        If a set fits no variant.
-    """
-    systems: dict[str, list[System]] = {variant.name: [] for variant in variants}
-    notes: list[str] = []
-    for each in sets:
-        misfits, is_fitting = [], False
-        for variant in variants:
-            if each.variant in {None, variant.name}:
-                try:
-                    systems[variant.name].append(_variant_system(variant, each, everywhere))
-                    is_fitting = True
-                except InputError as error:
-                    misfits.append(f"{variant.name} is not run with {each.name}: {error}")
-        if not is_fitting:
-            missing = f"the parameter set {each.name} is for no variant among --variants"
-            raise InputError(misfits[0] if misfits else missing)
-        notes += misfits
-    return systems, notes
+    return everywhere, sets
 
 
 def configure(variant: Variant, files: Iterable[Path], assignments: Iterable[str]) -> Configuration:
@@ -174,17 +119,16 @@ class EvaluationRequest(WorkersOption):
         f"{', '.join(MODELS)}; {ALL} (default) for all variants, {ALL_BASELINES} for "
         f"{', '.join(_BASELINES_WITHOUT_MODELS)}",
     )  # fmt: skip
-    params: Sequence[str] = option(
-        action="append", default=[], metavar="[VARIANT@]LABEL=FILE",
-        help="run with this file of parameters too, named LABEL in the results; for all variants "
-        "that it fits, or one",
+    params: Sequence[Path] = option(
+        type=Path, action="append", default=[], metavar="FILE",
+        help="run the variants that this file of parameters fits with it too, as VARIANT@ and the "
+        "file's name",
     )  # fmt: skip
     assignments: Sequence[str] = option(
         "--set", action="append", default=[],
-        metavar="[[VARIANT@]LABEL:]NAME=VALUE",
+        metavar="[LABEL:]NAME=VALUE",
         help="set a parameter: everywhere, or to make or complete the parameter set LABEL",
     )  # fmt: skip
-    without_defaults: bool = switch(help="leave out the defaults where there is a parameter set")
     baselines_python: Path | None = option(
         help="interpreter of the baselines (default: .venv-baselines/bin/python, else the one "
         "in your cache; without either, evaluate prints the command that builds it)",
@@ -211,18 +155,12 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
     """
     words = _words(request.variants)
     variants = [find_variant(word) for word in words if not word.startswith(BASELINE)]
-    everywhere, sets = read_sets(request.params, request.assignments)
+    everywhere, sets = parameter_sets(request.params, request.assignments)
     known = {name for variant in variants for name in settable(variant)}
     for name in (word.partition("=")[0] for word in everywhere):
         if name not in known:
             raise InputError(unknown_name(name, known))
-    fitting, notes = _fitting_systems(variants, sets, everywhere)
-    systems: list[System] = []
-    for variant in variants:
-        own = fitting[variant.name]
-        if not (own and request.without_defaults):
-            systems.append(_variant_system(variant, ParameterSet(""), everywhere))
-        systems += own
+    systems, notes = _with_sets(variants, everywhere, sets)
     models = _models(request.baseline_model)
     for word in words:
         if word.startswith(BASELINE):
@@ -240,14 +178,35 @@ def _words(text: str) -> list[str]:
     return list(dict.fromkeys(words))
 
 
+def _with_sets(
+    variants: Sequence[Variant], everywhere: Sequence[str], sets: Mapping[str, Set]
+) -> tuple[list[System], list[str]]:
+    """Return each variant with its defaults and the sets that fit it, and notes on the others."""
+    labelled = [("", _NONE), *sets.items()]
+    found = [_variant_system(variant, everywhere, *one) for variant in variants for one in labelled]
+    systems: list[System] = [one for one in found if isinstance(one, VariantSystem)]
+    notes = [one for one in found if isinstance(one, str)]
+    fitting = {one.parameter_set for one in found if isinstance(one, VariantSystem)}
+    for label in sets:
+        if label not in fitting:
+            why = (note for note in notes if f" is not run with {label}: " in note)
+            raise InputError(next(why, f"the parameter set {label} is for no variant"))
+    return systems, notes
+
+
 def _variant_system(
-    variant: Variant, parameter_set: ParameterSet, everywhere: Iterable[str]
-) -> VariantSystem:
-    table = settable(variant)
-    fitting = [word for word in everywhere if word.partition("=")[0] in table]
-    words = [*fitting, *parameter_set.assignments]
-    configuration = configure(variant, parameter_set.files, words)
-    return make_system(variant, parameter_set.name, configuration, parse_assignments(table, words))
+    variant: Variant, everywhere: Sequence[str], label: str, own: Set
+) -> VariantSystem | str:
+    """Return the variant with a set of parameters, or say why it does not fit."""
+    table, (files, assignments) = settable(variant), own
+    words = [word for word in everywhere if word.partition("=")[0] in table] + assignments
+    try:
+        configuration = configure(variant, files, words)
+        return make_system(variant, label, configuration, parse_assignments(table, words))
+    except InputError as error:
+        if not label:
+            raise
+        return f"{variant.name} is not run with {label}: {error}"
 
 
 def make_system(

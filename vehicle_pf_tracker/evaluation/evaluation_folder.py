@@ -18,9 +18,8 @@
 
     evaluation.json                                      the plan
     recordings/<recording>/truth.csv
-    cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json, run.json and digests.json; or
+    cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json and run.json; or
     cells/<recording>/<system>/seed-<n>/failed.json      {"reason": a sentence}
-    cells/<recording>/<system>/seed-<n>-<start>/         the same from a shifted first box
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.offline.output_files import write_csv
-from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN, damage
+from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 
 
@@ -102,21 +101,20 @@ def read_truth(path: Path) -> dict[int, Truth]:
     InputError
         If there is no such file, or a line of it is not as `write_truth` writes it.
     """
-    lines = list(csv.reader(read_text(path, "the truth").splitlines()))
-    if lines[:1] != [list(COLUMNS)]:
+    lines = csv.DictReader(read_text(path, "the truth").splitlines())
+    if lines.fieldnames is None or tuple(lines.fieldnames) != COLUMNS:
         raise InputError(f"the truth {path} must begin with the line {','.join(COLUMNS)}")
-    return dict(_row(path, number, line) for number, line in enumerate(lines[1:], start=2))
-
-
-def _row(path: Path, number: int, line: Sequence[str]) -> tuple[int, Truth]:
     try:
-        frame, stamp_ns, *numbers, occlusion = line
-        box = Box(*map(float, numbers))
-        if not all(abs(value) <= LARGEST_PX for value in astuple(box)):
-            raise ValueError(f"a box beyond {LARGEST_PX:.0f} px")
-        return int(frame), Truth(int(stamp_ns), box, Occlusion[occlusion.upper()])
+        return {int(line["frame"]): _truth(line) for line in lines}
     except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"line {number} of the truth {path} is broken: {error}") from error
+        raise InputError(f"line {lines.line_num} of the truth {path} is broken: {error}") from error
+
+
+def _truth(line: Mapping[str, str]) -> Truth:
+    box = Box(*(float(line[name]) for name in ("x", "y", "width", "height")))
+    if not all(abs(value) <= LARGEST_PX for value in astuple(box)):
+        raise ValueError(f"a box beyond {LARGEST_PX:.0f} px")
+    return Truth(int(line["stamp_ns"]), box, Occlusion[line["occlusion"].upper()])
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,8 +175,6 @@ class EvaluationFolder:
         See the plan for the order.
     seeds : tuple of int
         See the plan for the order.
-    shifted : tuple of str
-        Names of the shifted first boxes.
 
     Raises
     ------
@@ -197,9 +193,8 @@ class EvaluationFolder:
                 f"{self.plan['format']}, not {FORMAT}): evaluate again into another folder"
             )
         try:
-            self.recordings = tuple(_source(entry) for entry in self.plan["recordings"])
+            self.recordings = tuple(Source(**entry) for entry in self.plan["recordings"])
             self.seeds = tuple(map(int, self.plan["seeds"]))
-            self.shifted = tuple(map(str, self.plan.get("shifted_starts", ())))
             self.systems = tuple(_system(entry, self.seeds) for entry in self.plan["systems"])
         except (KeyError, TypeError, ValueError) as error:
             raise InputError(f"the plan {path / PLAN} is broken: {error!r}") from error
@@ -209,26 +204,21 @@ class EvaluationFolder:
         path = self.path / "recordings" / recording / TRUTH
         return read_truth(path) if path.is_file() else {}
 
-    def cell(self, recording: str, system: str, seed: int, start: str = "") -> Cell:
+    def cell(self, recording: str, system: str, seed: int) -> Cell:
         """Read one cell of the grid."""
-        folder = cell_folder(self.path, recording, system, seed, start)
+        folder = cell_folder(self.path, recording, system, seed)
         if (folder / FAILED).is_file():
             reason = str(read_document(folder / FAILED).get("reason", "no reason was given"))
             return Cell(None, {}, reason)
         if not (folder / ESTIMATES).is_file():
             return Cell(None, {}, "it was not run")
-        fault = damage(folder)
-        if fault:
-            reason = f"its stored result is damaged: {fault}; the same `evaluate` runs it again"
-            return Cell(None, {}, reason)
         rows = tuple(read_estimates(folder / ESTIMATES))
         return Cell(rows, read_document(folder / RUN), "")
 
 
-def cell_folder(folder: Path, recording: str, system: str, seed: int, start: str = "") -> Path:
-    """Return the folder of one cell of the evaluation in `folder`; `start` names a shifted box."""
-    name = f"seed-{seed}-{start}" if start else f"seed-{seed}"
-    return folder / "cells" / recording / safe_name(system) / name
+def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:
+    """Return the folder of one cell of the evaluation in `folder`."""
+    return folder / "cells" / recording / safe_name(system) / f"seed-{seed}"
 
 
 def safe_name(label: str) -> str:
@@ -252,12 +242,6 @@ def read_document(path: Path) -> dict[str, Any]:
     if not isinstance(document, dict):
         raise InputError(f"{path} does not hold a JSON object")
     return document
-
-
-def _source(entry: Mapping[str, Any]) -> Source:
-    name, path, topic, digest = (str(entry[key]) for key in ("name", "path", "topic", "digest"))
-    frames, width, height = (int(entry[key]) for key in ("frames", "width", "height"))
-    return Source(name, path, topic, frames, width, height, digest, entry.get("identity"))
 
 
 def _system(entry: Mapping[str, Any], seeds: Sequence[int]) -> SystemEntry:

@@ -22,17 +22,12 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, NO_VALUE, RECOVERED, Column
 from vehicle_pf_tracker.evaluation.report.aggregates import (
-    COLUMNS,
-    NO_VALUE,
-    RANKED,
-    RECOVERED,
     Aggregates,
-    Column,
     Summaries,
     counted,
     interval_text,
-    listing,
     mean_and_spread_text,
     mean_text,
 )
@@ -126,69 +121,21 @@ def recording_table(aggregates: Aggregates, recording: str, columns: Sequence[Co
     )
 
 
-def ranks_table(aggregates: Aggregates) -> Table:
-    """Show places with their ties and mean ranks, by each ranked metric."""
-    headers: list[Header] = []
-    rows: dict[str, list[TableCell]] = {label: [] for label in aggregates.order}
-    for column in RANKED:
-        if column.key not in aggregates.rankings:
-            continue
-        headers += [Header(f"{column.label}: place"), Header("mean rank")]
-        ranks = {rank.system: rank for rank in aggregates.rankings[column.key].ranks}
-        differ = any(rank.place > 1 for rank in ranks.values())
-        for label, row in rows.items():
-            if label not in ranks:
-                row += [TableCell(NO_VALUE), TableCell(NO_VALUE)]
-                continue
-            rank = ranks[label]
-            note = f"tied with {listing(rank.tied)}" if rank.tied else ""
-            place = f"{rank.place}{' =' if rank.tied else ''}"
-            row.append(TableCell(place, rank.place, differ and rank.place == 1, note))
-            row.append(TableCell(f"{rank.mean_rank:.2f}", rank.mean_rank))
-    return Table(headers, rows)
-
-
-def starts_table(aggregates: Aggregates) -> Table | None:
-    """Compare runs from shifted first boxes with those from the true one, by each ranked metric.
-
-    None without the former.
-    """
-    if aggregates.shifted is None:
-        return None
-    note = "Standard deviation over the shifted boxes of a recording, mean over the recordings."
-    headers = [
-        header
-        for column in RANKED
-        for header in (
-            Header(f"{column.label}: true box", column.unit),
-            Header("shifted", column.unit),
-            Header("spread", column.unit, note),
-        )
-    ]
+def behind_table(aggregates: Aggregates) -> Table:
+    """Show how far each system is behind the first, recording by recording."""
     rows = {
-        label: [
-            number_cell(value, f".{column.decimals}f")
-            for column in RANKED
-            for value in _start_values(aggregates, aggregates.shifted, label, column.key)
-        ]
-        for label in aggregates.order
+        label: [_difference(found[column.key], column) for column in COMPARED]
+        for label, found in aggregates.behind.items()
     }
-    return Table(headers, rows)
+    return Table([Header(column.label, column.unit) for column in COMPARED], rows)
 
 
-def _start_values(
-    true: Aggregates, shifted: Aggregates, label: str, key: str
-) -> Iterator[float | None]:
-    """Give the means from the true and from shifted boxes, and the spread over the latter."""
-    for some in (true, shifted):
-        summary = some.overall.get(label, {}).get(key)
-        yield summary.mean if summary else None
-    spreads = [
-        found.spread
-        for by_system in shifted.recordings.values()
-        if (found := by_system.get(label, {}).get(key)) and found.spread is not None
-    ]
-    yield statistics.fmean(spreads) if spreads else None
+def _difference(found: Summary | None, column: Column) -> TableCell:
+    if found is None:
+        return TableCell(NO_VALUE)
+    within = interval_text(found, column)
+    text = f"{found.mean:+.{column.decimals}f}" + (f" ({within})" if within else "")
+    return TableCell(text, found.mean)
 
 
 def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]]) -> Table | None:

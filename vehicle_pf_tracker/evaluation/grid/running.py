@@ -19,7 +19,7 @@ from __future__ import annotations
 import functools
 import shutil
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import astuple, dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -27,7 +27,6 @@ import cv2
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
-from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
 from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, GridCell, Plan, VariantSystem
@@ -41,10 +40,8 @@ from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.offline.run_folder import (
     METRICS,
     RUN,
-    damage,
     describe,
     describe_run,
-    seal,
     write_run,
 )
 from vehicle_pf_tracker.trackers.registry import find_variant
@@ -97,7 +94,7 @@ def _run_variant(
         find_variant(system.variant),
         system.tracker_parameters(cell.seed),
         system.session_parameters(),
-        first_truth=_first_truth(cell, recording),
+        first_truth=recording.truth[0],
         max_diff=cell.max_diff,
     )
     rows = list(tracker.rows(recording.frames()))
@@ -106,16 +103,11 @@ def _run_variant(
     return rows, describe_run(tracker.session, tracker.start_frame, [], *source)
 
 
-def _first_truth(cell: GridCell, recording: Footage) -> Truth:
-    first = recording.truth[0]
-    return replace(first, box=cell.start.box(first.box))
-
-
 def _run_baseline(
     cell: GridCell, system: BaselineSystem, recording: Footage
 ) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a baseline and its `run.json`."""
-    first = _first_truth(cell, recording)
+    first = recording.truth[0]
     python = Path(system.python) if system.python else None
     with Baseline(system.baseline, python, system.model_files()) as baseline:
         rows = list(baseline_rows(baseline, recording.frames(), first))
@@ -177,10 +169,11 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) 
 
 
 def _is_stored(cell: GridCell, folder: Path) -> bool:
-    """Return whether the folder has a valid result of the cell; one that failed is tried again."""
-    if damage(folder):
+    """Return whether the folder has the result of the cell; one that failed is tried again."""
+    try:
+        return bool(read_document(folder / RUN).get("key") == cell.key())
+    except InputError:  # it is not there, or nothing that can be read
         return False
-    return read_document(folder / RUN).get("key") == cell.key()
 
 
 def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]) -> None:
@@ -192,5 +185,4 @@ def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]
             keys = {"command": command, "key": cell.key()}
             write_run(partial, outcome.rows, {**outcome.run, **keys})
             write_json(partial / METRICS, outcome.metrics.to_json())
-            seal(partial)
     flush(folder.parent)

@@ -23,14 +23,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, SystemEntry
 from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
-from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
-from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.evaluation.scores import score_frames
 
 _DECIDING = ("vehicle_pf_tracker", "opencv", "numpy")
 """Programs whose version moves estimates."""
@@ -42,16 +40,12 @@ class ScoredRun:
 
     Attributes
     ----------
-    recording, system, seed, start : str, str, int, str
-        Cell of the grid; `start` names a shifted first box, and is empty for the true one.
+    recording, system, seed : str, str, int
+        Cell of the grid.
     metrics : Metrics
         Metrics of the run.
     errors : (N,) array
         Error of the centre in px by frame of the recording; NaN where nothing is scored.
-    boxes : sequence of Box or None
-        Box of the scored estimate by frame.
-    rows : sequence of EstimateRow
-        Estimates by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
     versions : mapping of str to str or None
@@ -61,11 +55,8 @@ class ScoredRun:
     recording: str
     system: str
     seed: int
-    start: str
     metrics: Metrics
     errors: NDArray[np.float64]
-    boxes: Sequence[Box | None]
-    rows: Sequence[EstimateRow]
     curves: Mapping[str, Curve]
     versions: Mapping[str, str | None]
 
@@ -77,13 +68,7 @@ class FailedCell:
     recording: str
     system: str
     seed: int
-    start: str
     reason: str
-
-    @property
-    def run(self) -> str:
-        """Seed, and start if it is shifted."""
-        return f"{self.seed} {self.start}".rstrip()
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,17 +81,15 @@ class ScoredEvaluation:
         Folder the runs were read from.
     truths : mapping of str to mapping of int to Truth
         Truths by recording and number of the frame.
-    runs, shifted : tuple of ScoredRun
-        Runs from the true box in the order of the plan (recordings, systems, seeds), and those from
-        shifted first boxes.
+    runs : tuple of ScoredRun
+        Runs in the order of the plan (recordings, systems, seeds).
     failed : tuple of FailedCell
-        Failed cells in the same order, from any start.
+        Failed cells in the same order.
     """
 
     folder: EvaluationFolder
     truths: Mapping[str, Mapping[int, Truth]]
     runs: tuple[ScoredRun, ...]
-    shifted: tuple[ScoredRun, ...]
     failed: tuple[FailedCell, ...]
 
     @property
@@ -128,10 +111,19 @@ class ScoredEvaluation:
         ]
 
     @property
+    def notes(self) -> list[str]:
+        """Say how many cells have a result, and whether versions are mixed."""
+        cells, failed = len(self.runs) + len(self.failed), len(self.failed)
+        result = f"All {cells} cells of the grid have a result."
+        if failed:
+            result = f"{failed} of {cells} cells have no result; see Failed cells."
+        return [result, *self.mixed_versions]
+
+    @property
     def mixed_versions(self) -> list[str]:
         """A sentence where runs were made with different versions; baselines have their own."""
         ours = {one.label for one in self.systems if not one.kind.startswith("baseline:")}
-        runs = [run for run in (*self.runs, *self.shifted) if run.system in ours]
+        runs = [run for run in self.runs if run.system in ours]
         found = {key: {str(run.versions.get(key)) for run in runs} for key in _DECIDING}
         mixed = [f"{key} {' and '.join(sorted(v))}" for key, v in found.items() if len(v) > 1]
         words = "Results of different versions are compared"
@@ -146,30 +138,20 @@ def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
     """Score all cells; those that cannot be read or scored are failed cells."""
     truths = {entry.name: folder.truth(entry.name) for entry in folder.recordings}
     results = [
-        _result(folder, (recording.name, system.label, seed, start), truths[recording.name])
+        _result(folder, (recording.name, system.label, seed), truths[recording.name])
         for recording, system in itertools.product(folder.recordings, folder.systems)
-        for start in ("", *folder.shifted)
-        for seed in (system.seeds[:1] if start else system.seeds)
+        for seed in system.seeds
     ]
-    runs = [result for result in results if isinstance(result, ScoredRun)]
     return ScoredEvaluation(
         folder,
         truths,
-        tuple(run for run in runs if not run.start),
-        tuple(run for run in runs if run.start),
+        tuple(result for result in results if isinstance(result, ScoredRun)),
         tuple(result for result in results if isinstance(result, FailedCell)),
     )
 
 
-def typical(runs: Sequence[ScoredRun]) -> ScoredRun | None:
-    """Return the run with the median error (RMSE) of several seeds, the lower of two."""
-    judged = [run for run in runs if run.metrics.rmse_px is not None]
-    ordered = sorted(judged, key=lambda run: (run.metrics.rmse_px or 0.0, run.seed))
-    return ordered[(len(ordered) - 1) // 2] if ordered else None
-
-
 def _result(
-    folder: EvaluationFolder, key: tuple[str, str, int, str], truth: Mapping[int, Truth]
+    folder: EvaluationFolder, key: tuple[str, str, int], truth: Mapping[int, Truth]
 ) -> ScoredRun | FailedCell:
     max_diff = float(folder.plan.get("options", {}).get("max_diff", MAX_DIFF))
     try:
@@ -179,19 +161,11 @@ def _result(
         scores = score_frames(cell.rows, list(truth.values()), max_diff)
     except InputError as error:
         return FailedCell(*key, str(error))
-    counted, frames = scores.counted, scores.frames
-    errors = [frame.error if frame.counts else None for frame in frames]
+    errors = [frame.error if frame.counts else None for frame in scores.frames]
     return ScoredRun(
         *key,
         metrics=measure(scores),
         errors=np.array(errors, dtype=np.float64),  # None is NaN
-        boxes=[_box(frame) for frame in frames],
-        rows=cell.rows,
-        curves=curves(counted),
+        curves=curves(scores.counted),
         versions=cell.run.get("versions", {}),
     )
-
-
-def _box(frame: FrameScore) -> Box | None:
-    row = frame.scored_row
-    return None if row is None or frame.waiting else row.box
