@@ -191,6 +191,7 @@ def test_a_scene_setting_that_does_not_fit(fails, tmp_path, words, message):
         (("runn", "x"), "no verb 'runn' (did you mean 'run'?); the verbs are demo, import", 2),
         (("dance",), "there is no verb 'dance'; the verbs are demo, import", 2),
         (("synth",), "synth needs SCENE and OUT", 2),
+        (("synth", "traffic-forty", "out"), "`python -m laboratory.scenes SCENE OUT`", 1),
         (("synth", "moon", "out"), "no scene 'moon'; choose one of bar, ", 1),
         (("synth", "bar", "."), "is not empty; give --overwrite", 1),
         (("import", "none.mp4", "out"), "none.mp4", 1),

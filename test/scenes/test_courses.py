@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Paths, speeds, bends and headings, by hand numbers."""
+"""Paths, speeds, and headings, by hand numbers."""
 
 import math
 
@@ -20,7 +20,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from laboratory.scenes.turns import Bend
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.models import (
     Model,
@@ -49,25 +48,6 @@ def test_distance_is_the_area_under_the_speed():
 def test_arrival_is_when_the_distance_is_covered(speeds, distance):
     pace = Pace(tuple((10.0 * number, speed) for number, speed in enumerate(speeds)))
     assert pace(pace.arrival(distance)) == pytest.approx(distance, abs=1e-6)
-
-
-def test_a_left_turn_goes_round_a_flattened_circle_and_away():
-    bend = Bend(START, Pace.steady(1.0), straight=50, radius=40, angle=math.pi / 2)
-    quarter = 40 * math.pi / 2
-    assert bend(20) == Pose(120, 200, 0, 10)
-    middle = bend(50 + quarter / 2)
-    assert middle.heading == pytest.approx(math.pi / 4)
-    assert middle.x == pytest.approx(150 + 40 * math.sin(math.pi / 4))
-    assert middle.y == pytest.approx(200 - SLANT * 40 * (1 - math.cos(math.pi / 4)))
-    end = bend(50 + quarter + 30)
-    assert (end.x, end.y) == pytest.approx((190, 200 - SLANT * 70))
-    assert end.heading == pytest.approx(math.pi / 2)
-
-
-def test_a_right_turn_of_one_who_drives_left_goes_away_too():
-    start = Pose(100.0, 200.0, math.pi, 10.0)
-    end = Bend(start, Pace.steady(1.0), 50, 40, -math.pi / 2)(50 + 20 * math.pi + 30)
-    assert (end.x, end.y) == pytest.approx((10, 200 - SLANT * 70))
 
 
 def test_swaying_adds_its_swings():

@@ -24,6 +24,7 @@ from typing import Any
 from vehicle_pf_tracker.cli.console import UsageError, counting
 from vehicle_pf_tracker.cli.requests import Names, OverwriteOption, option, positional, switch
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.output_files import replacing
@@ -65,6 +66,12 @@ def run(request: Request) -> int:
         return 0
     if request.scene is None or request.out is None:
         raise UsageError("synth needs SCENE and OUT; `synth --list` shows the scenes")
+    if request.scene not in SCENES:
+        raise InputError(
+            f"there is no scene {request.scene!r}{suggestion(request.scene, SCENES)}; choose one "
+            f"of {', '.join(SCENES)}; turns and the scenes with many vehicles are written by "
+            "`python -m laboratory.scenes SCENE OUT` in a clone of the repository"
+        )
     scene = make_scene(request.scene, seed=request.seed, settings=request.settings)
     facts = (
         f"{request.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "

@@ -121,8 +121,10 @@ class PacedDetector:
     ----------
     every : int
         k in use, which differs between machines where it is chosen.
+    found : int
+        Number of detections in the last image that it looked at.
     seconds : float
-        Time that the last image took that it looked at, s.
+        Time that they took, s.
     disturbed, is_blind : bool
         See `Detector`.
     """
@@ -133,7 +135,7 @@ class PacedDetector:
         self._detector, self._run = detector, run
         self._wanted = wanted
         self.every = 1
-        self.seconds = 0.0
+        self.found, self.seconds = 0, 0.0
         self.disturbed = self.is_blind = False
         self._images, self._others = 0, 0.0
 
@@ -147,7 +149,7 @@ class PacedDetector:
         self._images = 1
         began = time.perf_counter()
         found = self._run(partial(self._detector.detect, frame, tracks))
-        self.seconds = time.perf_counter() - began
+        self.found, self.seconds = len(found), time.perf_counter() - began
         self.disturbed, self.is_blind = self._detector.disturbed, self._detector.is_blind
         return found
 

@@ -12,35 +12,49 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Blocks of an MCAP file: its chunks, and messages outside of chunks, read by the library `mcap`.
+"""The parts of an MCAP file that hold messages, also damaged ones.
 
-What the library does not do is here: it bounds what a damaged chunk may cost, and names any damage.
+The `mcap` package's reader stops with an exception where a file is cut, and loads files without
+chunks into memory whole; a recording of a crashed computer is often both. See the MCAP format
+specification, sections Records and Chunk (op=0x06).
 """
 
 from __future__ import annotations
 
-import io
 import struct
-from collections.abc import Iterator, Sequence
+import zlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
-from mcap.data_stream import ReadDataStream
-from mcap.exceptions import McapError
+import lz4.frame
+import zstandard
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, McapRecord, Message, Schema
-from mcap.stream_reader import breakup_chunk
-from zstandard import ZstdError
 
 RECORD_HEAD = 9
 """Bytes before a record's content: its opcode (1) and its length (8)."""
+
+_MESSAGE_HEAD = struct.Struct("<HIQQ")
+_CHUNK_HEAD = struct.Struct("<QQQII")
 _MAX_CHUNK = 2**28
 """Bytes that a chunk is believed to hold: an image of 30 megapixels, 16 bits and three colours has
 180 MB, and recorders close a chunk after about 1 MB."""
+_IN_CHUNKS = {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE}
+_FOREIGN = 0x80
+"""First opcode of records that the MCAP format leaves to applications."""
 
 
 class DamageError(Exception):
     """A part of a file cannot be read."""
+
+
+class Message(NamedTuple):
+    """A message as it lies in the file; `data` is a view of its chunk."""
+
+    channel_id: int
+    log_time_ns: int
+    data: memoryview
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,37 +94,83 @@ def read_block(path: Path, block: Block) -> Iterator[Message]:
         If the block cannot be read, is cut shorter than the index says, or its content is damaged.
     """
     try:
-        record = read_span(path, block.offset, block.length)
+        record = memoryview(read_span(path, block.offset, block.length))
     except OSError as error:
         raise DamageError(f"it cannot be read ({error.strerror})") from error
     if len(record) < max(block.length, RECORD_HEAD):
         raise DamageError("the file ends before it")
     if record[0] not in {Opcode.CHUNK, Opcode.MESSAGE}:
         raise DamageError("there are no messages where the index says so")
-    for one in block_records(record[0], record[RECORD_HEAD:]):
-        if isinstance(one, Message):
-            yield one
+    for opcode, content in block_records(record[0], record[RECORD_HEAD:]):
+        if opcode == Opcode.MESSAGE:
+            yield parse_message(content)
 
 
-def block_records(opcode: int, content: bytes) -> Sequence[McapRecord]:
-    """Split a chunk into its records; a message, a channel or a schema is returned alone.
+def block_records(opcode: int, content: memoryview) -> Iterator[tuple[int, memoryview]]:
+    """Split a chunk into its records; any other record is returned as it is.
 
     Raises
     ------
     DamageError
-        If it cannot be read.
+        If a chunk cannot be unpacked.
     """
-    stream = ReadDataStream(io.BytesIO(content))
+    if opcode != Opcode.CHUNK:
+        yield opcode, content
+        return
+    records = _unpack_chunk(content)
+    position = 0
+    while position + RECORD_HEAD <= len(records):
+        opcode, length = struct.unpack_from("<BQ", records, position)
+        position += RECORD_HEAD
+        if opcode not in _IN_CHUNKS and opcode < _FOREIGN:
+            raise DamageError(f"it holds a record of kind {opcode}")  # a gigabyte of zeros, too
+        if position + length > len(records):
+            break
+        yield opcode, records[position : position + length]
+        position += length
+
+
+def parse_message(content: memoryview) -> Message:
+    """Split the content of a message record.
+
+    Raises
+    ------
+    DamageError
+        If it is shorter than a message's head.
+    """
+    if len(content) < _MESSAGE_HEAD.size:
+        raise DamageError("a message is too short")
+    channel_id, _, log_time, _ = _MESSAGE_HEAD.unpack_from(content)
+    return Message(channel_id, log_time, content[_MESSAGE_HEAD.size :])
+
+
+def _unpack_chunk(content: memoryview) -> memoryview:
     try:
-        if opcode == Opcode.MESSAGE:
-            return [Message.read(stream, len(content))]
-        if opcode == Opcode.CHANNEL:
-            return [Channel.read(stream)]
-        if opcode == Opcode.SCHEMA:
-            return [Schema.read(stream)]
-        chunk = Chunk.read(stream)
-        if chunk.uncompressed_size > _MAX_CHUNK:
-            raise DamageError(f"it claims to hold {chunk.uncompressed_size} bytes")
-        return breakup_chunk(chunk, validate_crc=True)
-    except (McapError, struct.error, ValueError, RuntimeError, MemoryError, ZstdError) as error:
-        raise DamageError(f"it cannot be read ({type(error).__name__}: {error})") from error
+        _, _, size, checksum, name_length = _CHUNK_HEAD.unpack_from(content)
+        name_end = _CHUNK_HEAD.size + name_length
+        compression = bytes(content[_CHUNK_HEAD.size : name_end]).decode()
+        (packed_size,) = struct.unpack_from("<Q", content, name_end)
+    except (struct.error, UnicodeDecodeError):
+        raise DamageError("its head is broken") from None
+    packed = content[name_end + 8 : name_end + 8 + packed_size]
+    records = _decompress(compression, packed, size)
+    if len(records) != size or (checksum and zlib.crc32(records) != checksum):
+        raise DamageError("its checksum is wrong")
+    return records
+
+
+def _decompress(compression: str, packed: memoryview, size: int) -> memoryview:
+    """Unpack `size` bytes, and no more than one beyond: a chunk may hold more than it claims."""
+    if size > _MAX_CHUNK:
+        raise DamageError(f"it claims to hold {size} bytes")
+    try:
+        if compression == "lz4":
+            return memoryview(lz4.frame.LZ4FrameDecompressor().decompress(packed, size + 1))
+        if compression == "zstd":
+            with zstandard.ZstdDecompressor().stream_reader(packed) as reader:
+                return memoryview(reader.read(size + 1))
+    except (RuntimeError, EOFError, zstandard.ZstdError) as error:
+        raise DamageError(f"it cannot be decompressed ({error})") from error
+    if compression:
+        raise DamageError(f"its compression {compression!r} is unknown")
+    return packed

@@ -29,10 +29,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO, TypeAlias
 
+from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.reader import SeekingReader
-from mcap.records import Channel, Message, Schema
+from mcap.records import Channel, Schema
 from mcap.summary import Summary
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -40,7 +41,9 @@ from vehicle_pf_tracker.recordings.mcap_blocks import (
     RECORD_HEAD,
     Block,
     DamageError,
+    Message,
     block_records,
+    parse_message,
     read_block,
     read_span,
 )
@@ -170,23 +173,26 @@ def _scanned(path: Path, stream: BinaryIO, size: int) -> McapIndex:
             index.is_truncated = read_span(path, size - len(MAGIC), len(MAGIC)) != MAGIC
             return index
         if opcode in _READERS:
-            _add_record(index, opcode, offset, stream.read(length))
+            _add_record(index, opcode, offset, memoryview(stream.read(length)))
         offset = end
 
 
-def _add_record(index: McapIndex, opcode: int, offset: int, content: bytes) -> None:
+def _add_record(index: McapIndex, opcode: int, offset: int, content: memoryview) -> None:
     times: list[int] = []
     channels: Counter[int] = Counter()
     try:
-        for record in block_records(opcode, content):
-            if isinstance(record, Message):
-                times.append(record.log_time)
-                channels[record.channel_id] += 1
-            elif isinstance(record, Schema):
-                index.schemas[record.id] = record
-            elif isinstance(record, Channel):
-                index.channels[record.id] = record
-    except DamageError as error:
+        for kind, record in block_records(opcode, content):
+            if kind == Opcode.MESSAGE:
+                message = parse_message(record)
+                times.append(message.log_time_ns)
+                channels[message.channel_id] += 1
+            elif kind == Opcode.SCHEMA:
+                schema = Schema.read(ReadDataStream(io.BytesIO(record)))
+                index.schemas[schema.id] = schema
+            elif kind == Opcode.CHANNEL:
+                channel = Channel.read(ReadDataStream(io.BytesIO(record)))
+                index.channels[channel.id] = channel
+    except (DamageError, McapError, struct.error, ValueError) as error:
         index.damages.append(f"a part at byte {offset} was skipped: {error}")
         return
     if times:
@@ -243,8 +249,11 @@ def merged_messages(
             continue
         try:
             for place, message in enumerate(read_block(files[number].path, item)):
-                if message.channel_id in wanted[number] and first_ns <= message.log_time < end_ns:
-                    heapq.heappush(heap, (message.log_time, number, offset, place, message))
+                if (
+                    message.channel_id in wanted[number]
+                    and first_ns <= message.log_time_ns < end_ns
+                ):
+                    heapq.heappush(heap, (message.log_time_ns, number, offset, place, message))
         except DamageError as error:
             on_damage(files[number], item, error)
 

@@ -102,7 +102,7 @@ def serialize(message: Any, type_name: str) -> memoryview:
     return _store().serialize_cdr(message, type_name)
 
 
-def deserialize(data: bytes | memoryview, type_name: str) -> Any:
+def deserialize(data: memoryview, type_name: str) -> Any:
     """Read a message from CDR; arrays in it are views of `data`.
 
     Raises
@@ -131,7 +131,7 @@ def type_hash(type_name: str) -> str:
     return _store().hash_rihs01(type_name)
 
 
-def header_stamp_ns(data: bytes | memoryview) -> int | None:
+def header_stamp_ns(data: memoryview) -> int | None:
     """Read the stamp of a serialized message that begins with a header; None if it is too short."""
     if len(data) < 12:
         return None

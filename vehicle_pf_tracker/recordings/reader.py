@@ -22,8 +22,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mcap.records import Message
-
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
@@ -31,6 +29,7 @@ from vehicle_pf_tracker.image.encodings import frame_of_message
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.footage import StampedFrame
+from vehicle_pf_tracker.recordings.mcap_blocks import Message
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex, merged_messages, read_index
 from vehicle_pf_tracker.recordings.messages import deserialize, header_stamp_ns
 from vehicle_pf_tracker.recordings.topic_table import (
@@ -183,7 +182,7 @@ class Recording:
         early: list[tuple[McapIndex, Message]] = []
         for found in self._select(messages.TRUTH_TOPICS):
             # Topics of one stamp may be recorded some time apart.
-            if early and found[1].log_time > early[0][1].log_time + 500_000_000:
+            if early and found[1].log_time_ns > early[0][1].log_time_ns + 500_000_000:
                 break
             early.append(found)
         stamps = [header_stamp_ns(message.data) or 0 for _, message in early]
@@ -217,7 +216,9 @@ class Recording:
             info = types[index.channels[message.channel_id].topic]
             is_stamped = info.is_cdr and info.type_name in messages.STAMPED_TYPES
             stamp = header_stamp_ns(message.data) if is_stamped else None
-            yield RecordedMessage(info.name, info.type_name, message.log_time, stamp, message.data)
+            yield RecordedMessage(
+                info.name, info.type_name, message.log_time_ns, stamp, bytes(message.data)
+            )
 
     def _select(
         self,
@@ -235,9 +236,9 @@ class Recording:
         try:
             return _decode(self.image_type, message.data)
         except InputError as error:
-            self._notices.add_image(message.log_time, self.start_ns, error)
+            self._notices.add_image(message.log_time_ns, self.start_ns, error)
             stamp = header_stamp_ns(message.data)
-            return StampedFrame(message.log_time if stamp is None else stamp, None)
+            return StampedFrame(message.log_time_ns if stamp is None else stamp, None)
 
     def _has_truth(self) -> bool:
         """Return whether there is truth; raise if its topics are there but cannot hold any."""
@@ -273,7 +274,7 @@ class Recording:
         raise InputError(f"the recording {self.path} holds no messages")
 
 
-def _decode(type_name: str, data: bytes) -> StampedFrame:
+def _decode(type_name: str, data: memoryview) -> StampedFrame:
     message = deserialize(data, type_name)
     if type_name == messages.COMPRESSED_IMAGE:
         frame = decode_compressed(message.format, message.data)

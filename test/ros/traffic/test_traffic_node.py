@@ -35,7 +35,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image, RegionOfInterest
 from std_msgs.msg import Int64
 from std_srvs.srv import Trigger
-from tracker_rig import PERIOD_NS, header, overrides, values_of
+from tracker_rig import PERIOD_NS, diagnostics_of, header, overrides, values_of
 from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, hear_notices, lanes
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -131,6 +131,11 @@ def test_without_a_selection_each_image_has_a_summary(rig):
     assert int(values["vehicles"]) == len(rig.said(COUNT - 1))
     assert int(values["vehicles TRACKING"]) >= 2
     assert int(values["dropped for a bad state"]) == 0
+    told = diagnostics_of(rig.bench, "traffic_tracker", lambda table: table["images"] == str(COUNT))
+    assert float(told["births per minute"]) > 0
+    assert float(told["detections per image"]) > 0
+    assert float(told["detector's latency (ms)"]) > 0
+    assert float(told["places with false alarms"]) >= 0
 
 
 def test_markers_and_overlay_show_every_vehicle(rig):

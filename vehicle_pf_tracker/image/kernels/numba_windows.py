@@ -315,5 +315,14 @@ def compare_joint(
     height, width, _ = frame.shape
     beside, above = half
     pixels, (left, top, right, bottom) = place_windows(positions, (width, height), half, 0)
-    cells = joint_cells(frame[top:bottom, left:right], bits, table)
-    return compare_windows(cells, pixels, (beside, beside + 1, above), scale)
+    if (right - left) * (bottom - top) <= len(pixels) * (2 * beside + 1) * (2 * above + 1):
+        cells = joint_cells(frame[top:bottom, left:right], bits, table)
+        return compare_windows(cells, pixels, (beside, beside + 1, above), scale)
+    result = np.empty(len(pixels))
+    for i in range(len(pixels)):  # they share few pixels
+        x, y = pixels[i, 0] + left, pixels[i, 1] + top
+        part = frame[max(y - above, 0) : y + above + 1, max(x - beside, 0) : x + beside + 1]
+        cells = joint_cells(part, bits, table)
+        rectangle = np.array([[0, 0, cells.shape[2], cells.shape[1]]])
+        result[i] = compare_rectangles(cells, rectangle, scale)[0]
+    return result

@@ -143,6 +143,10 @@ class NodeStream(ABC):
     def followed(self) -> Box | None:
         """Box of the target while it is visible; None where there is none."""
 
+    def judge(self) -> str:
+        """Name what is not as usual, empty where all is; called once a second."""
+        return ""
+
     @property
     @abstractmethod
     def period(self) -> float:

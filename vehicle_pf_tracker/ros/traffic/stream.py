@@ -32,6 +32,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.offline.detectors import PacedDetector
 from vehicle_pf_tracker.offline.drawing import Colour, draw_box, line_width
 from vehicle_pf_tracker.offline.page_server import LivePage
 from vehicle_pf_tracker.parameters.configuration import Configuration, NodeParameters
@@ -49,10 +50,11 @@ from vehicle_pf_tracker.ros.traffic.messages import (
     scalars,
     tracks_message,
 )
+from vehicle_pf_tracker.ros.traffic.rates import Rates
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.counting import Counter
+from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
@@ -153,6 +155,7 @@ class TrafficStream(NodeStream):
         if configuration.tracker.detector.kind == TOPIC:
             self._waiting = WaitingImages()
         self._began = 0.0
+        self._rates = Rates()
         self._detections: Detections | None = None
         self._events: list[str] = []
         self.tell_drawn_seed(self.vehicles.session.tracker.seed)
@@ -176,6 +179,7 @@ class TrafficStream(NodeStream):
             "seed": self.vehicles.session.tracker.seed,
             "detector": self._configuration.tracker.detector.kind,
             **self.vehicles.summary(),
+            **{name: round(value, 2) for name, value in self._rates.values.items()},
             **detections,
         }
 
@@ -313,6 +317,7 @@ class TrafficStream(NodeStream):
         if events:
             values["event"] = "; ".join(events)
         self.health.answered(mode, step_ms)
+        self._note_rates(estimates)
         self.publish_mode(header, mode, values)
 
     def _show(self, header: Header, frame: Frame) -> None:
@@ -321,6 +326,21 @@ class TrafficStream(NodeStream):
             self._outputs.publish_overlay(header, frame, self.vehicles)
         if self.page is not None:
             self.page.show(partial(self.vehicles.drawn, frame), self.vehicles.facts)
+
+    def judge(self) -> str:
+        """Name the rates that are not as usual; called once a second."""
+        return self._rates.judge()
+
+    def _note_rates(self, estimates: Sequence[TrackEstimate]) -> None:
+        detector, found, seconds = self.vehicles.session.detector, len(self._detections or ()), 0.0
+        if self._waiting is not None:
+            seconds = self._waiting.latency
+        elif isinstance(detector, PacedDetector):
+            found, seconds = detector.found, detector.seconds
+        known = [one.identity for one in estimates if one.mode in CONFIRMED]
+        visible = sum(one.mode is TrackMode.TRACKING for one in estimates)
+        cluttered = self.vehicles.session.tracker.cluttered_places
+        self._rates.note(known, found, visible, seconds, cluttered)
 
     @property
     def _reason(self) -> str:

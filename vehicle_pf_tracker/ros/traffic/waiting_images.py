@@ -35,11 +35,12 @@ ImageT = TypeVar("ImageT")
 
 @dataclass(slots=True)
 class _Waiting(Generic[ImageT]):
-    """An image with its number in the stream, and when it has waited for long enough, s."""
+    """An image with its number in the stream, when it came and has waited for long enough, s."""
 
     image: ImageT
     stamp_ns: int
     number: int
+    came: float
     until: float
     is_answered: bool = False
     detections: Detections | None = None
@@ -62,10 +63,13 @@ class WaitingImages(Generic[ImageT]):
     matched, missed, late, unmatched : int
         Images with detections, images that waited in vain, detections that came after their image
         was passed on, and detections of stamps that no image has.
+    latency : float
+        Time that the last image with detections waited for them, s.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self.matched = self.missed = self.late = self.unmatched = 0
+        self.latency = 0.0
         self._clock = clock
         self._images: deque[_Waiting[ImageT]] = deque()
         self._early: dict[int, Detections | None] = {}
@@ -83,7 +87,8 @@ class WaitingImages(Generic[ImageT]):
 
     def add_image(self, image: ImageT, stamp_ns: int, max_wait: float) -> None:
         """Take the next image, which may wait for `max_wait` s."""
-        waiting = _Waiting(image, stamp_ns, self._number, self._clock() + max_wait)
+        now = self._clock()
+        waiting = _Waiting(image, stamp_ns, self._number, now, now + max_wait)
         if stamp_ns in self._early:
             waiting.is_answered, waiting.detections = True, self._early.pop(stamp_ns)
         self._number += 1
@@ -97,6 +102,7 @@ class WaitingImages(Generic[ImageT]):
         for waiting in self._images:
             if waiting.stamp_ns == stamp_ns and not waiting.is_answered:
                 waiting.is_answered, waiting.detections = True, detections
+                self.latency = self._clock() - waiting.came
                 return
         if stamp_ns in self._passed:
             self.late += 1
