@@ -83,16 +83,31 @@ def systems(out):
 def test_parameter_sets_are_systems_of_their_own(bags, tmp_path, capsys):
     file = tmp_path / "mine.yaml"
     file.write_text("pf_tracker:\n  ros__parameters:\n    sigma: 3.0\n    queue_depth: 5\n")
-    words = [bags / "one", *QUICK, "--params", file, "--set", "few:iterations=2"]
+    words = [bags / "one", *QUICK, "--params", file, "--params", f"pf@sure={file}"]
+    words += ["--set", "ms@few:iterations=2"]
     assert evaluate(tmp_path / "out", *words, "--set", "mine:num_particles=20") == 0
     found = systems(tmp_path / "out")
-    assert list(found) == ["pf", "pf@mine", "ms", "ms@few"]
+    assert list(found) == ["pf", "pf@mine", "pf@sure", "ms", "ms@few"]
     assert found["pf@mine"]["parameters"]["sigma"] == 3.0
     assert found["pf@mine"]["overrides"] == {"num_particles": 20}
     assert found["pf@mine"]["parameter_set"] == "mine"
     assert found["ms@few"]["parameters"]["iterations"] == 2
+    assert found["pf@sure"]["parameters"]["sigma"] == 3.0
     told = capsys.readouterr().err
-    assert "ms is not run with mine" in told and "pf is not run with few" in told
+    assert "ms is not run with mine" in told and "not run with sure" not in told
+
+
+def test_defaults_can_be_left_out(bags, tmp_path):
+    words = [bags / "one", *QUICK, "--set", "pf@narrow:sigma=2", "--without-defaults"]
+    assert evaluate(tmp_path / "out", *words) == 0
+    assert list(systems(tmp_path / "out")) == ["pf@narrow", "ms"]
+
+
+def test_shifted_first_boxes_are_run_and_shown(bags, tmp_path, capsys):
+    words = [bags / "one", "--variants", "ms", "--shifted-starts"]
+    assert evaluate(tmp_path / "out", *words) == 0
+    assert "shifted starts" in capsys.readouterr().out
+    assert len(list((tmp_path / "out" / "cells" / "one" / "ms").iterdir())) == 13
 
 
 def test_a_baseline_that_is_not_there_is_named_and_the_rest_goes_on(bags, tmp_path, capsys):
@@ -122,6 +137,8 @@ def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
         (["--variants", "pf", "--set", "few:iterations=2"], 1, "pf is not run with few: there is"),
         (["--variants", "pf", "--set", "a:sigma=wide"], 1, "sigma must be a number"),
         (["--params", "none.yaml"], 1, "cannot read the parameter file none.yaml"),
+        (["--params", "pf@a=none.yaml"], 1, "cannot read the parameter file none.yaml"),
+        (["--variants", "pf", "--set", "ms@few:iterations=2"], 1, "no variant among --variants"),
         (["--set", "a:sgima=2"], 1, "apf is not run with a: there is no parameter 'sgima'"),
         (["--variants", "baseline:csrt", "--set", "a:sigma=2"], 1, "set a is for no variant"),
         (["--baseline-model", "vit=a"], 2, "--baseline-model expects BASELINE:NAME=FILE"),

@@ -14,6 +14,7 @@
 
 import csv
 import json
+import statistics
 
 import pytest
 from small_recordings import record
@@ -77,6 +78,33 @@ def test_the_same_search_gives_the_same_and_runs_nothing_again(bags, tmp_path):
     before = {name: (out / name).read_bytes() for name in names}
     assert tune(out, bags[0], *QUICK) == 0
     assert {name: (out / name).read_bytes() for name in names} == before
+
+
+def test_the_gain_is_checked_on_what_was_held_out(bags, tmp_path, capsys):
+    out = tmp_path / "out"
+    words = [bags[0], *QUICK, "--search", "sigma=2:9", "--held-out", bags[1]]
+    assert tune(out, *words) == 0
+    told = capsys.readouterr().out
+    table = (out / "tuning.md").read_text().splitlines()
+    assert [line.split(" | ")[0] for line in table[2:6]] == [
+        "| tuned on: one", "| tuned on: mean of 1", "| held out: two", "| held out: mean of 1",
+    ]  # fmt: skip
+    assert table[-1].endswith(".") and table[-1] in told
+    cells = out / "evaluation" / "cells" / "two"
+    for label in ("pf", "pf_best"):
+        scores = [
+            json.loads((cells / label / f"seed-{seed}" / "metrics.json").read_text())
+            for seed in (0, 1)
+        ]
+        mean = statistics.fmean(score["success_auc"] for score in scores)
+        assert f"{mean:.3f} ± " in table[4]
+
+
+def test_what_is_tuned_on_cannot_be_held_out(bags, tmp_path, capsys):
+    (tmp_path / "copy").mkdir()
+    copy = record(tmp_path / "copy" / "one")
+    assert tune(tmp_path / "out", bags[0], *QUICK, "--held-out", copy) == 1
+    assert "is both held out and tuned on" in capsys.readouterr().err
 
 
 def test_a_search_that_no_trial_ends_well_is_told(bags, tmp_path, capsys, monkeypatch):

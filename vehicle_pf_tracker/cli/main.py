@@ -75,7 +75,7 @@ VERBS: Mapping[str, tuple[str, str]] = {
     "traffic": ("traffic", "follow every vehicle in view, and count them at lines"),
     "pick": ("pick", "draw vehicles, counting lines and zones on a page, for run and traffic"),
     "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
-    "tune": ("tune", "search a variant's parameters on recordings"),
+    "tune": ("tune", "search a variant's parameters on recordings, and validate them on others"),
     "report": ("report", "write the report of an evaluation again"),
     "replay": ("replay", "feed a recording to ROS nodes"),
     "road": ("road", "calibrate a camera, for metres and km/h on the road"),

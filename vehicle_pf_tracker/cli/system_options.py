@@ -28,6 +28,7 @@ from vehicle_pf_tracker.cli.requests import (
     option,
     positional,
     positive,
+    switch,
 )
 from vehicle_pf_tracker.cli.tracking_options import with_file
 from vehicle_pf_tracker.core.errors import InputError
@@ -56,16 +57,18 @@ _NONE: Set = ([], [])
 
 
 def parameter_sets(
-    files: Iterable[Path], assignments: Iterable[str]
+    files: Iterable[str], assignments: Iterable[str]
 ) -> tuple[list[str], dict[str, Set]]:
     """Return the assignments that hold everywhere, and the sets of parameters by their labels.
 
-    A file is a set that is labelled by its stem; ``LABEL:NAME=VALUE`` makes or completes one.
+    ``[VARIANT@][LABEL=]FILE`` is a set, labelled by the file's stem if not otherwise, and
+    ``[VARIANT@]LABEL:NAME=VALUE`` makes or completes one.
     """
     everywhere: list[str] = []
     sets: dict[str, Set] = {}
-    for file in files:
-        sets.setdefault(file.stem, ([], []))[0].append(file)
+    for word in files:
+        label, file = word.split("=", 1) if "=" in word else (Path(word).stem, word)
+        sets.setdefault(label, ([], []))[0].append(Path(file))
     for word in assignments:
         label = word.partition("=")[0].rpartition(":")[0]
         if label:
@@ -119,16 +122,17 @@ class EvaluationRequest(WorkersOption):
         f"{', '.join(MODELS)}; {ALL} (default) for all variants, {ALL_BASELINES} for "
         f"{', '.join(_BASELINES_WITHOUT_MODELS)}",
     )  # fmt: skip
-    params: Sequence[Path] = option(
-        type=Path, action="append", default=[], metavar="FILE",
-        help="run the variants that this file of parameters fits with it too, as VARIANT@ and the "
-        "file's name",
+    params: Sequence[str] = option(
+        action="append", default=[], metavar="[[VARIANT@]LABEL=]FILE",
+        help="run with this file of parameters too, named LABEL (default: the file's name) in the "
+        "results; for all variants that it fits, or one",
     )  # fmt: skip
     assignments: Sequence[str] = option(
         "--set", action="append", default=[],
-        metavar="[LABEL:]NAME=VALUE",
+        metavar="[[VARIANT@]LABEL:]NAME=VALUE",
         help="set a parameter: everywhere, or to make or complete the parameter set LABEL",
     )  # fmt: skip
+    without_defaults: bool = switch(help="leave out the defaults where there is a parameter set")
     baselines_python: Path | None = option(
         help="interpreter of the baselines (default: .venv-baselines/bin/python, else the one "
         "in your cache; without either, evaluate prints the command that builds it)",
@@ -161,12 +165,16 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
         if name not in known:
             raise InputError(unknown_name(name, known))
     systems, notes = _with_sets(variants, everywhere, sets)
+    if request.without_defaults:
+        having = {one.variant for one in systems if one.parameter_set}
+        systems = [one for one in systems if one.parameter_set or one.variant not in having]
     models = _models(request.baseline_model)
-    for word in words:
-        if word.startswith(BASELINE):
-            name = word.removeprefix(BASELINE)
-            systems.append(_baseline_system(name, request.baselines_python, models, notes))
-    return systems, notes
+    baselines = [
+        _baseline_system(word.removeprefix(BASELINE), request.baselines_python, models, notes)
+        for word in words
+        if word.startswith(BASELINE)
+    ]
+    return [*systems, *baselines], notes
 
 
 def _words(text: str) -> list[str]:
@@ -180,18 +188,23 @@ def _words(text: str) -> list[str]:
 
 def _with_sets(
     variants: Sequence[Variant], everywhere: Sequence[str], sets: Mapping[str, Set]
-) -> tuple[list[System], list[str]]:
+) -> tuple[list[VariantSystem], list[str]]:
     """Return each variant with its defaults and the sets that fit it, and notes on the others."""
-    labelled = [("", _NONE), *sets.items()]
-    found = [_variant_system(variant, everywhere, *one) for variant in variants for one in labelled]
-    systems: list[System] = [one for one in found if isinstance(one, VariantSystem)]
-    notes = [one for one in found if isinstance(one, str)]
-    fitting = {one.parameter_set for one in found if isinstance(one, VariantSystem)}
+    found = [
+        (label, _variant_system(variant, everywhere, label.rpartition("@")[2], own))
+        for variant in variants
+        for label, own in {"": _NONE, **sets}.items()
+        if label.rpartition("@")[0] in {"", variant.name}
+    ]
+    notes = [(label, one) for label, one in found if isinstance(one, str)]
+    fitting = {label for label, one in found if isinstance(one, VariantSystem)}
     for label in sets:
         if label not in fitting:
-            why = (note for note in notes if f" is not run with {label}: " in note)
-            raise InputError(next(why, f"the parameter set {label} is for no variant"))
-    return systems, notes
+            why = (note for of, note in notes if of == label)
+            missing = f"the parameter set {label} is for no variant among --variants"
+            raise InputError(next(why, missing))
+    systems = [one for _, one in found if isinstance(one, VariantSystem)]
+    return systems, [note for _, note in notes]
 
 
 def _variant_system(

@@ -12,15 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`tune`: search a variant's parameters on recordings."""
+"""`tune`: search a variant's parameters on recordings, and validate the best on others."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import PROGRAM, counting, stages, tell_notice
+from vehicle_pf_tracker.cli.console import PROGRAM, counting, print_rows, stages, tell_notice
 from vehicle_pf_tracker.cli.requests import (
     MaxDiffOption,
     Names,
@@ -34,11 +34,17 @@ from vehicle_pf_tracker.cli.system_options import configure, make_system
 from vehicle_pf_tracker.cli.tracking_options import StartOptions
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.grid.running import on_this_machine
+from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.evaluation.evaluation_folder import Source
+from vehicle_pf_tracker.evaluation.grid.cells import Plan
+from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
+from vehicle_pf_tracker.evaluation.report.writing import write_report
+from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.evaluation.tuning import (
     OBJECTIVES,
     SearchTask,
+    check_gain,
     default_search,
     open_study,
     search,
@@ -47,10 +53,12 @@ from vehicle_pf_tracker.evaluation.tuning import (
 from vehicle_pf_tracker.offline.output_files import make_folder, write_csv, write_text
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
+from vehicle_pf_tracker.parameters.table import Value
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 TRIALS, SEEDS, SEARCH_SEED = 60, 3, 100
-BEST = "best.yaml"
+BEST, EVALUATION = "best.yaml", "evaluation"
+Recordings = Sequence[tuple[Source, dict[int, Truth]]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,6 +77,10 @@ class Request(StartOptions, TopicOption, MaxDiffOption, WorkersOption):
         help="folder for best.yaml and the other results; finished trials in it are kept, the rest "
         "is written anew",
     )  # fmt: skip
+    held_out: Sequence[str] = option(
+        nargs="+", default=[], metavar="REC",
+        help="held-out recordings, unseen by the search; they show whether its gain is real",
+    )  # fmt: skip
     search: Sequence[str] = option(
         action="append", default=[], metavar="NAME[=LOW:HIGH],…",
         help="parameters to search (default: those marked as tuned, "
@@ -81,7 +93,7 @@ class Request(StartOptions, TopicOption, MaxDiffOption, WorkersOption):
     seeds: int = option(
         type=positive, default=SEEDS, metavar="N",
         help=f"runs of each on each recording (default: %(default)s), with seeds from "
-        f"{SEARCH_SEED} on, so that `evaluate` judges by others",
+        f"{SEARCH_SEED} on, so that the gain is judged by others",
     )  # fmt: skip
     objective: str = option(
         default="success_auc", choices=OBJECTIVES, metavar="METRIC",
@@ -91,7 +103,7 @@ class Request(StartOptions, TopicOption, MaxDiffOption, WorkersOption):
 
 
 def run(request: Request) -> int:
-    """Search, write the results, and print how to check them."""
+    """Search, write the results, and print whether the gain holds or how to find out."""
     variant = find_variant(request.variant)
     given = [] if request.params is None else [request.params]
     configuration = configure(variant, given, request.assignments)
@@ -99,21 +111,28 @@ def run(request: Request) -> int:
     words = [word for text in request.search for word in text.split(",") if word]
     space = search_space(variant, dict(base.parameters), words)
     with stages("tune") as on_stage:
-        locations = find_recordings(request.sources)
+        tuned, held_out = find_recordings(request.sources), find_recordings(request.held_out)
+        locations = [*tuned, *held_out]
         recordings = describe(locations, request.topic, request.max_diff, on_stage)
-    sources = [source for source, _ in recordings]
+    sources = [source for source, _ in recordings[: len(tuned)]]
+    for other, _ in recordings[len(tuned) :]:
+        if other.digest in {source.digest for source in sources}:
+            raise InputError(f"{other.path} is both held out and tuned on; it can only be one")
     seeds = range(SEARCH_SEED, SEARCH_SEED + request.seeds)
     what = SearchTask(base, space, sources, seeds, request.objective, request.max_diff)
-    outputs, inputs = [Products(request.output, (BEST,))], (*locations, request.params)
+    outputs = [Products(request.output, (BEST,)), Products(request.output / EVALUATION)]
+    inputs = (*locations, request.params)
     try:
         with claimed(outputs, inputs, overwrite=True):
-            return _tune(request, configuration, what)
+            return _tune(request, configuration, what, recordings)
     except KeyboardInterrupt:
         tell_notice("interrupted; run the same command to resume")
         raise
 
 
-def _tune(request: Request, configuration: Configuration, what: SearchTask) -> int:
+def _tune(
+    request: Request, configuration: Configuration, what: SearchTask, recordings: Recordings
+) -> int:
     folder, variant = make_folder(request.output), what.base.variant
     study = open_study(what, folder / "study.log")
     with counting("tuned", "runs") as on_progress:
@@ -132,7 +151,33 @@ def _tune(request: Request, configuration: Configuration, what: SearchTask) -> i
     first = "no" if trials[0].value is None else f"{trials[0].value:.3f}"
     print(
         f"{what.objective}: {first} at first, {best.value:.3f} in trial {best.number}\n"
-        f"the parameters are {folder / BEST}; check them on recordings that the search has not "
-        f"seen: {PROGRAM} evaluate REC --variants {variant} --params {folder / BEST} -o DIR"
+        f"the parameters are {folder / BEST}"
     )
+    if request.held_out:
+        return _judge(request, what, best.params, recordings)
+    print(
+        f"check them on recordings that the search has not seen: --held-out REC, or {PROGRAM} "
+        f"evaluate REC --variants {variant} --params {folder / BEST} -o DIR"
+    )
+    return 0
+
+
+def _judge(
+    request: Request, what: SearchTask, values: Mapping[str, Value], recordings: Recordings
+) -> int:
+    """Compare the best parameters with those before, by other seeds, and print the verdict."""
+    systems, seeds = [what.base, what.base.changed("best", values)], range(request.seeds)
+    plan = Plan(dict(recordings), systems, seeds, list(request.command), request.max_diff)
+    folder = request.output / EVALUATION
+    with counting("compared", "runs") as on_progress:
+        complete(plan, folder, on_this_machine(request.workers), on_progress)
+    report = write_report(folder)
+    if report.evaluation.failed:
+        raise InputError(f"not every run succeeded; {report.paths[0]} says why")
+    held_out = [source.name for source, _ in recordings if source not in what.sources]
+    rows, verdict = check_gain(report.evaluation, held_out, what.objective)
+    header = [what.objective, "default", "best", "change"]
+    write_text(request.output / "tuning.md", f"{markdown(header, rows)}\n{verdict}\n")
+    print_rows(header, rows)
+    print(verdict)
     return 0

@@ -19,7 +19,7 @@ from __future__ import annotations
 import itertools
 import statistics
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, NO_VALUE, RECOVERED, Column
@@ -122,20 +122,64 @@ def recording_table(aggregates: Aggregates, recording: str, columns: Sequence[Co
 
 
 def behind_table(aggregates: Aggregates) -> Table:
-    """Show how far each system is behind the first, recording by recording."""
+    """Show the means with their intervals, and how far each system is behind the first."""
+    headers = [
+        Header(words, column.unit)
+        for column in COMPARED
+        for words in (column.label, f"{column.label}: difference")
+    ]
     rows = {
-        label: [_difference(found[column.key], column) for column in COMPARED]
-        for label, found in aggregates.behind.items()
+        label: [
+            _with_interval(found.get(column.key), column, sign)
+            for column in COMPARED
+            for found, sign in ((means, ""), (aggregates.behind.get(label, {}), "+"))
+        ]
+        for label, means in aggregates.overall.items()
     }
-    return Table([Header(column.label, column.unit) for column in COMPARED], rows)
+    return Table(headers, rows)
 
 
-def _difference(found: Summary | None, column: Column) -> TableCell:
+def _with_interval(found: Summary | None, column: Column, sign: str) -> TableCell:
     if found is None:
         return TableCell(NO_VALUE)
     within = interval_text(found, column)
-    text = f"{found.mean:+.{column.decimals}f}" + (f" ({within})" if within else "")
+    text = f"{found.mean:{sign}.{column.decimals}f}" + (f" ({within})" if within else "")
     return TableCell(text, found.mean)
+
+
+def starts_table(aggregates: Aggregates) -> Table | None:
+    """Compare runs from shifted first boxes with those from the true one.
+
+    None without the former.
+    """
+    if (shifted := aggregates.shifted) is None:
+        return None
+    note = "± is the standard deviation over the shifted boxes, mean over the recordings."
+    headers = [
+        header
+        for column in COMPARED
+        for header in (
+            Header(f"{column.label}: true box", column.unit),
+            Header("shifted", column.unit, note),
+        )
+    ]
+
+    def cells(label: str, column: Column) -> Iterator[TableCell]:
+        for some in (aggregates, shifted):
+            found = some.overall.get(label, {}).get(column.key)
+            by_recording = (
+                found.get(label, {}).get(column.key) for found in some.recordings.values()
+            )
+            spreads = [one.spread for one in by_recording if one and one.spread is not None]
+            spread = statistics.fmean(spreads) if spreads and some is shifted else None
+            found = found and replace(found, spread=spread)
+            yield TableCell(mean_and_spread_text(found, column), found.mean if found else None)
+
+    rows = {
+        label: [c for column in COMPARED for c in cells(label, column)]
+        for label in aggregates.order
+    }
+    return Table(headers, rows)
 
 
 def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]]) -> Table | None:

@@ -28,6 +28,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import optuna
 from optuna.distributions import (
     BaseDistribution,
@@ -40,12 +41,14 @@ from optuna.storages.journal import JournalFileBackend
 from optuna.study import StudyDirection
 from optuna.trial import FrozenTrial, TrialState
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.cache_key import result_key
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell, VariantSystem, seeds_of
 from vehicle_pf_tracker.evaluation.grid.running import Runner
-from vehicle_pf_tracker.evaluation.statistics import mean_of_means
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
+from vehicle_pf_tracker.evaluation.statistics import mean_of_means, summarise
 from vehicle_pf_tracker.offline.processes import OnProgress
 from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import Variant
@@ -259,3 +262,55 @@ def search(
             score = mean_of_means(scores)
             study.tell(one, score, state=TrialState.PRUNED if score is None else None)
     return study.get_trials(states=_DONE)[:count]
+
+
+def check_gain(
+    evaluation: ScoredEvaluation, held_out: Sequence[str], objective: str
+) -> tuple[list[list[str]], str]:
+    """Compare the best parameters with those before, and judge the gain.
+
+    Parameters
+    ----------
+    evaluation : ScoredEvaluation
+        Runs of the parameters before and of the best, all of which succeeded.
+    held_out : sequence of str
+        Names of the recordings that the search did not see.
+    objective : str
+        The metric that was optimised, of `OBJECTIVES`.
+
+    Returns
+    -------
+    rows : list of list of str
+        Recording, score before, score of the best, and change; ± is the spread over the seeds.
+    verdict : str
+        Sentence on whether the gain holds on the recordings held out.
+    """
+    sign = 1 if OBJECTIVES[objective] is StudyDirection.MAXIMIZE else -1
+    scores: dict[str, dict[str, Array]] = {"tuned on": {}, "held out": {}}
+    for name in (entry.name for entry in evaluation.recordings):
+        runs = [evaluation.of(name, system.label) for system in evaluation.systems]
+        found = [[getattr(run.metrics, objective) for run in some] for some in runs]
+        part = "held out" if name in held_out else "tuned on"
+        scores[part][name] = np.array(found, dtype=float)  # None is NaN
+    rows, gains = [], []
+    for part, by_name in scores.items():
+        mean = np.mean(list(by_name.values()), axis=0)
+        for name, (base, best) in {**by_name, f"mean of {len(by_name)}": mean}.items():
+            rows.append([f"{part}: {name}", _text(base), _text(best), _text(best - base, "+")])
+        gains.append(summarise(list(sign * (mean[1] - mean[0]))))
+    tuned, other = gains
+    assert tuned is not None and other is not None
+    low, high = (other.mean if end is None else end for end in (other.low, other.high))
+    if not tuned.mean > 0:
+        return rows, "With other seeds the best parameters are no better than those before."
+    if low > 0:
+        share = f"{other.mean:.3f} there, {tuned.mean:.3f} where it was tuned"
+        return rows, f"The gain holds on the recordings held out: {share}."
+    if high > 0:
+        return rows, "The gain on the recordings held out is within the spread of the seeds."
+    return rows, "The gain does not hold on the recordings held out: this is over-fitted."
+
+
+def _text(scores: Array, sign: str = "") -> str:
+    spread = f" ± {np.std(scores, ddof=1):.3f}" if len(scores) > 1 else ""
+    return f"{np.mean(scores):{sign}.3f}{spread}"

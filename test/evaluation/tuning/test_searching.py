@@ -12,6 +12,8 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
+from types import SimpleNamespace
+
 import pytest
 
 pytest.importorskip("optuna", reason="the extra [evaluation] is not installed")
@@ -20,7 +22,13 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.running import CellResult
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means
-from vehicle_pf_tracker.evaluation.tuning import SearchTask, open_study, search, search_space
+from vehicle_pf_tracker.evaluation.tuning import (
+    SearchTask,
+    check_gain,
+    open_study,
+    search,
+    search_space,
+)
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 
@@ -148,3 +156,48 @@ def test_the_mean_is_over_recordings_not_runs():
     assert mean_of_means({"a": [1.0], "b": [2.0, 4.0]}) == 2.0
     assert mean_of_means({"a": [1.0], "b": [2.0, None]}) is None
     assert mean_of_means({}) is None
+
+
+class Compared:
+    """Stands for an evaluation of two systems on two recordings, by the scores of their runs."""
+
+    systems = (SimpleNamespace(label="pf"), SimpleNamespace(label="pf@best"))
+    recordings = SOURCES
+
+    def __init__(self, metric, scores):
+        self.metric, self.scores = metric, scores
+
+    def of(self, recording, system):
+        found = self.scores[recording][system == "pf@best"]
+        return [SimpleNamespace(metrics=SimpleNamespace(**{self.metric: one})) for one in found]
+
+
+UP, DOWN = "success_auc", "rmse_px"
+
+
+@pytest.mark.parametrize(
+    ("metric", "tuned", "other", "said"),
+    [
+        (UP, ([0.5, 0.6], [0.7, 0.8]), ([0.5, 0.6], [0.6, 0.7]), "holds on the recordings held "
+         "out: 0.100 there, 0.200 where it was tuned."),
+        (UP, ([0.5, 0.6], [0.7, 0.8]), ([0.5, 0.6], [0.4, 0.5]), "over-fitted"),
+        (UP, ([0.5, 0.6], [0.7, 0.8]), ([0.5, 0.6], [0.4, 0.8]), "within the spread"),
+        (UP, ([0.5], [0.5]), ([0.5], [0.9]), "no better than those before"),
+        (UP, ([0.5], [0.7]), ([0.5], [0.6]), "The gain holds"),
+        (UP, ([0.5], [0.7]), ([0.5], [None]), "does not hold"),
+        (DOWN, ([20.0], [10.0]), ([20.0], [12.0]), "8.000 there, 10.000 where"),
+        (DOWN, ([20.0], [30.0]), ([20.0], [12.0]), "no better than those before"),
+    ],
+)  # fmt: skip
+def test_the_verdict_says_whether_the_gain_holds(metric, tuned, other, said):
+    rows, verdict = check_gain(Compared(metric, {"a": tuned, "b": other}), ["b"], metric)
+    assert said in verdict
+    parts = ["tuned on: a", "tuned on: mean of 1", "held out: b", "held out: mean of 1"]
+    assert [row[0] for row in rows] == parts
+
+
+def test_the_table_of_the_gain_shows_spread_and_change():
+    scores = {"a": ([1.0, 3.0], [2.0, 6.0]), "b": ([1.0, 1.0], [0.5, 0.5])}
+    rows, _ = check_gain(Compared(DOWN, scores), ["b"], DOWN)
+    assert rows[0] == ["tuned on: a", "2.000 ± 1.414", "4.000 ± 2.828", "+2.000 ± 1.414"]
+    assert rows[2] == ["held out: b", "1.000 ± 0.000", "0.500 ± 0.000", "-0.500 ± 0.000"]

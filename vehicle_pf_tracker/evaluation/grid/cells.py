@@ -35,6 +35,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     safe_name,
     write_truth,
 )
+from vehicle_pf_tracker.evaluation.grid.starts import TRUE_START, Start
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.run_folder import versions
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
@@ -187,7 +188,7 @@ def seeds_of(system: System, seeds: Sequence[int]) -> Sequence[int]:
 
 @dataclass(frozen=True, slots=True)
 class GridCell:
-    """One run: a system on a recording with a seed, from the first true box.
+    """One run: a system on a recording with a seed, from a start.
 
     Attributes
     ----------
@@ -199,24 +200,29 @@ class GridCell:
         Seed of the random numbers.
     max_diff : float
         Largest difference of stamps that belong together, in s.
+    start : Start
+        Displacement of the first true box, which the run starts on.
     """
 
     source: Source
     system: System
     seed: int
     max_diff: float
+    start: Start = TRUE_START
 
     @property
     def label(self) -> str:
         """Name of the cell while it runs."""
-        return f"{self.source.name} {self.system.label} seed {self.seed}"
+        words = f"{self.source.name} {self.system.label} seed {self.seed} {self.start.name}"
+        return words.rstrip()
 
     def key(self) -> str:
-        """Return its cache key: recording, parameters, seed, code and versions."""
+        """Return its cache key: recording, parameters, seed, start, code and versions."""
         facts = {
             "recording": self.source.digest,
             "topic": self.source.topic,
             "max_diff": self.max_diff,
+            "start": asdict(self.start),
             **self.system.facts(self.seed),
         }
         if isinstance(self.system, BaselineSystem):
@@ -225,12 +231,13 @@ class GridCell:
 
     def folder(self, evaluation: Path) -> Path:
         """Return its folder in the folder of the evaluation."""
-        return cell_folder(evaluation, self.source.name, self.system.label, self.seed)
+        cell = self.source.name, self.system.label, self.seed, self.start.name
+        return cell_folder(evaluation, *cell)
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Recordings, systems and seeds of an evaluation.
+    """Recordings, systems, seeds and starts of an evaluation.
 
     Attributes
     ----------
@@ -244,6 +251,8 @@ class Plan:
         Command line that repeats the evaluation.
     max_diff : float
         Largest difference of stamps that belong together, in s.
+    shifted : sequence of Start
+        Starts besides the true box, each run with the first seed: they are variation enough.
 
     Raises
     ------
@@ -256,6 +265,7 @@ class Plan:
     seeds: Sequence[int]
     command: list[str]
     max_diff: float = MAX_DIFF
+    shifted: Sequence[Start] = ()
 
     def __post_init__(self) -> None:
         taken: set[str] = set()
@@ -270,9 +280,10 @@ class Plan:
         # Baselines are slow: begun last, they would be waited for.
         ordered = sorted(self.systems, key=lambda system: isinstance(system, VariantSystem))
         return [
-            GridCell(source, system, seed, self.max_diff)
+            GridCell(source, system, seed, self.max_diff, start)
             for source, system in itertools.product(self.recordings, ordered)
-            for seed in seeds_of(system, self.seeds)
+            for start in (TRUE_START, *self.shifted)
+            for seed in seeds_of(system, self.seeds[:1] if start.name else self.seeds)
         ]
 
     def write(self, folder: Path) -> None:
@@ -292,6 +303,7 @@ class Plan:
                 for system in self.systems
             ],
             "seeds": list(self.seeds),
+            "shifted_starts": [start.name for start in self.shifted],
             "versions": versions(),
             "options": {"max_diff": self.max_diff},
         }

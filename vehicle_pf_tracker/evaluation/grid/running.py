@@ -19,7 +19,7 @@ from __future__ import annotations
 import functools
 import shutil
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import astuple, dataclass, field
+from dataclasses import astuple, dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -27,6 +27,7 @@ import cv2
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
 from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, GridCell, Plan, VariantSystem
@@ -74,10 +75,12 @@ def run_cell(cell: GridCell) -> CellResult:
     cv2.setNumThreads(1)
     try:
         recording = footage(cell.source)
+        true = recording.truth[0]
+        first = replace(true, box=cell.start.box(true.box))
         if isinstance(cell.system, VariantSystem):
-            rows, run = _run_variant(cell, cell.system, recording)
+            rows, run = _run_variant(cell, cell.system, recording, first)
         else:
-            rows, run = _run_baseline(cell, cell.system, recording)
+            rows, run = _run_baseline(cell, cell.system, recording, first)
         metrics = measure(score_frames(rows, recording.truth, cell.max_diff))
         return CellResult(rows, run, metrics)
     except InputError as error:
@@ -87,14 +90,14 @@ def run_cell(cell: GridCell) -> CellResult:
 
 
 def _run_variant(
-    cell: GridCell, system: VariantSystem, recording: Footage
+    cell: GridCell, system: VariantSystem, recording: Footage, first: Truth
 ) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a variant and its `run.json`."""
     tracker = OfflineTracker(
         find_variant(system.variant),
         system.tracker_parameters(cell.seed),
         system.session_parameters(),
-        first_truth=recording.truth[0],
+        first_truth=first,
         max_diff=cell.max_diff,
     )
     rows = list(tracker.rows(recording.frames()))
@@ -104,10 +107,9 @@ def _run_variant(
 
 
 def _run_baseline(
-    cell: GridCell, system: BaselineSystem, recording: Footage
+    cell: GridCell, system: BaselineSystem, recording: Footage, first: Truth
 ) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a baseline and its `run.json`."""
-    first = recording.truth[0]
     python = Path(system.python) if system.python else None
     with Baseline(system.baseline, python, system.model_files()) as baseline:
         rows = list(baseline_rows(baseline, recording.frames(), first))

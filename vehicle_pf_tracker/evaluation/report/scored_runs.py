@@ -28,7 +28,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, SystemEntry
 from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
-from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 
 _DECIDING = ("vehicle_pf_tracker", "opencv", "numpy")
 """Programs whose version moves estimates."""
@@ -40,12 +40,14 @@ class ScoredRun:
 
     Attributes
     ----------
-    recording, system, seed : str, str, int
-        Cell of the grid.
+    recording, system, seed, start : str, str, int, str
+        Cell of the grid; `start` names a shifted first box, and is empty for the true one.
     metrics : Metrics
         Metrics of the run.
     errors : (N,) array
         Error of the centre in px by frame of the recording; NaN where nothing is scored.
+    frames : sequence of FrameScore
+        Estimate and truth by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
     versions : mapping of str to str or None
@@ -55,8 +57,10 @@ class ScoredRun:
     recording: str
     system: str
     seed: int
+    start: str
     metrics: Metrics
     errors: NDArray[np.float64]
+    frames: Sequence[FrameScore]
     curves: Mapping[str, Curve]
     versions: Mapping[str, str | None]
 
@@ -68,7 +72,13 @@ class FailedCell:
     recording: str
     system: str
     seed: int
+    start: str
     reason: str
+
+    @property
+    def run(self) -> str:
+        """Seed, and start if it is shifted."""
+        return f"{self.seed} {self.start}".rstrip()
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,15 +91,17 @@ class ScoredEvaluation:
         Folder the runs were read from.
     truths : mapping of str to mapping of int to Truth
         Truths by recording and number of the frame.
-    runs : tuple of ScoredRun
-        Runs in the order of the plan (recordings, systems, seeds).
+    runs, shifted : tuple of ScoredRun
+        Runs from the true box in the order of the plan (recordings, systems, seeds), and those from
+        shifted first boxes.
     failed : tuple of FailedCell
-        Failed cells in the same order.
+        Failed cells in the same order, from any start.
     """
 
     folder: EvaluationFolder
     truths: Mapping[str, Mapping[int, Truth]]
     runs: tuple[ScoredRun, ...]
+    shifted: tuple[ScoredRun, ...]
     failed: tuple[FailedCell, ...]
 
     @property
@@ -113,7 +125,8 @@ class ScoredEvaluation:
     @property
     def notes(self) -> list[str]:
         """Say how many cells have a result, and whether versions are mixed."""
-        cells, failed = len(self.runs) + len(self.failed), len(self.failed)
+        failed = len(self.failed)
+        cells = len(self.runs) + len(self.shifted) + failed
         result = f"All {cells} cells of the grid have a result."
         if failed:
             result = f"{failed} of {cells} cells have no result; see Failed cells."
@@ -123,7 +136,7 @@ class ScoredEvaluation:
     def mixed_versions(self) -> list[str]:
         """A sentence where runs were made with different versions; baselines have their own."""
         ours = {one.label for one in self.systems if not one.kind.startswith("baseline:")}
-        runs = [run for run in self.runs if run.system in ours]
+        runs = [run for run in (*self.runs, *self.shifted) if run.system in ours]
         found = {key: {str(run.versions.get(key)) for run in runs} for key in _DECIDING}
         mixed = [f"{key} {' and '.join(sorted(v))}" for key, v in found.items() if len(v) > 1]
         words = "Results of different versions are compared"
@@ -138,20 +151,23 @@ def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
     """Score all cells; those that cannot be read or scored are failed cells."""
     truths = {entry.name: folder.truth(entry.name) for entry in folder.recordings}
     results = [
-        _result(folder, (recording.name, system.label, seed), truths[recording.name])
+        _result(folder, (recording.name, system.label, seed, start), truths[recording.name])
         for recording, system in itertools.product(folder.recordings, folder.systems)
-        for seed in system.seeds
+        for start in ("", *folder.shifted)
+        for seed in (system.seeds[:1] if start else system.seeds)
     ]
+    runs = [result for result in results if isinstance(result, ScoredRun)]
     return ScoredEvaluation(
         folder,
         truths,
-        tuple(result for result in results if isinstance(result, ScoredRun)),
+        tuple(run for run in runs if not run.start),
+        tuple(run for run in runs if run.start),
         tuple(result for result in results if isinstance(result, FailedCell)),
     )
 
 
 def _result(
-    folder: EvaluationFolder, key: tuple[str, str, int], truth: Mapping[int, Truth]
+    folder: EvaluationFolder, key: tuple[str, str, int, str], truth: Mapping[int, Truth]
 ) -> ScoredRun | FailedCell:
     max_diff = float(folder.plan.get("options", {}).get("max_diff", MAX_DIFF))
     try:
@@ -166,6 +182,7 @@ def _result(
         *key,
         metrics=measure(scores),
         errors=np.array(errors, dtype=np.float64),  # None is NaN
+        frames=scores.frames,
         curves=curves(scores.counted),
         versions=cell.run.get("versions", {}),
     )
