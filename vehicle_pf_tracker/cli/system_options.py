@@ -33,7 +33,7 @@ from vehicle_pf_tracker.cli.requests import (
 from vehicle_pf_tracker.cli.tracking_options import with_file
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines import MODELS, Baseline, unknown_baseline
-from vehicle_pf_tracker.evaluation.grid.cells import BASELINE, BaselineSystem, System, VariantSystem
+from vehicle_pf_tracker.evaluation.systems import BASELINE, System
 from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
 from vehicle_pf_tracker.parameters.table import (
     ParameterSpec,
@@ -166,8 +166,8 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
             raise InputError(unknown_name(name, known))
     systems, notes = _with_sets(variants, everywhere, sets)
     if request.without_defaults:
-        having = {one.variant for one in systems if one.parameter_set}
-        systems = [one for one in systems if one.parameter_set or one.variant not in having]
+        having = {one.kind for one in systems if one.parameter_set}
+        systems = [one for one in systems if one.parameter_set or one.kind not in having]
     models = _models(request.baseline_model)
     baselines = [
         _baseline_system(word.removeprefix(BASELINE), request.baselines_python, models, notes)
@@ -188,7 +188,7 @@ def _words(text: str) -> list[str]:
 
 def _with_sets(
     variants: Sequence[Variant], everywhere: Sequence[str], sets: Mapping[str, Set]
-) -> tuple[list[VariantSystem], list[str]]:
+) -> tuple[list[System], list[str]]:
     """Return each variant with its defaults and the sets that fit it, and notes on the others."""
     found = [
         (label, _variant_system(variant, everywhere, label.rpartition("@")[2], own))
@@ -197,19 +197,19 @@ def _with_sets(
         if label.rpartition("@")[0] in {"", variant.name}
     ]
     notes = [(label, one) for label, one in found if isinstance(one, str)]
-    fitting = {label for label, one in found if isinstance(one, VariantSystem)}
+    fitting = {label for label, one in found if isinstance(one, System)}
     for label in sets:
         if label not in fitting:
             why = (note for of, note in notes if of == label)
             missing = f"the parameter set {label} is for no variant among --variants"
             raise InputError(next(why, missing))
-    systems = [one for _, one in found if isinstance(one, VariantSystem)]
+    systems = [one for _, one in found if isinstance(one, System)]
     return systems, [note for _, note in notes]
 
 
 def _variant_system(
     variant: Variant, everywhere: Sequence[str], label: str, own: Set
-) -> VariantSystem | str:
+) -> System | str:
     """Return the variant with a set of parameters, or say why it does not fit."""
     table, (files, assignments) = settable(variant), own
     words = [word for word in everywhere if word.partition("=")[0] in table] + assignments
@@ -227,7 +227,7 @@ def make_system(
     parameter_set: str,
     configuration: Configuration,
     overrides: Mapping[str, Value],
-) -> VariantSystem:
+) -> System:
     """Make the system of a variant with all that decides about it in `configuration`.
 
     Raises
@@ -241,11 +241,8 @@ def make_system(
             "box of each recording"
         )
     values = {**to_mapping(configuration.tracker), **to_mapping(configuration.session)}
-    label = f"{variant.name}@{parameter_set}" if parameter_set else variant.name
-    return VariantSystem(
-        label, variant.name, parameter_set, tuple(overrides.items()),
-        tuple((name, values[name]) for name in settable(variant)),
-    )  # fmt: skip
+    own = tuple((name, values[name]) for name in settable(variant))
+    return System.of_variant(variant.name, own, parameter_set, tuple(overrides.items()))
 
 
 def _models(words: Iterable[str]) -> dict[str, dict[str, str]]:
@@ -261,7 +258,7 @@ def _models(words: Iterable[str]) -> dict[str, dict[str, str]]:
 
 def _baseline_system(
     name: str, python: Path | None, models: dict[str, dict[str, str]], notes: list[str]
-) -> BaselineSystem:
+) -> System:
     if name not in MODELS:
         raise unknown_baseline(name, MODELS)
     own = models.get(name, {})
@@ -273,4 +270,4 @@ def _baseline_system(
     except InputError as error:
         notes.append(f"{BASELINE}{name} cannot run: {error}")
     interpreter = "" if python is None else str(python.absolute())
-    return BaselineSystem(name, interpreter, tuple(sorted(own.items())), build)
+    return System.of_baseline(name, interpreter, tuple(sorted(own.items())), build)

@@ -133,7 +133,7 @@ def run(request: Request) -> int:
 def _tune(
     request: Request, configuration: Configuration, what: SearchTask, recordings: Recordings
 ) -> int:
-    folder, variant = make_folder(request.output), what.base.variant
+    folder, variant = make_folder(request.output), what.base.kind
     study = open_study(what, folder / "study.log")
     with counting("tuned", "runs") as on_progress:
         trials = search(what, request.trials, study, on_this_machine(request.workers), on_progress)

@@ -27,7 +27,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Any
@@ -35,6 +35,7 @@ from typing import Any
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.offline.output_files import write_csv
 from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN
@@ -119,37 +120,6 @@ def _truth(line: Mapping[str, str]) -> Truth:
 
 
 @dataclass(frozen=True, slots=True)
-class SystemEntry:
-    """A system of the plan.
-
-    Attributes
-    ----------
-    label : str
-        Name of the system in all tables.
-    kind : str
-        The variant, or the baseline as ``baseline:<name>``.
-    parameter_set : str
-        Label of its parameter set; empty for the defaults.
-    overrides, parameters : mapping of str to Any
-        Parameters set on the command line, and all parameters in effect.
-    seeds : tuple of int
-        Seeds of its runs; only the first for a deterministic system.
-    """
-
-    label: str
-    kind: str
-    parameter_set: str
-    overrides: Mapping[str, Any]
-    parameters: Mapping[str, Any]
-    seeds: tuple[int, ...]
-
-    @property
-    def effective(self) -> dict[str, Any]:
-        """All parameters in effect, those that were set first."""
-        return {**self.overrides, **self.parameters}
-
-
-@dataclass(frozen=True, slots=True)
 class Cell:
     """One run of the grid: its rows and `run.json`, or the reason why there are none."""
 
@@ -172,7 +142,7 @@ class EvaluationFolder:
         Content of `evaluation.json`.
     recordings : tuple of Source
         See the plan for the order.
-    systems : tuple of SystemEntry
+    systems : tuple of System
         See the plan for the order.
     seeds : tuple of int
         See the plan for the order.
@@ -199,8 +169,8 @@ class EvaluationFolder:
             self.recordings = tuple(Source(**entry) for entry in self.plan["recordings"])
             self.seeds = tuple(map(int, self.plan["seeds"]))
             self.shifted = tuple(map(str, self.plan.get("shifted_starts", ())))
-            self.systems = tuple(_system(entry, self.seeds) for entry in self.plan["systems"])
-        except (KeyError, TypeError, ValueError) as error:
+            self.systems = tuple(map(System.from_json, self.plan["systems"]))
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
             raise InputError(f"the plan {path / PLAN} is broken: {error!r}") from error
 
     def truth(self, recording: str) -> dict[int, Truth]:
@@ -247,14 +217,3 @@ def read_document(path: Path) -> dict[str, Any]:
     if not isinstance(document, dict):
         raise InputError(f"{path} does not hold a JSON object")
     return document
-
-
-def _system(entry: Mapping[str, Any], seeds: Sequence[int]) -> SystemEntry:
-    return SystemEntry(
-        label=str(entry["label"]),
-        kind=str(entry.get("variant") or f"baseline:{entry['baseline']}"),
-        parameter_set=str(entry.get("parameter_set") or ""),
-        overrides=entry.get("overrides") or {},
-        parameters=entry.get("parameters") or {},
-        seeds=tuple(map(int, entry.get("seeds", seeds))),
-    )

@@ -45,10 +45,11 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.cache_key import result_key
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.grid.cells import GridCell, VariantSystem, seeds_of
+from vehicle_pf_tracker.evaluation.grid.cells import GridCell
 from vehicle_pf_tracker.evaluation.grid.running import Runner
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means, summarise
+from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.offline.processes import OnProgress
 from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import Variant
@@ -160,7 +161,7 @@ class SearchTask:
 
     Attributes
     ----------
-    base : VariantSystem
+    base : System
         The first trial; parameters that are not searched keep its values.
     space : mapping of str to BaseDistribution
         Parameters that are searched.
@@ -174,7 +175,7 @@ class SearchTask:
         Largest difference of stamps that belong together, in s.
     """
 
-    base: VariantSystem
+    base: System
     space: Space
     sources: Sequence[Source]
     seeds: Sequence[int]
@@ -190,7 +191,7 @@ class SearchTask:
         return [
             GridCell(source, system, seed, self.max_diff)
             for source in self.sources
-            for seed in seeds_of(system, self.seeds)
+            for seed in system.seeds(self.seeds)
         ]
 
     def key(self) -> str:

@@ -31,9 +31,9 @@ from evaluation_samples import (
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.grid import sources
-from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
+from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.recordings.reader import Recording
 
 
@@ -173,7 +173,7 @@ def test_what_a_killed_run_left_half_written_goes(plan, out):
 
 
 def test_what_cannot_run_says_why_and_is_tried_again(recordings, out, tmp_path):
-    plan = make_plan(recordings, [BaselineSystem("csrt", str(tmp_path / "none")), system("ms")])
+    plan = make_plan(recordings, [System.of_baseline("csrt", str(tmp_path / "none")), system("ms")])
     assert complete(plan, out, here, silent) == 4
     folder = EvaluationFolder(out)
     assert "there is no interpreter" in folder.cell("free", "baseline:csrt", 0).reason

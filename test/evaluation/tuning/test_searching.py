@@ -19,9 +19,9 @@ import pytest
 pytest.importorskip("optuna", reason="the extra [evaluation] is not installed")
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.grid.cells import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.running import CellResult
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means
+from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.evaluation.tuning import (
     SearchTask,
     check_gain,
@@ -65,7 +65,7 @@ class FakeRunner:
 def what(*words, objective="rmse_px", seeds=(100, 101)):
     variant = find_variant("pf")
     values = {n: v for n, v in to_mapping(variant.parameters()).items() if n != "seed"}
-    base = VariantSystem("pf", "pf", "", (), tuple(values.items()))
+    base = System.of_variant("pf", tuple(values.items()))
     space = search_space(variant, values, words or ["sigma"])
     return SearchTask(base, space, SOURCES, seeds, objective, 0.01)
 

@@ -30,10 +30,11 @@ from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
-from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, GridCell, Plan, VariantSystem
+from vehicle_pf_tracker.evaluation.grid.cells import GridCell, Plan
 from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.evaluation.systems import BASELINE
 from vehicle_pf_tracker.offline.driver import OfflineTracker
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.output_files import flush, make_folder, write_json
@@ -77,10 +78,8 @@ def run_cell(cell: GridCell) -> CellResult:
         recording = footage(cell.source)
         true = recording.truth[0]
         first = replace(true, box=cell.start.box(true.box))
-        if isinstance(cell.system, VariantSystem):
-            rows, run = _run_variant(cell, cell.system, recording, first)
-        else:
-            rows, run = _run_baseline(cell, cell.system, recording, first)
+        run_it = _run_baseline if cell.system.is_baseline else _run_variant
+        rows, run = run_it(cell, recording, first)
         metrics = measure(score_frames(rows, recording.truth, cell.max_diff))
         return CellResult(rows, run, metrics)
     except InputError as error:
@@ -90,11 +89,12 @@ def run_cell(cell: GridCell) -> CellResult:
 
 
 def _run_variant(
-    cell: GridCell, system: VariantSystem, recording: Footage, first: Truth
+    cell: GridCell, recording: Footage, first: Truth
 ) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a variant and its `run.json`."""
+    system = cell.system
     tracker = OfflineTracker(
-        find_variant(system.variant),
+        find_variant(system.kind),
         system.tracker_parameters(cell.seed),
         system.session_parameters(),
         first_truth=first,
@@ -107,11 +107,12 @@ def _run_variant(
 
 
 def _run_baseline(
-    cell: GridCell, system: BaselineSystem, recording: Footage, first: Truth
+    cell: GridCell, recording: Footage, first: Truth
 ) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a baseline and its `run.json`."""
+    system, name = cell.system, cell.system.kind.removeprefix(BASELINE)
     python = Path(system.python) if system.python else None
-    with Baseline(system.baseline, python, system.model_files()) as baseline:
+    with Baseline(name, python, system.model_files()) as baseline:
         rows = list(baseline_rows(baseline, recording.frames(), first))
         opencv = baseline.versions["opencv"]
     started = (row.frame for row in rows if row.mode not in {WAITING, REJECTED})
@@ -120,11 +121,11 @@ def _run_baseline(
         cell.source.path,
         cell.source.topic,
         recording.notices,
-        baseline=system.baseline,
+        baseline=name,
         seed=cell.seed,
         target=list(astuple(first.box)),
         start_frame=next(started, None),
-        parameters=dict(system.models),
+        parameters=dict(system.overrides),
     )
     description["versions"]["opencv"] = opencv
     return rows, description

@@ -26,9 +26,10 @@ from numpy.typing import NDArray
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, SystemEntry
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source
 from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
+from vehicle_pf_tracker.evaluation.systems import System
 
 _DECIDING = ("vehicle_pf_tracker", "opencv", "numpy")
 """Programs whose version moves estimates."""
@@ -110,7 +111,7 @@ class ScoredEvaluation:
         return self.folder.recordings
 
     @property
-    def systems(self) -> tuple[SystemEntry, ...]:
+    def systems(self) -> tuple[System, ...]:
         """See `EvaluationFolder`."""
         return self.folder.systems
 
@@ -135,7 +136,7 @@ class ScoredEvaluation:
     @property
     def mixed_versions(self) -> list[str]:
         """A sentence where runs were made with different versions; baselines have their own."""
-        ours = {one.label for one in self.systems if not one.kind.startswith("baseline:")}
+        ours = {one.label for one in self.systems if not one.is_baseline}
         runs = [run for run in (*self.runs, *self.shifted) if run.system in ours]
         found = {key: {str(run.versions.get(key)) for run in runs} for key in _DECIDING}
         mixed = [f"{key} {' and '.join(sorted(v))}" for key, v in found.items() if len(v) > 1]
@@ -154,7 +155,7 @@ def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
         _result(folder, (recording.name, system.label, seed, start), truths[recording.name])
         for recording, system in itertools.product(folder.recordings, folder.systems)
         for start in ("", *folder.shifted)
-        for seed in (system.seeds[:1] if start else system.seeds)
+        for seed in system.seeds(folder.seeds[:1] if start else folder.seeds)
     ]
     runs = [result for result in results if isinstance(result, ScoredRun)]
     return ScoredEvaluation(
