@@ -35,11 +35,12 @@ from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
+from laboratory.figure_files import save
 from laboratory.fusion_fit import JUDGED_KINDS, listed_cases, page, report_progress
 from laboratory.stress import Reliability, Result, run_battery, variant_system
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.plots import STYLES, save
+from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.offline.output_files import write_text
 from vehicle_pf_tracker.recordings.video import VideoFile
