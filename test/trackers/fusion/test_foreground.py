@@ -19,7 +19,7 @@ import pytest
 from fusion_samples import grey_road
 
 from vehicle_pf_tracker.image.camera_motion import SmallGrey
-from vehicle_pf_tracker.trackers.fusion.turning import Foreground, median
+from vehicle_pf_tracker.trackers.fusion.foreground import Foreground, median
 
 SIZE = np.array([24.0, 14.0])
 

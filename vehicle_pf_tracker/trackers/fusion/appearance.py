@@ -73,6 +73,13 @@ _HUE_GAIN = 4.0
 to the filter of a beige one of the same shape (scenes `bus` and `braking`, seeds 100 to 104)."""
 _COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32) / 100
 _COLOUR_MIDDLE = np.array([0.5, 0, 0], np.float32)
+_PAINTED = 0.6
+"""Middle of a box that paint is measured in, of each side."""
+_PAINT_SIDE = 8
+"""Side in px that it is resampled to."""
+_OTHER_CHROMA, _OTHER_LIGHTNESS = 9.0, 18.0
+"""Differences of paint, in units of Lab, above which two vehicles are not the same. Over each of 25
+sequences a tenth of the differences is larger; of those between sequences two thirds are."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -237,6 +244,15 @@ class Appearance:
         """Let the usual response follow one of a visible frame, given relative to it."""
         self.usual_response *= 1 + rate * (response - 1)
 
+    def learn_paint(self, frame: Frame, position: Array, size: Array) -> None:
+        """Measure the paint of a vehicle that is seen whole."""
+        self._paint = _paint(frame, position, size)
+
+    def has_paint(self, frame: Frame, size: Array, position: Array) -> bool:
+        """Test whether what is in a box has the paint that was measured last."""
+        lightness, *chroma = (_paint(frame, position, size) - self._paint).tolist()
+        return abs(lightness) < _OTHER_LIGHTNESS and math.hypot(*chroma) < _OTHER_CHROMA
+
     def _spectrum(self, patch: Patch) -> Spectrum:
         wide = patch.side > self._side
         transform = self._filter.wide_spectrum if wide else self._filter.spectrum
@@ -250,6 +266,13 @@ class Appearance:
         # Lightness is 0 to 100, a and b about as much to either side: all within about one.
         features[GRADIENT_CHANNELS:] = (lab * _COLOUR_GAINS - _COLOUR_MIDDLE).transpose(2, 0, 1)
         return features
+
+
+def _paint(frame: Frame, position: Array, size: Array) -> Array:
+    """Median of the colours in the middle of a box, as L, a and b."""
+    small = cut_image(frame, position, _PAINT_SIDE / (_PAINTED * size), (_PAINT_SIDE, _PAINT_SIDE))
+    lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
+    return np.asarray(np.median(lab.reshape(-1, 3), axis=0), float)
 
 
 _DIRECTIONS = ((1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
