@@ -43,7 +43,7 @@ def frame(x=PLACE[0], y=PLACE[1], vehicle=VEHICLE):
 
 def learnt(*, penalty=0.1):
     appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters(penalty=penalty))
-    appearance.learn_first(appearance.patch(frame(), PLACE, SIZE))
+    appearance.learn_first(frame(), PLACE, SIZE)
     return appearance
 
 
@@ -183,7 +183,7 @@ def test_the_peak_is_sought_within_reach_only_and_inside_the_patch():
 def test_an_image_without_any_contrast_gives_finite_responses(level):
     blank = np.full((120, 160, 3), level, np.uint8)
     appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters())
-    appearance.learn_first(appearance.patch(blank, np.array([80.0, 60.0]), SIZE))
+    appearance.learn_first(blank, np.array([80.0, 60.0]), SIZE)
     view = view_at(appearance, blank, (80, 60))
     assert np.isfinite(view.response).all()
     assert np.isfinite(appearance.response_at(blank, np.array([80.0, 60.0]), SIZE))

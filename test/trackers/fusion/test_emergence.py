@@ -25,20 +25,20 @@ from laboratory.scenes import make_scene
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
+from vehicle_pf_tracker.trackers.fusion.perspective import Sighting
 
 SIZE = np.array([20.0, 12.0])
 LAST = np.array([100.0, 120.0])
 VELOCITY = np.array([3.0, 0.0])
+IMAGE = np.array([320.0, 200.0])
 OUT = np.array([140.0, 80.0])
 """Where it comes out, 20 frames later, on its way up."""
 
 
-def mask(*boxes):
-    picture = np.zeros((200, 320), np.uint8)
-    for x, y, width, height in boxes:
-        left, top = max(round(x - width / 2), 0), max(round(y - height / 2), 0)
-        picture[top : round(y + height / 2), left : round(x + width / 2)] = 1
-    return picture
+def sides(*boxes):
+    """Bounding boxes of what is inside the image."""
+    corners = [((x - w / 2, y - h / 2), (x + w / 2, y + h / 2)) for x, y, w, h in boxes]
+    return np.clip(np.array(corners).reshape(-1, 2, 2), 0, IMAGE)
 
 
 def coming_out(time, speed=3.0, size=(12, 14)):
@@ -50,18 +50,19 @@ def coming_out(time, speed=3.0, size=(12, 14)):
 
 def run(others=lambda time: [], earlier=(), out=coming_out):
     """Frame in which the vehicle is proven, and what was given; None if it never is."""
-    emergence = Emergence(LAST, SIZE, VELOCITY, [(ago, mask(*boxes)) for ago, boxes in earlier])
+    before = [(ago, sides(*boxes)) for ago, boxes in earlier]
+    emergence = Emergence(Sighting(0.0, LAST, SIZE), VELOCITY, IMAGE, before)
     for time in range(1, 60):
-        found = emergence.step(mask(*out(time), *others(time)), 1.0)
+        found = emergence.step(sides(*out(time), *others(time)), 1.0)
         if found is not None:
             return time, found
     return None
 
 
 def test_a_single_vehicle_that_comes_out_beside_the_path_is_found():
-    time, (sides, velocity) = run(earlier=[(0.0, [(*LAST, *SIZE)]), (10.0, [(70, 120, *SIZE)])])
+    time, (box, velocity) = run(earlier=[(0.0, [(*LAST, *SIZE)]), (10.0, [(70, 120, *SIZE)])])
     assert 27 <= time <= 32
-    assert sides.mean(axis=0)[0] == pytest.approx(OUT[0], abs=1)
+    assert box.mean(axis=0)[0] == pytest.approx(OUT[0], abs=1)
     assert velocity == pytest.approx([0.0, -3.0], abs=0.5)
 
 

@@ -224,14 +224,16 @@ class Appearance:
         grey = np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), np.uint8)
         return self._filter.respond_in_middle(self._features(image, grey)) / self.usual_response
 
-    def learn_first(self, patch: Patch) -> None:
-        """Train the filter on the first patch, in whose middle the target is."""
-        spectrum = self._spectrum(patch)
+    def learn_first(self, frame: Frame, position: Array, size: Array) -> None:
+        """Train the filter on the first frame."""
+        self._paint = _paint(frame, position, size)
+        spectrum = self._spectrum(self.patch(frame, position, size))
         self._filter.train(spectrum, 0.0)
         self._least_usual = _USUAL_SHARE * float(self._filter.respond(spectrum).max())
 
     def learn(self, frame: Frame, view: View, position: Array, size: Array, stiff: float) -> None:
         """Train the filter on the target at `position` in the frame that `view` shows."""
+        self._paint = _paint(frame, position, size)
         offset = (position - view.patch.centre) * view.patch.zoom
         if view.spectrum is not None and np.abs(offset).max() < _SHIFTABLE_PX:
             x, y = (-offset / CELL).tolist()
@@ -244,12 +246,8 @@ class Appearance:
         """Let the usual response follow one of a visible frame, given relative to it."""
         self.usual_response *= 1 + rate * (response - 1)
 
-    def learn_paint(self, frame: Frame, position: Array, size: Array) -> None:
-        """Measure the paint of a vehicle that is seen whole."""
-        self._paint = _paint(frame, position, size)
-
     def has_paint(self, frame: Frame, size: Array, position: Array) -> bool:
-        """Test whether what is in a box has the paint that was measured last."""
+        """Test whether what is in a box has the paint that was learnt last."""
         lightness, *chroma = (_paint(frame, position, size) - self._paint).tolist()
         return abs(lightness) < _OTHER_LIGHTNESS and math.hypot(*chroma) < _OTHER_CHROMA
 

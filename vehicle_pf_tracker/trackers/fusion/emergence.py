@@ -23,12 +23,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-import cv2
 import numpy as np
-import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.fusion.perspective import KEPT_FRAMES
+from vehicle_pf_tracker.trackers.fusion.perspective import KEPT_FRAMES, Sighting
 
 _FRAMES, _MOVED = 8, 0.5
 """Frames in a row that prove it, and its way in them, of the size: as for a return."""
@@ -39,18 +37,20 @@ _LEAST_AREA, _LARGEST_AREA = 0.2, 2.0
 _LEAST_MOVING = 0.03
 """The same from which something is seen to move: less flickers."""
 
-Mask = npt.NDArray[np.uint8]
-
 
 class Emergence:
-    """Watches what moves around a hidden vehicle; lengths in px of the masks.
+    """Watches what moves around a hidden vehicle.
 
     Parameters
     ----------
-    centre, size, velocity : (2,) arrays
-        Of the vehicle when it was last seen clearly, and per frame.
-    earlier : iterable of (float, mask)
-        What moved before, with the frames since.
+    last : Sighting
+        Where the vehicle was last seen clearly.
+    velocity : (2,) array
+        Its velocity then, px per frame.
+    image_size : (2,) array
+        Width and height of the frame, px.
+    earlier : iterable of (float, (N, 2, 2) array)
+        Frames since, and bounding boxes (low, high; px) of what moved then.
 
     Attributes
     ----------
@@ -59,33 +59,34 @@ class Emergence:
     """
 
     def __init__(
-        self, centre: Array, size: Array, velocity: Array, earlier: Iterable[tuple[float, Mask]]
-    ) -> None:
-        self._centre, self._size, self._age = centre, size, 0.0
-        self._extent, self._speed = float(np.sqrt(size.prod())), float(np.hypot(*velocity))
+        self, last: Sighting, velocity: Array, image_size: Array,
+        earlier: Iterable[tuple[float, Array]],
+    ) -> None:  # fmt: skip
+        self._centre, self._size, self._image_size = last.position, last.size, image_size
+        self._extent, self._speed = float(np.sqrt(last.size.prod())), float(np.hypot(*velocity))
+        self._age = 0.0
         self._sides: list[Array] = []
         self.is_alone = all(
-            not len(self._boxes(mask, centre - velocity * ago)) for ago, mask in earlier
+            not len(self._near(boxes, last.position - velocity * ago)) for ago, boxes in earlier
         )
 
-    def _boxes(self, moving: Mask, own: Array | None) -> Array:
-        """Bounding boxes (N, 2, 2) of what moves within reach, and not at its `own` position."""
-        _, _, stats, _ = cv2.connectedComponentsWithStats(moving)
-        low, extent = stats[1:, :2].astype(float), stats[1:, 2:4].astype(float)
-        middles = low + extent / 2
+    def _near(self, boxes: Array, own: Array | None) -> Array:
+        """Choose the boxes within reach that are not at the vehicle's `own` position."""
+        middles, areas = boxes.mean(axis=1), (boxes[:, 1] - boxes[:, 0]).prod(axis=1)
         reach = KEPT_FRAMES * self._speed + 2 * self._extent
         counts = np.linalg.norm(middles - self._centre, axis=1) < reach
-        counts &= extent.prod(axis=1) > _LEAST_MOVING * self._extent**2
+        counts &= areas > _LEAST_MOVING * self._extent**2
         if own is not None:
             counts &= (np.abs(middles - own) > self._size).any(axis=1)
-        return np.asarray(np.stack([low, low + extent], axis=1)[counts])
+        return boxes[counts]
 
-    def step(self, moving: Mask, elapsed: float) -> tuple[Array, Array] | None:
-        """Take the next frame; sides (2, 2) and velocity of the vehicle once it is proven."""
+    def step(self, boxes: Array, elapsed: float) -> tuple[Array, Array] | None:
+        """Take what moves now; sides (2, 2) and velocity of the vehicle once it is proven."""
         self._age += elapsed
         # At first the rest of the vehicle goes in.
-        own = self._centre if self._speed * self._age < 2 * self._extent else None
-        boxes = self._boxes(moving, own)
+        boxes = self._near(
+            boxes, self._centre if self._speed * self._age < 2 * self._extent else None
+        )
         areas = (boxes[:, 1] - boxes[:, 0]).prod(axis=1) / self._extent**2
         self.is_alone &= len(boxes) < 2 and bool((areas < _LARGEST_AREA).all())
         if not self.is_alone or not len(boxes):
@@ -93,15 +94,15 @@ class Emergence:
             return None
         sides = boxes[0]
         if not self._sides:
-            self.is_alone = self._can_begin(sides, moving)
+            self.is_alone = self._can_begin(sides)
         elif np.abs(sides - self._sides[-1]).max() > self._extent:
             self._sides = []
         self._sides.append(sides)
         return self._proven(elapsed) if areas[0] > _LEAST_AREA else None
 
-    def _can_begin(self, sides: Array, moving: Mask) -> bool:
+    def _can_begin(self, sides: Array) -> bool:
         """Test whether the vehicle can be there already, and nothing enters by the border."""
-        enters = (sides <= 0).any() or (sides >= moving.shape[::-1]).any()
+        enters = (sides <= 0).any() or (sides >= self._image_size).any()
         far = np.hypot(*(sides.mean(axis=0) - self._centre))
         reached = far < _SPEEDS[1] * self._speed * self._age + self._extent
         return bool(reached and not enters)

@@ -33,9 +33,9 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import SmallGrey
+from vehicle_pf_tracker.image.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
-from vehicle_pf_tracker.trackers.fusion.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.perspective import (
     CLEAR_RESPONSE,
     PerspectiveMotion,
@@ -117,10 +117,8 @@ class TurningBranch:
         """Begin where the vehicle was last seen clearly, of which `last.age` frames passed."""
         self._branch = self._emergence = None
         if self.can_begin:
-            zoom, earlier = self._foreground.zoom, self._foreground.history()
-            self._emergence = Emergence(
-                last.position * zoom, last.size * zoom, motion.velocity * zoom, earlier
-            )
+            earlier, image_size = self._foreground.history(), self._foreground.extent
+            self._emergence = Emergence(last, motion.velocity, image_size, earlier)
             self._motion = motion
         ago = round(last.age)
         first = self._foreground.outline(last.position, last.size, ago)
@@ -169,12 +167,10 @@ class TurningBranch:
         emergence = self._emergence
         if emergence is None or not emergence.is_alone:
             return None
-        zoom = self._foreground.zoom
-        found = emergence.step(self._foreground.moving(), elapsed)
+        found = emergence.step(self._foreground.boxes(), elapsed)
         if found is None:
             return None
-        (low, high), velocity = found[0] / zoom, found[1] / zoom
-        outline, margins = Outline(low, high), (np.zeros(2), np.zeros(2))
+        outline, velocity, margins = Outline(*found[0]), found[1], (np.zeros(2), np.zeros(2))
         if not has_paint(outline.size, outline.centre):
             return None
         return _Branch(self._motion, outline.size, margins, outline, velocity, 0.0, proven=True)

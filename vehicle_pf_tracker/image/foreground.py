@@ -30,7 +30,6 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import SmallGrey
-from vehicle_pf_tracker.trackers.fusion.emergence import Mask
 
 _KEPT_EVERY = 4
 """Frames between two that are kept for the background."""
@@ -101,21 +100,32 @@ class Foreground:
         """True once the background has been seen for long enough, by a camera that stands."""
         return len(self._background) >= _FEWEST
 
-    def history(self) -> Iterator[tuple[float, Mask]]:
-        """Learn the whole background; yield the ages of kept frames, and what moved in them."""
+    @property
+    def extent(self) -> Array:
+        """Width and height of the frames, px."""
+        return np.array(self._latest[-1].image.shape[::-1]) / self._latest[-1].zoom
+
+    def history(self) -> Iterator[tuple[float, Array]]:
+        """Learn the whole background; yield the ages of kept frames, and the boxes in them."""
         self._whole = median([each.image for each in self._background])
         kept, since = list(self._background)[::-1], (self._frames - 1) % _KEPT_EVERY
         for back in range(0, len(kept), _LOOKED_AT):
-            yield float(since + _KEPT_EVERY * back), _moving(kept[back].image, self._whole)
+            yield float(since + _KEPT_EVERY * back), self._boxes(kept[back])
 
-    def moving(self) -> Mask:
-        """All that moves in the latest frame, against the background that `history` has learnt."""
-        return _moving(self._latest[-1].image, self._whole)
+    def boxes(self) -> Array:
+        """Find all that moves now, against the background that `history` has learnt.
 
-    @property
-    def zoom(self) -> float:
-        """Px of the masks per px of the frame."""
-        return self._latest[-1].zoom
+        Returns
+        -------
+        (N, 2, 2) array
+            Left and upper, right and lower side of each connected piece, px.
+        """
+        return self._boxes(self._latest[-1])
+
+    def _boxes(self, small: SmallGrey) -> Array:
+        *_, stats, _ = cv2.connectedComponentsWithStats(_moving(small.image, self._whole))
+        low, size = stats[1:, :2], stats[1:, 2:4]
+        return np.stack([low, low + size], axis=1) / small.zoom
 
     def outline(self, centre: Array, size: Array, ago: int = 0) -> Outline | None:
         """Outline of what moves in a box of this centre and size, px, some frames `ago`.
