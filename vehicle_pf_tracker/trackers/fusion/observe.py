@@ -144,7 +144,7 @@ def _look(state: State, step: Step, scale: float) -> tuple[View, Array, Array]:
     appearance, options = step.memory.appearance, step.parameters
     wide = hidden and particles.spread > _WIDE_FROM * state.extent
     patch = appearance.patch(step.frame, particles.mean, scale * state.size, wide=wide)
-    view = appearance.view(patch, recall=hidden and options.filter.memory > 0)
+    view = appearance.view(patch)
     climb = STAY if state.sets_off else CLIMB_ON_PATH if hidden else CLIMB_FREELY
     return view, *response_evidence(view, particles.positions, climb, options.visibility)
 

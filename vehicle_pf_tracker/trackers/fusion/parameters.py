@@ -47,11 +47,6 @@ class FilterParameters:
         "Higher: a smoother filter, which discriminates less and bears changed appearance longer.",
         bounds=(0.001, 100.0), source="STRCF, first gamma", effect="relearns", tuned=(0.03, 1.0),
     )  # fmt: skip
-    memory: int = parameter(
-        3,
-        "More: a hidden vehicle is recognised by what it looked like at more times; 0: only last.",
-        bounds=(0, 20), unit="dated filters",
-    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
