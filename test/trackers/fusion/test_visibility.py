@@ -36,10 +36,7 @@ def visibility(**values):
     return from_mapping(FusionParameters, prefixed).visibility
 
 
-ROUND = visibility(
-    points_slope=4.0, hiding_rate=0.02, return_rate=0.05, partial_slope=8.0,
-    partial_middle=0.7,
-)  # fmt: skip
+ROUND = visibility(points_slope=4.0, partial_slope=8.0, partial_middle=0.7)
 
 
 def test_the_surface_s_share_speaks_for_a_visible_vehicle_above_the_middle():
@@ -74,12 +71,10 @@ def test_half_a_vehicle_is_partial_within_three_frames_and_whole_again_as_fast()
 
 @given(
     st.lists(st.tuples(st.floats(0, 1), st.floats(0, 30)), max_size=30), st.floats(0, 50),
-    st.floats(0, 1), st.floats(1e-6, 0.5), st.floats(1e-6, 0.5),
+    st.floats(0, 1),
 )  # fmt: skip
-def test_the_probability_stays_one(frames, slope, middle, hiding, returning):
-    whole, options = 0.99, visibility(
-        partial_slope=slope, partial_middle=middle, hiding_rate=hiding, return_rate=returning
-    )  # fmt: skip
+def test_the_probability_stays_one(frames, slope, middle):
+    whole, options = 0.99, visibility(partial_slope=slope, partial_middle=middle)
     for share, elapsed in frames:
         whole = wholeness(whole, share, elapsed, options)
         assert 0 <= whole <= 1

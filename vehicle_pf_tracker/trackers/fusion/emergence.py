@@ -78,7 +78,7 @@ class Emergence:
         counts &= areas > _LEAST_MOVING * self._extent**2
         if own is not None:
             counts &= (np.abs(middles - own) > self._size).any(axis=1)
-        return boxes[counts]
+        return np.asarray(boxes[counts])
 
     def step(self, boxes: Array, elapsed: float) -> tuple[Array, Array] | None:
         """Take what moves now; sides (2, 2) and velocity of the vehicle once it is proven."""

@@ -89,7 +89,7 @@ def _set_off(state: State, step: Step) -> State:
 
 def _driven(state: State, step: Step) -> State:
     """Drive all hypotheses on; a hidden vehicle grows as they do."""
-    motion, rates, elapsed = step.parameters.motion, step.parameters.visibility, step.elapsed
+    motion, elapsed = step.parameters.motion, step.elapsed
     particles, size, extent = state.particles, state.size, state.extent
     seen = state.visibility.is_seen
     sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
@@ -101,7 +101,7 @@ def _driven(state: State, step: Step) -> State:
         )
     across = 1.0 if seen else ACROSS_LANES
     driven = particles.driven(step.rng, elapsed, sigmas, across=across)
-    driven = driven.passed(elapsed, rates.hiding_rate, rates.return_rate)
+    driven = driven.passed(elapsed)
     return replace(
         state,
         particles=replace(driven, positions=step.inside(driven.positions)),

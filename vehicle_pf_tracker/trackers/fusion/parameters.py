@@ -91,14 +91,6 @@ class VisibilityParameters:
         4.0, "Higher: how many points move with the vehicle counts more; 0: they are not tracked.",
         bounds=(0.0, 50.0), unit="log ratio per usual share", tuned=(0.5, 8.0),
     )  # fmt: skip
-    hiding_rate: float = parameter(
-        0.02, "Probability that a visible vehicle is hidden in the next frame.",
-        bounds=(1e-6, 0.5), unit="per frame",
-    )  # fmt: skip
-    return_rate: float = parameter(
-        0.05, "Probability that a hidden vehicle is visible in the next frame.",
-        bounds=(1e-6, 0.5), unit="per frame",
-    )  # fmt: skip
     partial_slope: float = parameter(
         8.0, "Higher: a vehicle is taken as partly hidden sooner; 0: never, and walls are learnt.",
         bounds=(0.0, 50.0), unit="log ratio per usual share", tuned=(2.0, 20.0),

@@ -27,6 +27,7 @@ from dataclasses import replace
 import numpy as np
 
 from vehicle_pf_tracker.trackers.fusion.departure import Departure, is_too_far
+from vehicle_pf_tracker.trackers.fusion.hypotheses import chain
 from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
@@ -146,9 +147,8 @@ def wholeness(
     *Whole* and *partial* are a Markov chain. Covering begins and ends as often as occlusions do; an
     occluder shows in the share while response and position do not yet fall.
     """
-    covered = 1 - (1 - parameters.hiding_rate) ** elapsed
-    uncovered = 1 - (1 - parameters.return_rate) ** elapsed
-    before = before * (1 - covered) + (1 - before) * uncovered
+    stays, returns = chain(elapsed)
+    before = before * stays + (1 - before) * returns
     ratio = parameters.partial_slope * (share - parameters.partial_middle)
     bound = _LARGEST_PARTIAL_LOG_RATIO
     whole = before * math.exp(min(max(ratio, -bound), bound))
