@@ -221,10 +221,10 @@ class Appearance:
         """Measure the paint of a vehicle that is clearly seen whole: occluders have another."""
         self._paint = _paint(frame, position, size)
 
-    def has_paint(self, frame: Frame, size: Array, position: Array) -> bool:
-        """Test whether what is in a box has the paint that was learnt last."""
+    def unlike(self, frame: Frame, size: Array, position: Array) -> float:
+        """How far the paint in a box is from the one learnt last: above 1 it is another."""
         lightness, *chroma = (_paint(frame, position, size) - self._paint).tolist()
-        return abs(lightness) < _OTHER_LIGHTNESS and math.hypot(*chroma) < _OTHER_CHROMA
+        return float(max(abs(lightness) / _OTHER_LIGHTNESS, math.hypot(*chroma) / _OTHER_CHROMA))
 
     def _spectrum(self, patch: Patch) -> Spectrum:
         wide = patch.side > self._side

@@ -91,7 +91,7 @@ class _Branch:
     calm: int = 0
 
 
-HasPaint = Callable[[Array, Array], bool]
+Unlike = Callable[[Array, Array], float]
 
 
 class TurningBranch:
@@ -101,6 +101,7 @@ class TurningBranch:
         self._foreground = Foreground()
         self._branch: _Branch | None = None
         self._emergence: Emergence | None = None
+        self._unlike: list[float] = []
 
     @property
     def can_begin(self) -> bool:
@@ -116,6 +117,7 @@ class TurningBranch:
     def begin(self, motion: PerspectiveMotion, last: Sighting) -> None:
         """Begin where the vehicle was last seen clearly, of which `last.age` frames passed."""
         self._branch = self._emergence = None
+        self._unlike = []
         if self.can_begin:
             earlier, image_size = self._foreground.history(), self._foreground.extent
             self._emergence = Emergence(last, motion.velocity, image_size, earlier)
@@ -136,18 +138,18 @@ class TurningBranch:
         for back in range(ago - 1, -1, -1):
             self._step(1.0, back)
 
-    def follow(self, elapsed: float, view: View, has_paint: HasPaint) -> Turned | None:
+    def follow(self, elapsed: float, view: View, unlike: Unlike) -> Turned | None:
         """Follow the outline into the present frame; give the vehicle once it is proven to turn.
 
         Parameters
         ----------
         view : View
             Tells when the filter has long recognised the vehicle again, which ends the branch.
-        has_paint : callable
-            Tells whether a box of a size and position, px, has the vehicle's paint.
+        unlike : callable
+            Difference of the paint in a box of a size and position, px, from the vehicle's.
         """
         self._step(elapsed, 0)
-        emerged = self._emerged(elapsed, has_paint)
+        emerged = self._emerged(elapsed, unlike)
         branch = self._branch = self._branch or emerged
         if branch is None:
             return None
@@ -162,7 +164,7 @@ class TurningBranch:
             return None
         return Turned(position, size, branch.velocity) if branch.proven else None
 
-    def _emerged(self, elapsed: float, has_paint: HasPaint) -> _Branch | None:
+    def _emerged(self, elapsed: float, unlike: Unlike) -> _Branch | None:
         """Find a vehicle that has come out beside its path."""
         emergence = self._emergence
         if emergence is None or not emergence.is_alone:
@@ -171,7 +173,9 @@ class TurningBranch:
         if found is None:
             return None
         outline, velocity, margins = Outline(*found[0]), found[1], (np.zeros(2), np.zeros(2))
-        if not has_paint(outline.size, outline.centre):
+        # Over all frames: a stranger's windows may look like the vehicle's in one of them.
+        self._unlike.append(unlike(outline.size, outline.centre))
+        if np.mean(self._unlike) > 1:
             return None
         return _Branch(self._motion, outline.size, margins, outline, velocity, 0.0, proven=True)
 

@@ -54,11 +54,11 @@ def judge(state: State, seen: Observation, step: Step) -> State:
         state = _witnessed(state, seen, step)
     visible = state.particles.probability_visible > 0.5
     turning = step.memory.turning
-    painted = functools.partial(step.memory.appearance.has_paint, step.frame)
+    unlike = functools.partial(step.memory.appearance.unlike, step.frame)
     departure, turned = _departure(state, step, visible=visible), None
     if departure is not None:
         visibility = Visibility.GONE
-    elif (turned := turning.follow(step.elapsed, seen.view, painted)) is not None:
+    elif (turned := turning.follow(step.elapsed, seen.view, unlike)) is not None:
         visibility = Visibility.TURNING
     elif not visible:
         visibility = Visibility.HIDDEN
