@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.fusion.appearance import View, searched_size
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, hidden_hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
+from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
@@ -112,13 +114,25 @@ def _sized(state: State, step: Step, *, again: bool) -> State:
     """Follow the size by the spread of points on the vehicle, and by the filter's response."""
     options, memory, size = step.parameters.size, step.memory, state.size
 
-    def peak(size: Array) -> float:
-        return memory.appearance.response_at(step.frame, state.position, size)
-
-    if not again and options.step and memory.surface.share > _WHOLE:
-        size = size * np.exp(memory.points.stretch / 2)
+    peak = partial(memory.appearance.response_at, step.frame, state.position)
+    if not again and options.step:
+        size = size * np.exp(told_by_points(memory.points.stretch, memory.surface.share, options))
     size = searched_size(size, state.frames // 2, peak, options)
     return replace(state, size=step.bounded(size))
+
+
+def told_by_points(stretch: Array, share: float, options: SizeParameters) -> Array:
+    """Change of the logarithm of width and height that the points on the vehicle tell.
+
+    What an occluder drags along draws together, along one axis. So points that spread along both,
+    or that draw together along both faster than the response follows, are believed wholly.
+    """
+    reach = options.gain * np.log1p(options.step)
+    both = stretch.min() if stretch.min() > 0 else min(stretch.max(), 0.0)
+    sure = both if both > 0 or both < -reach else 0.0
+    if share <= _WHOLE:
+        return np.full(2, sure if share > EVEN else 0.0)
+    return np.asarray(stretch + sure) / 2
 
 
 def _follow_outline(state: State, turned: Turned, step: Step) -> State:
