@@ -91,12 +91,6 @@ PROGRAMS = {
         printed="per further vehicle",
         needs=("baselines",),
     ),
-    "laboratory.traffic_fit": Program(
-        "{toy}/traffic --budget 1 --frames 30 --judged 30 --runs 1 --detections good -o {out}",
-        ("fit.json",),
-        "good, fitted",
-        ("baselines",),
-    ),
     "laboratory.traffic_occluders": Program("{toy}/traffic", printed="traffic: "),
     "laboratory.traffic_perturbed": Program(
         "{toy}/traffic -o {out}", ("traffic.html",), "the report is", ("baselines",)

@@ -40,8 +40,8 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.spectra import (
     PartialFourier,
-    SpectralKernels,
     Spectrum,
+    correlated,
     solved,
     upsampled,
 )
@@ -89,13 +89,10 @@ class CorrelationFilter:
         Width and height of the target in cells.
     penalty : float
         First ADMM penalty: the larger, the smoother the filter and the less a step changes it.
-    kernels : SpectralKernels
-        Correlation of spectra, in numpy or compiled.
     """
 
-    def __init__(self, cells: int, target: Array, penalty: float, kernels: SpectralKernels) -> None:
+    def __init__(self, cells: int, target: Array, penalty: float) -> None:
         self.penalty = penalty
-        self.kernels = kernels
         offsets = np.arange(cells) - cells // 2
         sigma = _LABEL_SIGMA * float(np.sqrt(target.prod()))
         label = np.exp(-0.5 * (offsets[:, np.newaxis] ** 2 + offsets**2) / sigma**2)
@@ -185,7 +182,7 @@ class CorrelationFilter:
         return self.weights
 
     def _response(self, spectrum: Spectrum, weights: Spectrum) -> Response:
-        return upsampled(self.kernels.correlated(spectrum, weights), UPSAMPLING)
+        return upsampled(correlated(spectrum, weights), UPSAMPLING)
 
     def _wide(self, size: int) -> tuple[PartialFourier, PartialFourier]:
         """Return transforms of a larger square of cells, and of the target in its middle."""

@@ -159,13 +159,13 @@ class Appearance:
         target = np.minimum(learnt * zoom, _LARGEST_SHARE * self._side)
         self._box = target * (size / learnt)
         self._kernels, self.first_size = kernels, size
-        self._filter = CorrelationFilter(_CELLS, target / CELL, options.penalty, kernels)
+        self._filter = CorrelationFilter(_CELLS, target / CELL, options.penalty)
         self.usual_response = 0.0
         self._least_usual = 0.0
 
     def use_kernels(self, kernels: Kernels) -> None:
         """Measure gradients and multiply spectra by another implementation from now on."""
-        self._kernels = self._filter.kernels = kernels
+        self._kernels = kernels
 
     def patch(self, frame: Frame, position: Array, size: Array, *, wide: bool = False) -> Patch:
         """Cut the surroundings of a box of this centre and size (px) out of a frame."""
