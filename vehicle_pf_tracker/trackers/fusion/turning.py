@@ -118,8 +118,7 @@ class TurningBranch:
         self._branch = self._emergence = None
         if self.can_begin:
             earlier, image_size = self._foreground.history(), self._foreground.extent
-            self._emergence = Emergence(last, motion.velocity, image_size, earlier)
-            self._motion = motion
+            self._emergence = Emergence(last, motion, image_size, earlier)
         ago = round(last.age)
         first = self._foreground.outline(last.position, last.size, ago)
         if first is None:
@@ -173,7 +172,7 @@ class TurningBranch:
         outline, velocity, margins = Outline(*found[0]), found[1], (np.zeros(2), np.zeros(2))
         if not has_paint(outline.size, outline.centre):
             return None
-        return _Branch(self._motion, outline.size, margins, outline, velocity, 0.0, proven=True)
+        return _Branch(emergence.motion, outline.size, margins, outline, velocity, 0.0, proven=True)
 
     def end(self) -> None:
         """End the branch: the vehicle was found another way."""
