@@ -87,6 +87,15 @@ def test_what_may_be_another_vehicle_is_not_taken(options):
     assert run(**options) is None
 
 
+@pytest.mark.parametrize(("refused", "found"), [(7, True), (8, False)])
+def test_eight_frames_of_another_paint_prove_a_stranger(refused, found):
+    emergence = Emergence(Sighting(0.0, LAST, SIZE), MOTION, IMAGE, [])
+    for _ in range(refused):
+        emergence.refuse()
+    results = [emergence.step(sides(*coming_out(time)), 1.0) for time in range(1, 60)]
+    assert any(result is not None for result in results) == found
+
+
 @pytest.fixture(scope="module")
 def turn_behind_a_house():
     return list(make_scene("turn_occluded", seed=0).frames())

@@ -171,6 +171,7 @@ class TurningBranch:
             return None
         outline, velocity, margins = Outline(*found[0]), found[1], (np.zeros(2), np.zeros(2))
         if not has_paint(outline.size, outline.centre):
+            emergence.refuse()
             return None
         return _Branch(emergence.motion, outline.size, margins, outline, velocity, 0.0, proven=True)
 
