@@ -19,6 +19,7 @@ import pytest
 
 from vehicle_pf_tracker.image.shared_motion import (
     carried_share,
+    median,
     shared_similarity,
     shared_stretch,
     staying,
@@ -65,6 +66,12 @@ def test_strays_do_not_stay_and_the_lost_are_not_found_again():
 def test_of_nothing_nothing_stays():
     before, after, _ = places(2, 6)
     assert not staying(before, after, np.zeros(36, bool), 0.2).any()
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 100])
+def test_the_median_is_numpys_to_the_bit(count):
+    values = np.random.default_rng(count).normal(size=count)
+    assert median(values) == float(np.median(values))
 
 
 @pytest.mark.parametrize(

@@ -84,7 +84,13 @@ def test_where_nothing_differs_the_size_stays():
     ],
 )
 def test_points_tell_wholly_what_no_occluder_does(stretch, share, told):
-    assert told_by_points(np.array(stretch), share, parameters()) == pytest.approx(told)
+    found = told_by_points(np.array(stretch), share, SIZE, parameters())
+    assert found == pytest.approx(told)
+
+
+def test_points_on_a_vehicle_of_a_few_px_tell_half():
+    found = told_by_points(np.array([0.1, 0.1]), 0.9, SIZE / 2, parameters())
+    assert found == pytest.approx([0.05, 0.05])
 
 
 def test_repeated_it_converges_on_the_right_aspect():

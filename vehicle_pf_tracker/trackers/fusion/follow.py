@@ -38,6 +38,9 @@ _WEAK_RESPONSE = 0.6
 _WHOLE = 0.8
 """Share of the surface from which the spread of points tells the size: what an occluder covers,
 shrinks."""
+_LEAST_SURE = 20.0
+"""Geometric mean of the sides, px, below which points are not believed wholly: they are magnified
+twofold and more, as are their errors (truck4_2, white_van)."""
 _TURNING_STIFFNESS = 0.5
 """Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
 turn by 90 degrees nothing that was learnt before stays right (scene `turn`, seed 100)."""
@@ -116,12 +119,13 @@ def _sized(state: State, step: Step, *, again: bool) -> State:
 
     peak = partial(memory.appearance.response_at, step.frame, state.position)
     if not again and options.step:
-        size = size * np.exp(told_by_points(memory.points.stretch, memory.surface.share, options))
+        told = told_by_points(memory.points.stretch, memory.surface.share, size, options)
+        size = size * np.exp(told)
     size = searched_size(size, state.frames // 2, peak, options)
     return replace(state, size=step.bounded(size))
 
 
-def told_by_points(stretch: Array, share: float, options: SizeParameters) -> Array:
+def told_by_points(stretch: Array, share: float, size: Array, options: SizeParameters) -> Array:
     """Change of the logarithm of width and height that the points on the vehicle tell.
 
     What an occluder drags along draws together, along one axis. So points that spread along both,
@@ -129,7 +133,7 @@ def told_by_points(stretch: Array, share: float, options: SizeParameters) -> Arr
     """
     reach = options.gain * np.log1p(options.step)
     both = stretch.min() if stretch.min() > 0 else min(stretch.max(), 0.0)
-    sure = both if both > 0 or both < -reach else 0.0
+    sure = both if (both > 0 or both < -reach) and size.prod() > _LEAST_SURE**2 else 0.0
     if share <= _WHOLE:
         return np.full(2, sure if share > EVEN else 0.0)
     return np.asarray(stretch + sure) / 2
