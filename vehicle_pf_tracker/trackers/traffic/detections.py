@@ -23,7 +23,6 @@ well.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
@@ -129,9 +128,12 @@ class Detections:
         kept = np.flatnonzero(good)
         # Stable: equal scores stay in the detector's order, so that runs repeat.
         kept = kept[np.argsort(-scores[kept], kind="stable")]
-        _, first = np.unique(boxes[kept], axis=0, return_index=True)
-        kept = kept[np.sort(first)][:MOST_DETECTIONS]
-        return self.take(np.sort(kept))
+        single: dict[tuple[float, ...], int] = {}
+        for index in kept.tolist():
+            single.setdefault(tuple(boxes[index].tolist()), index)
+            if len(single) == MOST_DETECTIONS:
+                break
+        return self.take(np.array(sorted(single.values()), np.intp))
 
 
 def areas(edges: Array) -> Array:
@@ -185,8 +187,8 @@ class DetectionEvidence:
     """Outcomes of detections by score, and false alarms by place."""
 
     def __init__(self) -> None:
-        self._outcomes: deque[tuple[float, bool]] = deque(maxlen=_REMEMBERED)
-        self._fresh = 0
+        self._outcomes = np.zeros((_REMEMBERED, 2))  # score, and 1 of a vehicle's
+        self._learnt = self._fresh = 0
         self._sorted = np.empty(0)
         self._sums = np.zeros(1)
         self._images = 0.0
@@ -200,8 +202,8 @@ class DetectionEvidence:
             self._images /= 2
             self._false /= 2
             self._places = (self._places + _PRIOR) / 2
-        if self._fresh >= min(_NEIGHBOURS // 2, len(self._outcomes)) > 0:
-            scores, genuine = np.array(self._outcomes).T
+        if self._fresh >= min(_NEIGHBOURS // 2, self._learnt) > 0:
+            scores, genuine = self._outcomes[: self._learnt].T
             order = np.argsort(scores, kind="stable")
             self._sorted = scores[order]
             self._sums = np.concatenate([[0.0], np.cumsum(genuine[order])])
@@ -223,7 +225,8 @@ class DetectionEvidence:
 
     def learn(self, sample: Sample, genuine: bool, *, alone: bool = True) -> None:
         """Add the outcome of a detection; one beside a vehicle is no false alarm of its place."""
-        self._outcomes.append((sample.score, genuine))
+        self._outcomes[self._learnt % _REMEMBERED] = sample.score, genuine
+        self._learnt += 1
         self._fresh += 1
         row, column = sample.place
         self._false[row, column] += alone and not genuine
