@@ -35,6 +35,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import (
     HALF,
+    LITTLE,
     NOTHING,
     DetectionEvidence,
     Detections,
@@ -54,10 +55,6 @@ GATE = 30.0
 """Largest cost of a pair."""
 INWARD = np.array([1.0, 1.0, -1.0, -1.0])
 """Sign of a residual (detection less prediction) of left, top, right, bottom that points inward."""
-_LEAST_PART = 0.15
-"""Smallest share of the vehicle that a detection may show."""
-_PARTIAL, _MISSING = 3.0, 12.0
-"""Cost of taking a detection for a part of the vehicle, and of all of it that it lacks."""
 _SIZES = 2.0
 """Logarithm of the ratio of the largest and the smallest false alarms, by which they are spread. At
 1 vehicles that pass close and fast are found late: IDF1 of three scenes is 67 instead of 83."""
@@ -111,8 +108,8 @@ def edge_costs(predicted: Array, deviations: Array, detected: Array) -> Array:
     size = (predicted[:, 2:] - predicted[:, :2])[:, np.newaxis]
     lacking = np.maximum(inward, 0.0)
     kept = np.clip(1 - (lacking[..., :2] + lacking[..., 2:]) / size, 0.0, 1.0).prod(axis=2)
-    part = outward + _PARTIAL + _MISSING * (1 - kept)
-    return np.asarray(np.where(kept > _LEAST_PART, np.minimum(whole, part), whole))
+    part = outward + GATE / 2 * (1 - kept)  # of half the vehicle, one edge that is far off
+    return np.asarray(np.where(kept > LITTLE, np.minimum(whole, part), whole))
 
 
 def assign(costs: Array) -> list[tuple[int, int]]:
@@ -289,12 +286,6 @@ def _log_density(residuals: Array, covariances: Array) -> Array:
     return total
 
 
-_SIZE_RATIO = 2.0
-"""Largest ratio of areas: a vehicle reappears part by part. At 4, boxes of two merged vehicles were
-taken for one of them (of three seeds of `traffic-forty` with `poor`, IDF1 lower by 0.5 on
-average)."""
-
-
 def former(track: Track, others: Sequence[Track]) -> Track | None:
     """Find the hidden vehicle that a new one is, if it is any.
 
@@ -318,8 +309,7 @@ def _cost(track: Track, other: Track) -> float | None:
     if other.visible < HALF:
         return None
     new, old = track.state.box, other.state.box
-    ratio = new.area / old.area
-    if not 1 / _SIZE_RATIO < ratio < _SIZE_RATIO:
+    if not HALF < new.area / old.area < 1 / HALF:  # it reappears part by part
         return None
     (x, y), (u, v) = new.centre, old.centre
     width = math.sqrt(new.width * old.width)

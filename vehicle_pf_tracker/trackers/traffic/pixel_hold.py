@@ -45,8 +45,6 @@ _OUTLIER = 0.02
 """Likelihood of a point that went elsewhere."""
 _SLIP = 0.02
 """Standard deviation, of its size, by which a box grows or slips on its vehicle in a frame."""
-_STANDS = 0.4
-"""Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
 _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 
 
@@ -156,7 +154,7 @@ def _standing(old: Array, new: Array, before: Array, predicted: Array) -> npt.ND
     length = float(np.hypot(*drive))
     if length < PIXEL_NOISE:
         return np.zeros(len(old), dtype=np.bool_)
-    return np.asarray(np.hypot(*(new - old).T) < _STANDS * length)
+    return np.asarray(np.hypot(*(new - old).T) < HALF * length)  # none brakes so hard
 
 
 def _particles(track: Track, motions: Array, normals: Array) -> Array:

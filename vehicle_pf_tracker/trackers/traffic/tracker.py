@@ -230,9 +230,8 @@ class TrafficTracker:
         """Pair confirmed tracks with free detections of log odds from `least`."""
         indices = [index for index in found.free if found.log_odds[index] >= least]
         if tracks and indices:
-            settings = self.parameters.detections
-            costs, odds = pair_costs(tracks, found, indices, settings)
-            self._correct(tracks, indices, costs, odds, found)
+            costs = pair_costs(tracks, found, indices, self.parameters.detections)
+            self._correct(tracks, indices, *costs, found)
 
     def _match_tentative(self, tracks: Sequence[Track], found: FrameDetections) -> None:
         """Pair new tracks with free detections that are rather theirs than false alarms."""
