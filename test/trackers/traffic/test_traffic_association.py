@@ -41,7 +41,7 @@ BOX = np.array([10.0, 10, 50, 40])
 
 
 def test_a_cost_is_the_squared_distance_in_standard_deviations():
-    costs = edge_costs(BOX[np.newaxis], np.full((1, 4), 2.0), BOX[np.newaxis] + (-2, 0, 2, 2))
+    costs = edge_costs(BOX[np.newaxis], np.full((1, 4), 2.0), BOX[np.newaxis] + (2, 0, 2, -2))
     assert costs == pytest.approx(np.array([[3.0]]))
 
 
@@ -49,7 +49,7 @@ def test_a_part_costs_what_is_missing_not_its_distance():
     # The lower half is hidden: 15 px inward are 56 squared deviations.
     half = BOX - (0, 0, 0, 15)
     costs = edge_costs(BOX[np.newaxis], np.full((1, 4), 2.0), half[np.newaxis])
-    assert costs == pytest.approx(np.array([[GATE / 2 * 0.5]]))
+    assert costs == pytest.approx(np.array([[3 + 12 * 0.5]]))
 
 
 def test_a_sliver_is_no_part():

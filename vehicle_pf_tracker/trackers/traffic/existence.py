@@ -47,10 +47,16 @@ _PROVEN = 4.0
 _MISSED = 0.15
 """Log odds that a detection missed in plain sight takes off a vehicle: something unknown may hide
 it, so that only 50 take off all that it can have."""
-_NEW_VEHICLES = 0.05
-"""Vehicles that come into view per image: one in two thirds of a second at 30 Hz."""
+_NEW_VEHICLES = 0.1
+"""Vehicles that come into view per image: one in a third of a second at 30 Hz."""
 _SURELY_DRIVES = 50.0
 """Evidence for a drive above which scores are ignored: false alarms side by side reach 35."""
+_STANDING = 0.2
+"""Way, of the size, below which it stands: boxes shake by less."""
+_STILL = 0.05
+"""Way, of the size, below which a track has not moved at all. Scores prove it only if most of the
+vehicles' detections have lower ones: a spot that looks like a vehicle does so each time, and many
+such scores are worth one."""
 _PRIOR = 10.0
 """Vehicles in plain sight that were detected, and that were missed, before any was seen."""
 _BLIND_FROM = 2
@@ -109,8 +115,7 @@ class Existence:
         gain = log_odds if track.confirmed else float(found.gains[index])
         track.add_evidence(found.edges[index], min(max(gain, -_SCORE_DOUBT), _MOST), fit)
         doubted = min(max(log_odds - _SCORE_DOUBT, -_SCORE_DOUBT), _MOST)
-        # A spot that looks like a vehicle does so each time: many such scores are worth one.
-        if track.way < LITTLE and found.ranks[index] < HALF:
+        if track.way < _STILL and found.ranks[index] < HALF:
             doubted = -_SCORE_DOUBT
         track.prove(doubted, sample)
         if track.has_driven or track.given:
@@ -130,7 +135,7 @@ class Existence:
                 self._evidence.learn(one, True)
         else:
             for one in track.take_samples(SETTLED_AFTER):
-                if not track.confirmed and track.way < LITTLE:
+                if not track.confirmed and track.way < _STANDING:
                     self._evidence.learn(one, False)
 
     def _drives(self, track: Track) -> bool:
