@@ -46,14 +46,17 @@ _MOST_FIT = 3.0
 """Most log odds by where a detection is: no single one proves a vehicle."""
 _STRAIGHT, _DRIVES = 0.8, 7.0
 """Straightness of a drive, which a leap between two places that flicker cannot reach (0.75), and
-least evidence for it: one in a thousand that flicker in one place have as much."""
+least evidence for it: one in a thousand that flicker in one place have as much. What ended
+unconfirmed after such a drive may have been a vehicle: taken for false alarms, its detections kept
+those after it from being confirmed, too."""
 _MOVING = 4.0
 """Standard deviations of its speed from zero above which a vehicle does not stand."""
 _DOUBTED = 2.0
 """Log odds against a track, by the scores of its detections, for which it has to drive twice as
 far: false alarms side by side look like a short drive."""
 _SURELY_DRIVES = 50.0
-"""Evidence for a drive above which scores are ignored: false alarms side by side reach 35."""
+"""Evidence for a drive above which scores are ignored, and the way is only to be longer than boxes
+shake: false alarms side by side reach 35."""
 _SMALLEST = 0.25
 """Size of the smallest vehicle on the road, of the usual one, by which large ones count more: a
 motorcycle among lorries. Smaller ones that drive are parts of vehicles."""
@@ -68,10 +71,6 @@ _STILL, _USUAL = 0.05, 0.5
 """Way, of the size, below which a track has not moved at all; and share of the vehicles' detections
 with lower scores above which scores prove it even so: a spot of the road that looks like a vehicle
 does so each time, and many such scores are worth one."""
-_MOVED_MATCHES = 5
-"""Fewest detections by which what ended unconfirmed is known to have driven: it may have been a
-vehicle, and tells nothing about its detections. Taken for false alarms, vehicles that reach the
-next bridge too soon kept those after them from being confirmed, too: of forty, six."""
 _PRIOR = 10.0
 """Vehicles in plain sight that were detected, and that were missed, before any was seen."""
 _MOST_DETECTED = 0.9
@@ -186,10 +185,11 @@ class Existence:
         is_small = total > 0 and track.state.road_size < _SMALLEST * squared / total
         if track.matches < self.parameters.birth.matches or is_small:
             return False
-        straightness, evidence = track.drive()
-        doubt = track.doubt if evidence < _SURELY_DRIVES else 0.0
-        needed = self.parameters.birth.displacement * (1 + doubt / _DOUBTED)
-        return track.way > needed and straightness > _STRAIGHT and evidence > _DRIVES
+        evidence = _straight_drive(track)
+        needed = self.parameters.birth.displacement * (1 + track.doubt / _DOUBTED)
+        if evidence > _SURELY_DRIVES:
+            needed = _STANDING
+        return track.way > needed and evidence > _DRIVES
 
     def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
         """Take off evidence from tracks that a detector has not seen.
@@ -247,7 +247,7 @@ class Existence:
                 continue
             if track.confirmed:
                 continue
-            if track.matches < _MOVED_MATCHES or not self._drives(track):
+            if _straight_drive(track) <= _DRIVES:
                 for sample in track.samples:
                     self._evidence.learn(sample, False)
         return kept
@@ -260,6 +260,12 @@ class Existence:
             return False
         longest = self.parameters.lost_after + self.parameters.forgotten_after
         return track.log_odds >= _REFUTED and unseen <= longest
+
+
+def _straight_drive(track: Track) -> float:
+    """Evidence that a track drives straight; 0 where it is not straight enough."""
+    straightness, evidence = track.drive()
+    return evidence if straightness > _STRAIGHT else 0.0
 
 
 def _in_sight(tracks: Sequence[Track]) -> int:

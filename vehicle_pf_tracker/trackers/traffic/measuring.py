@@ -30,7 +30,12 @@ from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import INWARD, cut_edges, deviations
 from vehicle_pf_tracker.trackers.traffic.detections import INSIDE, areas
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import SETTLED_AFTER, Track, edges_of
+from vehicle_pf_tracker.trackers.traffic.track import (
+    CONTRADICTIONS,
+    SETTLED_AFTER,
+    Track,
+    edges_of,
+)
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
 _PUSHED = 1.0
@@ -58,8 +63,6 @@ _BESIDE = 0.1
 """Share of another detection up to which it overlaps with this one and is still beside it."""
 _NOTABLE = 0.15
 """Share of the prediction above which another detection in it is no fragment."""
-_CROWDED = 3
-"""Detections in a row that tell: one may have been torn apart by chance."""
 _DRIFT_RATE = 0.25
 """Rate per detection at which the mean residual of an edge follows."""
 _CONTRADICTED = 5.0
@@ -215,5 +218,5 @@ def _divide(tracks: Sequence[Track], edges: Array, others: Array) -> None:
     ).any(axis=1)
     known = intersections(predicted, edges) > INSIDE * areas(edges)
     for track, box, crowded in zip(tracks, edges, (known & beside).tolist(), strict=True):
-        if track.crowd(crowded) >= _CROWDED:
+        if track.crowd(crowded=crowded) >= CONTRADICTIONS:
             track.shrink_to(box)

@@ -37,6 +37,8 @@ SEEN_WITHIN = 2.0
 SETTLED_AFTER = 30
 """Detections, one second of 30 Hz, by which what a track shows is no passing state: a covered edge,
 a part of another vehicle, standing still."""
+CONTRADICTIONS = 3
+"""Detections in a row that tell a wrong size: one may have been torn apart, or joined, by chance."""
 PLAIN_SIGHT = 0.5
 """Share of a vehicle that no other hides, and in the image, in which it ought to be detected."""
 _COLOUR_RATE = 0.1
@@ -194,10 +196,18 @@ class Track:
         self.sides = sides
         self.partial = 0 if is_whole else self.partial + 1
 
-    def crowd(self, crowded: bool) -> int:
+    def crowd(self, *, crowded: bool) -> int:
         """Count the detections in a row that had another one beside them in the box."""
         self.crowded = self.crowded + 1 if crowded else 0
         return self.crowded
+
+    def outgrown_by(self, edges: Array) -> bool:
+        """Take a detection (4,) around its box; True where it was too small all along."""
+        young = self.undetected > 0 and self.in_sight and self.matches < SETTLED_AFTER
+        if not young or self.crowd(crowded=True) < CONTRADICTIONS:
+            return False
+        self.shrink_to(edges)
+        return True
 
     def shrink_to(self, edges: Array) -> None:
         """Be no more than what is in a box (4,)."""

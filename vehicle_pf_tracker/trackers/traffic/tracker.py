@@ -46,7 +46,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     TrafficNumbers,
     areas,
 )
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
 from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure
@@ -227,10 +227,13 @@ class TrafficTracker:
         for least in (_STRONG, -math.inf):
             self._match([one for one in confirmed if one.undetected], found, least)
             self._drop_inside([one for one in confirmed if not one.undetected], found)
+        self._outgrow(confirmed, found)
         self._match_tentative([one for one in self._tracks if not one.confirmed], found)
         self._merge_twins()
         self._existence.fade(self._tracks, elapsed)
-        self._drop_inside([one for one in self._tracks if one.confirmed], found, either=True)
+        # A prediction may be wrong, and a new vehicle in its place be another one.
+        seen = [one for one in self._tracks if one.mode is TrackMode.TRACKING]
+        self._drop_inside(seen, found, either=True)
         for index in found.free:
             self._begin_from(found, index)
 
@@ -241,6 +244,17 @@ class TrafficTracker:
             settings = self.parameters.detections
             pairs = assign(pair_costs(tracks, found, indices, settings, self._numbers))
             self._correct([(tracks[row], indices[column], 0.0) for row, column in pairs], found)
+
+    def _outgrow(self, tracks: Sequence[Track], found: FrameDetections) -> None:
+        """Give detections of whole vehicles to tracks that know only a part of theirs."""
+        boxes, edges = edges_of(tracks), found.edges[found.free, np.newaxis]
+        common, grown = intersections(edges, boxes), []
+        alone = (common > 0).sum(axis=1) == 1
+        for row, column in np.argwhere(common > INSIDE * areas(boxes)).tolist():
+            track, index = tracks[column], found.free[row]
+            if alone[row] and track.outgrown_by(found.edges[index]):
+                grown.append((track, index, 0.0))
+        self._correct(grown, found)
 
     def _match_tentative(self, tracks: Sequence[Track], found: FrameDetections) -> None:
         """Pair new tracks with free detections that are rather theirs than false alarms."""
