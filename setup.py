@@ -53,7 +53,7 @@ ROS = [
         "ros-rosgraph-msgs==2.0.3",
         "ros-rcl-interfaces==2.0.3",
     )
-] + TRAFFIC
+] + VIDEO
 
 # On a robot (`setup.py install` or `develop`: colcon and the Debian builds) the libraries come from
 # apt through package.xml. apt's OpenCV is not called opencv-python-headless, and the executables

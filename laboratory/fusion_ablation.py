@@ -44,7 +44,6 @@ CHANGES: Mapping[str, Mapping[str, Value]] = {
     DEFAULT: {},
     "no camera motion": {"motion.camera": False},
     "hidden before a moving camera as before a standing one": {"motion.camera_velocity_sigma": 0.0},
-    "no dated filters": {"filter.memory": 0},
     "no points": {"visibility.points_slope": 0.0},
     "no partial state": {"visibility.partial_slope": 0.0},
     "first size kept": {"size.step": 0.0},

@@ -19,9 +19,6 @@
 ``shipped.md`` is the table that `laboratory.fusion_fit` has, for the defaults;
 ``reliability.md`` the calibration error by kind of case; and ``reliability.png`` the reliability
 diagram: visible frames by reported confidence, against the share of them that are on target.
-
-With ``--clips FOLDER`` (m6.mp4, motorway.avi) ``gone.md`` has, of vehicles that leave, the share of
-later frames with `TRACKING`.
 """
 
 from __future__ import annotations
@@ -29,41 +26,17 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
-from itertools import islice
 from pathlib import Path
-from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
+from laboratory.figure_files import save
 from laboratory.fusion_fit import JUDGED_KINDS, listed_cases, page, report_progress
 from laboratory.stress import Reliability, Result, run_battery, variant_system
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.plots import STYLES, save
+from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.offline.output_files import write_text
-from vehicle_pf_tracker.recordings.video import VideoFile
-from vehicle_pf_tracker.trackers.estimate import Mode
-
-AFTER_LEAVING = 300
-"""Frames that are judged after a vehicle has left: ten seconds, in which many strangers pass."""
-
-
-class Leaving(NamedTuple):
-    """A vehicle of a clip, its box in the frame `first`, and the frame by which it has left."""
-
-    clip: str
-    first: int
-    box: Box
-    gone: int
-
-
-LEAVING = (
-    Leaving("m6.mp4", 0, Box(63, 170, 54, 38), 252),
-    Leaving("m6.mp4", 69, Box(160, 162, 50, 39), 295),
-    Leaving("m6.mp4", 105, Box(42, 177, 52, 36), 395),
-    Leaving("motorway.avi", 177, Box(175, 97, 35, 31), 465),
-)
 
 
 def shipped_results(options: argparse.Namespace) -> list[Result]:
@@ -77,29 +50,6 @@ def shipped_results(options: argparse.Namespace) -> list[Result]:
             store=options.output / "shipped.jsonl", on_progress=report_progress,
         )  # fmt: skip
     return results
-
-
-def claimed_after_leaving(clip: Path, leaving: Leaving, seed: int) -> float:
-    """Share of the frames after a vehicle has left that say `TRACKING`."""
-    video = VideoFile(clip)
-    tracker = variant_system("fusion").make(seed)
-    pictures = islice(video.frames(), leaving.first, leaving.gone + AFTER_LEAVING)
-    tracker.start(next(pictures).frame, leaving.box)
-    modes = [tracker.step(picture.frame, 1.0).mode for picture in pictures]
-    later = modes[leaving.gone - leaving.first - 1 :]
-    return sum(mode is Mode.TRACKING for mode in later) / len(later)
-
-
-def gone_table(clips: Path, seeds: int) -> str:
-    """Markdown table of the vehicles that leave, by seed."""
-    rows = []
-    for leaving in LEAVING:
-        box, clip = leaving.box, clips / leaving.clip
-        first = f"{box.x:g},{box.y:g},{box.width:g},{box.height:g} in frame {leaving.first}"
-        shares = [claimed_after_leaving(clip, leaving, seed) for seed in range(seeds)]
-        claimed = ", ".join(f"{share:.3f}" for share in shares)
-        rows.append([f"{leaving.clip}, {first}", f"{leaving.gone}", claimed])
-    return markdown(("vehicle", "gone by frame", "TRACKING after that, by seed"), rows)
 
 
 def pooled(results: Sequence[Result]) -> Reliability:
@@ -164,15 +114,12 @@ def main() -> int:
     parser.add_argument("--hard", type=int, default=6, help="hard cases of each sequence")
     parser.add_argument("--seed", type=int, default=0, help="seed of the cases")
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--clips", type=Path, help="folder of the clips that vehicles leave")
     parser.add_argument("-o", "--output", type=Path, required=True)
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
     try:
         results = shipped_results(options)
         tables = {"shipped.md": page(results), "reliability.md": reliability_table(results)}
-        if options.clips:
-            tables["gone.md"] = gone_table(options.clips, options.seeds)
         for name, text in tables.items():
             write_text(options.output / name, text)
             print(text)

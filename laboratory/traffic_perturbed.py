@@ -91,7 +91,7 @@ def main() -> int:
     with TrafficWorker() as worker:
         results = list(compare(cases, worker, TrafficParameters(), range(args.seeds)))
         write_traffic_report(results, args.output, {"command": sys.argv, **worker.versions})
-    print(f"the report is {args.output / 'traffic.html'}")
+    print(f"the report is {args.output / 'traffic.md'}")
     return 0
 
 

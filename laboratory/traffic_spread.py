@@ -35,7 +35,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION
 from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker, counts, kept_identities
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
-from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, Detections, TrafficNumbers
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
@@ -65,14 +65,12 @@ def shortened(sequence: TrafficSequence, first: int, last: int) -> TrafficSequen
     )
 
 
-def follow(
-    sequence: TrafficSequence, source: str, number: int, numbers: TrafficNumbers = SHIPPED
-) -> Array:
+def follow(sequence: TrafficSequence, source: str, number: int) -> Array:
     """Return the tracks (frame, identity, left, top, width, height) of run `number`."""
     parameters = TrafficParameters(seed=number)
     session = TrafficSession(
-        TrafficTracker(parameters, numbers=numbers),
-        (lambda: MotionDetector(number, numbers)) if source == MOTION else None,
+        TrafficTracker(parameters),
+        (lambda: MotionDetector(number)) if source == MOTION else None,
         frame_rate=sequence.frame_rate,
     )
     rows = []
@@ -93,15 +91,9 @@ def follow(
     return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
-def judged(
-    worker: TrafficWorker,
-    sequence: TrafficSequence,
-    source: str,
-    number: int,
-    numbers: TrafficNumbers = SHIPPED,
-) -> Run:
+def judged(worker: TrafficWorker, sequence: TrafficSequence, source: str, number: int) -> Run:
     """Follow all vehicles in run `number`, and score it."""
-    tracks = follow(sequence, source, number, numbers)
+    tracks = follow(sequence, source, number)
     seen = shortened(sequence, number + 1, sequence.frame_count)
     scores = worker.score(seen, tracks)
     kept, occlusions = kept_identities(seen, tracks)

@@ -22,6 +22,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from laboratory.result_store import ResultStore
 from reproduction.catalogue import ALL, EXPERIMENTS, PAPERS, find_experiments
 from reproduction.experiment import QUICK_SEEDS, SEEDS, Size
 from reproduction.output import write_report
@@ -39,7 +40,6 @@ from vehicle_pf_tracker.cli.requests import (
     request_of,
     switch,
 )  # fmt: skip
-from vehicle_pf_tracker.evaluation.result_store import ResultStore
 
 PROGRAM = "python -m reproduction"
 CELLS = "cells.jsonl"

@@ -18,8 +18,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from laboratory.figure_files import save
 from reproduction import experiment as ex
-from vehicle_pf_tracker.evaluation.plots import save
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.offline.run_folder import versions
 

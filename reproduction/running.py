@@ -19,8 +19,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TypeAlias
 
+from laboratory.result_store import ResultStore
 from reproduction.cells import Cell, Result
-from vehicle_pf_tracker.evaluation.result_store import ResultStore, result_key, variant_modules
+from vehicle_pf_tracker.evaluation.cache_key import result_key, variant_modules
 from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.trackers.registry import find_variant
 

@@ -79,7 +79,7 @@ def _measured(evaluation: EvaluationFolder) -> tuple[Table, list[str]]:
         truth = evaluation.truth(recording.name)
         row = table.setdefault(recording.name, {})
         for system in evaluation.systems:
-            for seed in system.seeds:
+            for seed in system.seeds(evaluation.seeds):
                 cell = evaluation.cell(recording.name, system.label, seed)
                 row.setdefault(system.label, []).extend(_metrics(cell, truth))
                 if cell.rows is None:

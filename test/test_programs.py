@@ -63,6 +63,9 @@ PROGRAMS = {
         ("ablation.md", "ablation.jsonl"),
         "| no camera motion |",
     ),
+    "laboratory.fusion_clips": Program(
+        "{toy}/clip.mp4 --model none -o {toy}/seen", printed="| clip | 1 |"
+    ),
     "benchmarks.fusion_cost": Program(
         "{toy}/sequences --frames 12 --resampled one -o {out}",
         ("cost.md", "cost.json"),
@@ -87,12 +90,6 @@ PROGRAMS = {
         "--rounds 1 --counts 1 3 --frames 62",
         printed="per further vehicle",
         needs=("baselines",),
-    ),
-    "laboratory.traffic_fit": Program(
-        "{toy}/traffic --budget 1 --frames 30 --judged 30 --runs 1 --detections good -o {out}",
-        ("fit.json",),
-        "good, fitted",
-        ("baselines",),
     ),
     "laboratory.traffic_occluders": Program("{toy}/traffic", printed="traffic: "),
     "laboratory.traffic_perturbed": Program(
@@ -143,6 +140,10 @@ def toy(tmp_path_factory):
     for image in images:
         writer.write(image)
     writer.release()
+    (folder / "seen" / "clip").mkdir(parents=True)
+    rows = [f"{time + 1},1,{size[0] - 140 + 4 * time},90,20,15,0.9" for time in range(35)]
+    seen = "\n".join(["frame,id,x,y,width,height,score", *rows])
+    (folder / "seen" / "clip" / "tracks.csv").write_text(seen)  # in place of `traffic`'s
     scene = make_traffic_scene("traffic-pair", settings={"frames": 50})
     write_mot_folder(scene, folder / "traffic", 0)
     for detector in (folder / "traffic" / "det").iterdir():

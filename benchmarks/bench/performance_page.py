@@ -25,7 +25,7 @@ from benchmarks.bench.figures import steps_figure
 from benchmarks.bench.results import Results
 from benchmarks.bench.targets import TARGETS, Target
 from benchmarks.bench.turns import BLOCK
-from vehicle_pf_tracker.evaluation.plots import save
+from laboratory.figure_files import save
 
 PAGE = "performance.md"
 IMAGES = "images/performance"

@@ -48,19 +48,19 @@ class Bend:
     straight, radius : float
         Length before the arc and radius of the arc, px.
     angle : float
-        Change of heading, at most pi/2, to the left if positive, rad.
+        Change of heading, at most pi/2, to the left if positive, rad; 0 goes straight for ever.
     """
 
     start: Pose
     pace: Pace
-    straight: float
-    radius: float
-    angle: float
+    straight: float = 0.0
+    radius: float = 1.0
+    angle: float = 0.0
 
     def __call__(self, frame: float) -> Pose:
         """Give the pose in `frame`."""
         gone = self.pace(frame)
-        before = min(gone, self.straight)
+        before = gone if self.angle == 0 else min(gone, self.straight)
         arc = min(gone - before, self.radius * abs(self.angle))
         after = gone - before - arc
         side = math.copysign(1.0, self.angle)

@@ -23,11 +23,12 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from laboratory.result_store import ResultStore
 from laboratory.stress.cases import Case
 from laboratory.stress.scoring import Score, score_case
 from laboratory.stress.systems import Follower, StressSystem
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.result_store import ResultStore, result_key
+from vehicle_pf_tracker.evaluation.cache_key import result_key
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.trackers.estimate import Estimate

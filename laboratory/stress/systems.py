@@ -20,15 +20,15 @@ import functools
 import hashlib
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Protocol
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_row
-from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, System, VariantSystem
-from vehicle_pf_tracker.evaluation.result_store import variant_modules
+from vehicle_pf_tracker.evaluation.cache_key import variant_modules
+from vehicle_pf_tracker.evaluation.systems import BASELINE, System
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, to_mapping
 from vehicle_pf_tracker.trackers.estimate import Estimate
@@ -79,13 +79,12 @@ class StressSystem:
     @classmethod
     def of(cls, system: System) -> StressSystem:
         """Put a variant with its parameters, or a baseline, to the test."""
-        if isinstance(system, BaselineSystem):
-            facts = {name: value for name, value in system.facts(0).items() if name != "seed"}
+        facts = {"system": system.kind, "parameters": dict(system.parameters)}
+        if system.is_baseline:
             code = (f"{_EVALUATION}.baselines", f"{_EVALUATION}.baseline_worker", __name__)
             make = functools.partial(BaselineFollower, system)
             return cls(system.label, make, facts, code, is_deterministic=True)
-        facts = {"variant": system.variant, "parameters": dict(system.parameters)}
-        modules = tuple(sorted(variant_modules(find_variant(system.variant))))
+        modules = tuple(sorted(variant_modules(find_variant(system.kind))))
         make_variant = functools.partial(_make_variant, system)
         return cls(system.label, make_variant, facts, modules, system.is_deterministic)
 
@@ -112,16 +111,16 @@ class BaselineFollower:
 
     Parameters
     ----------
-    system : BaselineSystem
+    system : System
         Which one.
     seed : int
         Without effect.
     """
 
-    def __init__(self, system: BaselineSystem, seed: int = 0) -> None:
+    def __init__(self, system: System, seed: int = 0) -> None:
         del seed
         python = Path(system.python) if system.python else None
-        self._baseline = Baseline(system.baseline, python, system.model_files())
+        self._baseline = Baseline(system.kind.removeprefix(BASELINE), python, system.model_files())
 
     def start(self, frame: Frame, box: Box) -> EstimateRow:
         """Start it; see `Follower`."""
@@ -159,8 +158,9 @@ def variant_system(
     values = to_mapping(from_mapping(kind, dict(parameters or {})))
     values.pop("seed")
     overrides = tuple(sorted((parameters or {}).items()))
-    return StressSystem.of(VariantSystem(label or name, name, "", overrides, tuple(values.items())))
+    made = System.of_variant(name, tuple(values.items()), "", overrides)
+    return StressSystem.of(replace(made, label=label or name))
 
 
-def _make_variant(system: VariantSystem, seed: int) -> Follower:
-    return find_variant(system.variant).tracker(system.tracker_parameters(seed))
+def _make_variant(system: System, seed: int) -> Follower:
+    return find_variant(system.kind).tracker(system.tracker_parameters(seed))

@@ -192,7 +192,7 @@ def estimates(folder):
 def test_what_was_ended_goes_on_and_comes_out_the_same(tmp_path, number):
     record(tmp_path / "bag")
     words = ["evaluate", str(tmp_path / "bag"), "--variants", "pf,ms", "--seeds", "60"]
-    words += ["--no-images", "--workers", "2", "-o"]
+    words += ["--workers", "2", "-o"]
     ended, whole = tmp_path / "ended", tmp_path / "whole"
     told = signalled(tmp_path, number, lambda: len(estimates(ended)) >= 5, *words, str(ended))
     assert ("interrupted; run the same command to resume" in told) == (number == signal.SIGINT)

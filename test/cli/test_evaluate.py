@@ -67,13 +67,6 @@ def test_a_folder_of_recordings_is_evaluated(bags, tmp_path, capsys):
     }
 
 
-def test_shifted_first_boxes_are_run_and_shown(bags, tmp_path, capsys):
-    words = [bags / "one", "--variants", "ms", "--shifted-starts"]
-    assert evaluate(tmp_path / "out", *words) == 0
-    assert "shifted starts" in capsys.readouterr().out
-    assert len(list((tmp_path / "out" / "cells" / "one" / "ms").iterdir())) == 13
-
-
 def test_an_rmse_beyond_the_limit_fails(bags, tmp_path, capsys):
     assert evaluate(tmp_path / "out", bags, *QUICK, "--max-rmse", "50") == 0
     assert evaluate(tmp_path / "out", bags, *QUICK, "--max-rmse", "0.01") == 1
@@ -90,21 +83,31 @@ def systems(out):
 def test_parameter_sets_are_systems_of_their_own(bags, tmp_path, capsys):
     file = tmp_path / "mine.yaml"
     file.write_text("pf_tracker:\n  ros__parameters:\n    sigma: 3.0\n    queue_depth: 5\n")
-    words = [bags / "one", *QUICK, "--params", f"mine={file}", "--set", "ms@few:iterations=2"]
+    words = [bags / "one", *QUICK, "--params", file, "--params", f"pf@sure={file}"]
+    words += ["--set", "ms@few:iterations=2"]
     assert evaluate(tmp_path / "out", *words, "--set", "mine:num_particles=20") == 0
     found = systems(tmp_path / "out")
-    assert list(found) == ["pf", "pf@mine", "ms", "ms@few"]
+    assert list(found) == ["pf", "pf@mine", "pf@sure", "ms", "ms@few"]
     assert found["pf@mine"]["parameters"]["sigma"] == 3.0
     assert found["pf@mine"]["overrides"] == {"num_particles": 20}
     assert found["pf@mine"]["parameter_set"] == "mine"
     assert found["ms@few"]["parameters"]["iterations"] == 2
-    assert "ms is not run with mine" in capsys.readouterr().err
+    assert found["pf@sure"]["parameters"]["sigma"] == 3.0
+    told = capsys.readouterr().err
+    assert "ms is not run with mine" in told and "not run with sure" not in told
 
 
 def test_defaults_can_be_left_out(bags, tmp_path):
     words = [bags / "one", *QUICK, "--set", "pf@narrow:sigma=2", "--without-defaults"]
     assert evaluate(tmp_path / "out", *words) == 0
     assert list(systems(tmp_path / "out")) == ["pf@narrow", "ms"]
+
+
+def test_shifted_first_boxes_are_run_and_shown(bags, tmp_path, capsys):
+    words = [bags / "one", "--variants", "ms", "--shifted-starts"]
+    assert evaluate(tmp_path / "out", *words) == 0
+    assert "shifted starts" in capsys.readouterr().out
+    assert len(list((tmp_path / "out" / "cells" / "one" / "ms").iterdir())) == 13
 
 
 def test_a_baseline_that_is_not_there_is_named_and_the_rest_goes_on(bags, tmp_path, capsys):
@@ -131,18 +134,13 @@ def test_an_evaluation_in_which_nothing_runs_fails(bags, tmp_path, capsys):
         (["--set", "sgima=2"], 1, "no parameter 'sgima' (did you mean 'sigma'?)"),
         (["--set", "seed=2"], 1, "no parameter 'seed'"),
         (["--set", "target.x=2"], 1, "no parameter 'target.x'"),
-        (
-            ["--variants", "pf", "--set", "ms@few:iterations=2"],
-            1,
-            "is for no variant among --variants",
-        ),
-        (["--set", "pf@a:sigma=wide"], 1, "sigma must be a number"),
-        (["--params", "mine.yaml"], 2, "--params expects LABEL=FILE"),
+        (["--variants", "pf", "--set", "few:iterations=2"], 1, "pf is not run with few: there is"),
+        (["--variants", "pf", "--set", "a:sigma=wide"], 1, "sigma must be a number"),
+        (["--params", "none.yaml"], 1, "cannot read the parameter file none.yaml"),
         (["--params", "pf@a=none.yaml"], 1, "cannot read the parameter file none.yaml"),
-        (["--params", "a=none.yaml"], 1, "cannot read the parameter file none.yaml"),
+        (["--variants", "pf", "--set", "ms@few:iterations=2"], 1, "no variant among --variants"),
         (["--set", "a:sgima=2"], 1, "apf is not run with a: there is no parameter 'sgima'"),
-        (["--variants", "baseline:csrt", "--set", "a:sigma=2"], 1, "is for no variant among"),
-        (["--params", "@=none.yaml"], 2, "not a label of a parameter set"),
+        (["--variants", "baseline:csrt", "--set", "a:sigma=2"], 1, "set a is for no variant"),
         (["--baseline-model", "vit=a"], 2, "--baseline-model expects BASELINE:NAME=FILE"),
         (["--seeds", "0"], 2, "'0' is not an integer >= 1"),
         (["--max-diff", "-1"], 1, "seconds >= 0"),

@@ -57,9 +57,9 @@ def test_a_comparison_is_written_and_shown(folder, tmp_path, monkeypatch, capsys
     shown = capsys.readouterr().out
     assert "pair, good" in shown
     assert "pair, motion" in shown
-    assert "traffic.html" in shown
+    assert "traffic.md" in shown
     assert {path.name for path in out.iterdir()} == {
-        "traffic.html", "traffic.md", "traffic.csv", "traffic.json"
+        "traffic.md", "traffic.csv", "traffic.json"
     }  # fmt: skip
     assert "| ocsort-low | 1.5 | 1.5 |" in (out / "traffic.md").read_text()
     assert '"lost_after=1.5"' in (out / "traffic.json").read_text()

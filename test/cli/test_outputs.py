@@ -230,7 +230,7 @@ def test_a_disk_that_fills_costs_the_video_and_nothing_else(
         yield write
         write(None, 0)
 
-    monkeypatch.setattr(pictures, "_h264" if pictures.has_encoder() else "_mpeg4", filling)
+    monkeypatch.setattr(pictures, "_h264", filling)
     verb, *options = words
     assert main([verb, "clip.mp4", *options, "-o", "whole"]) == 0
     assert main([verb, "clip.mp4", *options, "-o", "out", "--video", "full/v.mp4"]) == 1
@@ -247,7 +247,7 @@ def test_a_disk_that_fills_leaves_no_truth_of_a_video_that_is_not_there(here, mo
     def full(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(pictures, "_h264" if pictures.has_encoder() else "_mpeg4", full)
+    monkeypatch.setattr(pictures, "_h264", full)
     assert main(["synth", "bar", "full/bar.mp4"]) == 1
     assert "cannot write full/bar.mp4: No space left on device" in capsys.readouterr().err
     assert not (here / "full").exists()

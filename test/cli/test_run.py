@@ -61,7 +61,7 @@ def test_a_recording_with_truth_is_tracked_and_scored(run, bag, variant, capsys)
     assert info["recording"] == str(bag)
     assert info["command"][:3] == ["vehicle-pf-tracker", "run", str(bag)]
     out, err = capsys.readouterr()
-    assert "on target while visible" in out
+    assert "│ on target " in out
     assert [line for line in err.splitlines() if not line.startswith("tracked")] == []
 
 

@@ -16,13 +16,15 @@
 
 import csv
 import json
+from dataclasses import replace
 
 from drive import box_of, frame_of, stamp_of
 
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, Plan, VariantSystem
+from vehicle_pf_tracker.evaluation.grid.cells import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, run_cell
 from vehicle_pf_tracker.evaluation.grid.sources import describe
+from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.offline.output_files import write_json
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
@@ -42,7 +44,7 @@ NOT_DECIDED_BY_THE_INPUT = ("step_ms", "step_ms_p50", "step_ms_p95", "made", "co
 def make_evaluation(folder):
     """Make the folder's `evaluation`, and the recordings beside it; returns the former."""
     made = folder / "evaluation"
-    systems = [*map(system, VARIANTS), BaselineSystem("csrt", str(folder / "none"))]
+    systems = [*map(system, VARIANTS), System.of_baseline("csrt", str(folder / "none"))]
     complete(make_plan(write_recordings(folder), systems, SEEDS), made, here, silent)
     for path in made.rglob("failed.json"):
         write_json(path, {"reason": NO_BASELINES})
@@ -73,7 +75,8 @@ def system(name, label=None, **changed):
         changed = {"num_particles": 40, **changed}
     values = {**to_mapping(from_mapping(kind, changed)), **to_mapping(SessionParameters())}
     own = [(n, v) for n, v in values.items() if n != "seed" and not n.startswith("target.")]
-    return VariantSystem(label or name, name, "", tuple(changed.items()), tuple(own))
+    made = System.of_variant(name, tuple(own), "", tuple(changed.items()))
+    return replace(made, label=label or name)
 
 
 def make_plan(paths, systems=None, seeds=SEEDS):
@@ -101,10 +104,10 @@ def results(folder):
         if path.name == "estimates.csv":
             rows = list(csv.DictReader(path.open()))
             found[name] = [{k: v for k, v in row.items() if k != "step_ms"} for row in rows]
-        elif path.suffix == ".json" and path.name != "digests.json":
+        elif path.suffix == ".json":
             document = json.loads(path.read_text())
             left = {k: v for k, v in document.items() if k not in NOT_DECIDED_BY_THE_INPUT}
             found[name] = left
-        elif path.is_file() and path.name != "digests.json":
+        elif path.is_file():
             found[name] = path.read_bytes()
     return found

@@ -37,7 +37,7 @@ def test_the_plan(folder):
     evaluation = EvaluationFolder(folder)
     assert [entry.name for entry in evaluation.recordings] == ["bridge", "free"]
     assert [entry.kind for entry in evaluation.systems] == ["pf", "ms", "apf", "baseline:csrt"]
-    assert evaluation.systems[0].overrides == {"num_particles": 40}
+    assert dict(evaluation.systems[0].overrides) == {"num_particles": 40}
     assert evaluation.seeds == SEEDS
 
 

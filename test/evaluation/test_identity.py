@@ -14,8 +14,8 @@
 
 import pytest
 
-from vehicle_pf_tracker.evaluation import result_store
-from vehicle_pf_tracker.evaluation.result_store import source_digest
+from vehicle_pf_tracker.evaluation import cache_key
+from vehicle_pf_tracker.evaluation.cache_key import source_digest
 
 COUNTS = {
     "core/box.py": True,
@@ -36,7 +36,7 @@ def package(tmp_path, monkeypatch):
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text("X = 1\n")
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(result_store, "_PACKAGE", package)
+    monkeypatch.setattr(cache_key, "_PACKAGE", package)
     source_digest.cache_clear()
     yield package
     source_digest.cache_clear()

@@ -17,9 +17,9 @@ import pytest
 from matplotlib.figure import Figure
 from scoring_samples import NONE, PARTIAL, TOTAL, run_of
 
+from laboratory.figure_files import save
 from reproduction.shading import shade_occlusions
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.plots import save
 
 
 def test_a_picture_is_written_and_one_that_cannot_be_is_named(tmp_path):

@@ -19,14 +19,12 @@ import pytest
 
 from vehicle_pf_tracker.image import correlation_filter
 from vehicle_pf_tracker.image.correlation_filter import CorrelationFilter, climbed
-from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.image.spectra import PartialFourier, shifted
 
 SIDE = 32
 TARGET = np.array([8.0, 6.0])
 INSIDE = (slice(None), slice(13, 19), slice(12, 20))
 """The target's cells: eight by six around the middle, which lies between cells 15 and 16."""
-KERNELS = load_kernels("opencv")
 WHOLE = PartialFourier(SIDE, slice(SIDE), slice(SIDE))
 
 
@@ -39,8 +37,8 @@ def cells_of(made, seed=0):
     return WHOLE.cells_of(made.spectrum(features(seed)))
 
 
-def trained(seed=0, kernels=KERNELS):
-    made = CorrelationFilter(SIDE, TARGET, 0.1, kernels)
+def trained(seed=0):
+    made = CorrelationFilter(SIDE, TARGET, 0.1)
     made.train(made.spectrum(features(seed)), 0.0)
     return made
 
@@ -127,16 +125,6 @@ def test_the_response_in_the_middle_of_a_small_patch_is_that_of_the_large_one():
     )
 
 
-def test_compiled_kernels_train_the_same_filter():
-    pytest.importorskip("numba", reason="numba is not installed")
-    plain, compiled = (trained(kernels=load_kernels(name)) for name in ("opencv", "numba"))
-    for made in (plain, compiled):
-        made.train(shifted(made.spectrum(features(3)), 0.4, -0.7), 2.0)
-    assert compiled.weights.target == pytest.approx(plain.weights.target, abs=1e-6)
-    responses = [made.respond(made.spectrum(features(4))) for made in (plain, compiled)]
-    assert responses[0] == pytest.approx(responses[1], abs=1e-6)
-
-
 def test_great_stiffness_keeps_the_filter_and_none_learns_the_new_patch():
     strangers = {}
     for stiffness in (1e9, 1.0, 0.0):
@@ -160,7 +148,7 @@ def test_a_wide_patch_shows_the_target_wherever_it_is(x, y):
 
 
 def test_empty_cells_give_a_finite_filter():
-    made = CorrelationFilter(SIDE, TARGET, 0.1, KERNELS)
+    made = CorrelationFilter(SIDE, TARGET, 0.1)
     nothing = made.spectrum(np.zeros((5, SIDE, SIDE), np.float32))
     for stiffness in (0.0, 5.0):
         made.train(nothing, stiffness)

@@ -20,7 +20,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from laboratory import fusion_ablation, fusion_reliability
+from laboratory import fusion_ablation, fusion_clips, fusion_reliability
 from laboratory.fusion_fit import fitted, objective
 from laboratory.stress import Reliability, Result, Score
 from vehicle_pf_tracker.core.box import Box
@@ -87,19 +87,40 @@ def test_the_figure_has_a_line_for_plain_and_one_for_harder_cases(tmp_path):
     assert hard == [[0.85, 0]]
 
 
-def test_tracking_counts_from_the_frame_by_which_a_vehicle_has_left(monkeypatch):
-    """Started in frame 2 and gone by 5, it claims one of the four later frames of the clip."""
-    modes = iter([Mode.TRACKING] * 2 + [Mode.LOST, Mode.TRACKING, Mode.LOST, Mode.LOST])
-    tracker = SimpleNamespace(
-        start=lambda frame, box: None, step=lambda *_: SimpleNamespace(mode=next(modes))
-    )
-    clip = SimpleNamespace(frames=lambda: (SimpleNamespace(frame=None) for _ in range(9)))
-    monkeypatch.setattr(fusion_reliability, "VideoFile", lambda path: clip)
-    system = SimpleNamespace(make=lambda seed: tracker)
-    monkeypatch.setattr(fusion_reliability, "variant_system", lambda name: system)
-    leaving = fusion_reliability.Leaving("clip.mp4", 2, Box(0, 0, 9, 9), 5)
-    assert fusion_reliability.claimed_after_leaving("clip.mp4", leaving, 0) == 0.25
-    assert next(modes, None) is None
+def drive(first, last, speed):
+    """Boxes of a vehicle that ends at the right border of an image of 200 x 100 px."""
+    return {
+        time: Box.around((195 + speed * (time - last), 50), 20, 10)
+        for time in range(first, last + 1)
+    }
+
+
+def test_only_vehicles_that_drive_out_well_before_the_clip_ends_are_judged():
+    boxes = {1: drive(0, 40, 4), 2: drive(0, 40, 0.1), 3: drive(100, 160, 3), 4: drive(0, 10, 4)}
+    sure = {identity: set(own) for identity, own in boxes.items()}
+    runs = fusion_clips.leaving(boxes, sure, (200, 100), 180)
+    assert [(run.identity, run.first, run.last) for run in runs] == [(1, 0, 40)]
+
+
+def test_a_start_is_free_of_others():
+    """The boxes of both overlap until frame 4."""
+    boxes = {1: drive(0, 40, 4), 2: drive(0, 40, 4)}
+    boxes[2] = {time: boxes[2][time] for time in range(5)}
+    runs = fusion_clips.leaving(boxes, {1: set(boxes[1]), 2: set()}, (200, 100), 180)
+    assert [(run.identity, run.first) for run in runs] == [(1, 5)]
+
+
+def test_tracking_counts_once_the_vehicle_has_left():
+    """On target in one of two frames; of four later ones one is claimed, on another vehicle."""
+    run, gone = fusion_clips.Run(1, 0, 2), fusion_clips.GRACE + 2
+    right, other = Box(0, 0, 9, 9), Box(80, 0, 9, 9)
+    boxes = {1: {1: right, 2: right}, 2: {gone + 2: other}}
+    shown = {1: (right, Mode.TRACKING), 2: (other, Mode.TRACKING), gone: (right, Mode.TRACKING)}
+    shown |= {gone + 2: (other, Mode.TRACKING)}
+    for frame in range(1, gone + 5):
+        box, mode = shown.get(frame, (other, Mode.LOST))
+        run.take(frame, SimpleNamespace(box=box, mode=mode), boxes)
+    assert fusion_clips.row("clip", [run]) == ["clip", "1", "0.500", "0.250", "0.250", "1"]
 
 
 def test_a_camera_has_no_part_in_the_fit_that_is_judged_on_it():

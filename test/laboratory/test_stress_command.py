@@ -22,7 +22,7 @@ from small_recordings import frame_folder, record
 
 from laboratory.__main__ import main
 from laboratory.stress import KINDS
-from vehicle_pf_tracker.evaluation.grid.cells import BASELINE
+from vehicle_pf_tracker.evaluation.systems import BASELINE
 
 PAGE = Path(__file__).parents[2] / "laboratory" / "notes" / "stress.md"
 BASE = ["--variants", "ms", "--workers", "1"]

@@ -21,13 +21,11 @@ from benchmarks.traffic_cost import made, place
 from laboratory.scenes import make_traffic_scene
 from laboratory.scenes.mot_folder import write_mot_folder
 from laboratory.traffic_clips import Row, read_truth, report
-from laboratory.traffic_fit import draw_settings, fitted
 from laboratory.traffic_occluders import judged
 from laboratory.traffic_perturbed import PERTURBATIONS
 from laboratory.traffic_spread import Run, summary
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
-from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, TrafficNumbers
 
 
 @pytest.fixture
@@ -86,20 +84,6 @@ def test_the_occluder_is_judged_against_the_scene(tmp_path):
     other = [head, *([*row[:3], "99", row[4]] for row in rows)]
     path.write_text("".join(",".join(row) + "\n" for row in other))
     assert judged(sequence, "good")["wrong"] == found["right"]
-
-
-def test_settings_are_drawn_around_the_shipped_one_and_repeat():
-    settings = draw_settings(5, seed=3)
-    assert settings == draw_settings(5, seed=3)
-    assert TrafficNumbers(**settings[0]) == SHIPPED
-    assert all(0.3 < one["patience"] / SHIPPED.patience < 3 for one in settings)
-
-
-def test_the_best_quarter_is_averaged():
-    settings = draw_settings(8, seed=0)
-    best = fitted(settings, [0, 1, 2, 3, 4, 9, 9, 5])
-    mean = (settings[5]["apart"] * settings[6]["apart"]) ** 0.5
-    assert best["apart"] == pytest.approx(mean, rel=0.01)
 
 
 def test_a_spread_is_a_mean_and_a_standard_deviation():

@@ -16,13 +16,12 @@
 
 import pytest
 
-from vehicle_pf_tracker.offline.drawing import COLOURS, NEUTRAL
+from vehicle_pf_tracker.offline.drawing import COLOURS
 from vehicle_pf_tracker.offline.estimates import WAITING, EstimateRow
 from vehicle_pf_tracker.offline.estimates_recording import (
     LINE_LIST,
     LINE_LOOP,
-    LINE_STRIP,
-    ImageAnnotator,
+    image_annotations,
 )
 from vehicle_pf_tracker.recordings.messages import (
     IMAGE_ANNOTATIONS,
@@ -34,14 +33,13 @@ from vehicle_pf_tracker.recordings.messages import (
 STAMP = 3_000_000_007
 
 
-def row(mode="TRACKING", x=50.0, number=1, stamp=STAMP):
-    return EstimateRow(number, stamp, x, 30.0, 20.0, 12.0, mode, 0.5, 99.0, 1.0)
+def row(mode="TRACKING", x=50.0):
+    return EstimateRow(1, STAMP, x, 30.0, 20.0, 12.0, mode, 0.5, 99.0, 1.0)
 
 
-def annotated(*rows, name="", size=(640, 360), position=0):
-    """Return the message of the last row, as it is read back."""
-    annotator = ImageAnnotator(name, size, position)
-    message = [annotator.annotate(one) for one in rows][-1]
+def annotated(row, name="", size=(640, 360)):
+    """Return the message as it is read back."""
+    message = image_annotations(name, row, size)
     return deserialize(serialize(message, IMAGE_ANNOTATIONS), IMAGE_ANNOTATIONS)
 
 
@@ -65,14 +63,6 @@ def test_a_tracked_vehicle_has_its_box_and_words():
     assert (words.position.x, words.position.y) == (40.0, 22.0)  # on the box
 
 
-def test_the_path_grows_and_stays_short():
-    rows = [row(x=50.0 + n) for n in range(100)]
-    _, path = annotated(*rows[:3]).points
-    assert (path.type, points(path)) == (LINE_STRIP, [(50.0, 30.0), (51.0, 30.0), (52.0, 30.0)])
-    _, path = annotated(*rows).points
-    assert points(path) == [(90.0 + n, 30.0) for n in range(60)]
-
-
 def test_a_predicted_box_is_dashed():
     (box,) = annotated(row("OCCLUDED")).points
     assert box.type == LINE_LIST
@@ -84,25 +74,16 @@ def test_a_predicted_box_is_dashed():
     assert len(ends) == 2 * (3 + 2 + 3 + 2)
 
 
-@pytest.mark.parametrize(
-    ("last", "text", "colour"),
-    [
-        (row("LOST"), "LOST 0.50", COLOURS["LOST"]),
-        (EstimateRow.without(2, STAMP, WAITING), "WAITING", NEUTRAL),
-    ],
-)
-def test_without_a_claim_there_are_words_only_and_the_path_ends(last, text, colour):
-    message = annotated(row(), last, position=1)
-    (words,) = message.texts
-    assert (len(message.points), words.text, rgb(words.text_color)) == (0, text, colour)
-    assert (words.position.x, words.position.y) == (6.0, 36.0)  # the second line of the corner
-    assert len(annotated(row(), last, row()).points) == 1
+@pytest.mark.parametrize("one", [row("LOST"), EstimateRow.without(2, STAMP, WAITING)])
+def test_without_a_claim_nothing_is_drawn(one):
+    message = annotated(one)
+    assert not (message.points or message.texts)
 
 
 def test_every_part_has_the_stamp_of_its_image():
-    message = annotated(row(), row())
+    message = annotated(row())
     parts = [*message.points, *message.texts]
-    assert len(parts) == 3
+    assert len(parts) == 2
     assert {(one.timestamp.sec, one.timestamp.nanosec) for one in parts} == {(3, 7)}
 
 

@@ -18,6 +18,7 @@ import math
 
 import pytest
 
+from laboratory.result_store import ResultStore
 from reproduction import apf_systems
 from reproduction.catalogue import EXPERIMENTS, find_experiments
 from reproduction.cells import SceneChoice
@@ -26,7 +27,6 @@ from reproduction.output import write_report
 from reproduction.paper_scenes import VIDEOS
 from reproduction.running import complete
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.result_store import ResultStore
 
 SIZE = Size(range(100, 101), quick=True)
 

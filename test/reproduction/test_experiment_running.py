@@ -17,9 +17,9 @@ import json
 import pytest
 from experiment_samples import SCENE, CountingCell, run_cells
 
+from laboratory.result_store import ResultStore
 from reproduction.running import complete
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.result_store import ResultStore
 
 
 def silent(done, total):

@@ -45,9 +45,10 @@ from vehicle_pf_tracker.cli.requests import (
 )
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, SEEDS, EvaluationRequest, chosen
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.grid.cells import Plan, shifted_starts
+from vehicle_pf_tracker.evaluation.grid.cells import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
+from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
@@ -124,8 +125,8 @@ def run_traffic(request: TrafficRequest) -> int:
         }
     tables = write_traffic_report(results, request.output, options)
     for title, table in tables.items():
-        print_rows(*table.texts(), title)
-    print(f"the report is {request.output / NAME}.html, and {NAME}.md beside it")
+        print_rows(*table, title)
+    print(f"the report is {request.output / NAME}.md")
     return 0
 
 

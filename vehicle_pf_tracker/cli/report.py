@@ -33,10 +33,6 @@ if TYPE_CHECKING:
 class ReportParts(VerbRequest):
     """Parts of a report."""
 
-    images: bool = option(
-        "--no-images", action="store_false",
-        help="leave the stills of the recordings out of report.html",
-    )  # fmt: skip
     figures: tuple[str, ...] = option(
         type=partial(names_in, known=("pdf", "svg", "png"), what="a format"),
         default=(), metavar="FORMATS",
@@ -73,11 +69,7 @@ def write(folder: Path, request: ReportParts) -> Report:
 
     with stages("report") as on_stage:
         report = write_report(
-            folder,
-            images=request.images,
-            figures=request.figures,
-            toolkits=request.write,
-            on_stage=on_stage,
+            folder, figures=request.figures, toolkits=request.write, on_stage=on_stage
         )
     tell_notices(report.evaluation.mixed_versions)
     print(f"the report is {report.paths[0]}")

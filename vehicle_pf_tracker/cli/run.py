@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,8 +27,9 @@ from vehicle_pf_tracker.cli.stopping import Stop, cut_short, numbered_part, stop
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
+from vehicle_pf_tracker.evaluation.columns import COLUMNS, number_text
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
-from vehicle_pf_tracker.evaluation.scores import OcclusionScore, score_frames
+from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.offline.driver import OfflineTracker, follow
 from vehicle_pf_tracker.offline.estimates import EstimateRow, summary, write_tracks
 from vehicle_pf_tracker.offline.estimates_recording import OnFrame, run_recording
@@ -161,39 +162,8 @@ def _write(
         print_rows(["", request.variant], run_rows(metrics))
 
 
-_LINES = (
-    ("error, RMSE, px", "rmse_px", 1),
-    ("error, RMSE while visible, px", "rmse_visible_px", 1),
-    ("error, median, px", "median_px", 1),
-    ("error, largest, px", "max_px", 1),
-    ("error below 15 px", "p_error_lt_15px", 3),
-    ("on target while visible", "on_target", 3),
-    ("TRACKING while visible", "visible_tracking", 3),
-    ("not TRACKING while hidden", "hidden_not_tracking", 3),
-    ("frames", "frames", 0),
-    ("frames scored", "frames_scored", 0),
-    ("time per step, median, ms", "step_ms_p50", 2),
-    ("time per step, 95 %, ms", "step_ms_p95", 2),
-)
-"""Label, name of the metric and decimals; occlusions stand before the modes."""
-_MODES = 6
-
-
 def run_rows(metrics: Metrics) -> list[list[str]]:
-    """Return a row for each metric that the run has: its label with the unit, and its value."""
-    values = [(label, getattr(metrics, name), decimals) for label, name, decimals in _LINES]
-    values[_MODES:_MODES] = [line for one in metrics.occlusions for line in _occlusion_lines(one)]
-    return [[label, _text(value, decimals)] for label, value, decimals in values
-            if value is not None]  # fmt: skip
-
-
-def _occlusion_lines(one: OcclusionScore) -> Iterator[tuple[str, float | str | None, int]]:
-    name = f"hidden {one.first_frame}-{one.last_frame}"
-    yield f"{name}: mean error inside, px", one.error_inside_px, 1
-    yield f"{name}: mean error after, px", one.error_after_px, 1
-    recovered = "not judged" if one.recovered is None else "yes" if one.recovered else "no"
-    yield f"{name}: recovered", recovered, 0
-
-
-def _text(value: float | str, decimals: int) -> str:
-    return value if isinstance(value, str) else f"{value:.{decimals}f}"
+    """Return a row for each metric that the run has: its title, and its value."""
+    values = [(column, column.value(metrics)) for column in COLUMNS]
+    return [[column.title, number_text(value, column.decimals)]
+            for column, value in values if value is not None]  # fmt: skip

@@ -32,6 +32,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, TypeVar
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.signals import ending_signals, handled
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.cli.tracking_options import Moment
@@ -41,8 +42,6 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.recordings.source import Source
 
 T = TypeVar("T")
-
-Handle = Callable[[int, FrameType | None], None]
 
 SIGNALS_STATUS = 128
 """Exit status of a program that a signal ended, less the signal's number, as shells have it."""
@@ -75,7 +74,7 @@ def raising_terminated() -> Iterator[None]:
         for number in (signal.SIGTERM, signal.SIGHUP)
         if signal.getsignal(number) is signal.SIG_DFL
     ]
-    with _handled(unset, raise_terminated):
+    with handled(unset, raise_terminated):
         yield
 
 
@@ -157,33 +156,14 @@ class Stop:
 def stopping(stop: Stop | None = None) -> Iterator[Stop]:
     """Take SIGINT, SIGTERM and SIGHUP as a stop, once; a second one acts as usual."""
     stop = stop or Stop()
-    signals = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    numbers = [
-        number for number in signals
-        if number is signal.SIGINT or signal.getsignal(number) is not signal.SIG_IGN
-    ]  # fmt: skip
-    before = {number: signal.getsignal(number) for number in numbers}
+    before = {number: signal.getsignal(number) for number in ending_signals()}
 
     def note(number: int, _frame: FrameType | None) -> None:
         stop.number = number
         signal.signal(number, before[signal.Signals(number)])
 
-    with _handled(numbers, note):
+    with handled(before, note):
         yield stop
-
-
-@contextmanager
-def _handled(numbers: Iterable[signal.Signals], handle: Handle) -> Iterator[None]:
-    """Handle signals meanwhile; outside of the main thread, where none can be, they stay."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = {number: signal.signal(number, handle) for number in numbers}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def numbered_part(

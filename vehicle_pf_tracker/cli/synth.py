@@ -21,14 +21,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notice
+from vehicle_pf_tracker.cli.console import UsageError, counting
 from vehicle_pf_tracker.cli.requests import Names, OverwriteOption, option, positional, switch
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.output_files import replacing
-from vehicle_pf_tracker.offline.pictures import NO_ENCODER, SUFFIX, has_encoder, video_writer
+from vehicle_pf_tracker.offline.pictures import SUFFIX, video_writer
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.recordings.importing import FORMATS
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
@@ -83,10 +83,8 @@ def run(request: Request) -> int:
         print(f"{facts}, all with truth")
         return 0
     if request.format:
-        raise UsageError("--format is for recordings; a video is H.264 or MPEG-4")
+        raise UsageError("--format is for recordings; a video is H.264")
     truth, box = _film(scene, request.out, overwrite=request.overwrite)
-    if not has_encoder():
-        tell_notice(NO_ENCODER)
     print(f"{facts}; the truth is in {truth}, and begins with --target {_words(box)}")
     return 0
 

@@ -17,8 +17,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.requests import (
@@ -32,7 +33,7 @@ from vehicle_pf_tracker.cli.requests import (
 from vehicle_pf_tracker.cli.tracking_options import with_file
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines import MODELS, Baseline, unknown_baseline
-from vehicle_pf_tracker.evaluation.grid.cells import BASELINE, BaselineSystem, System, VariantSystem
+from vehicle_pf_tracker.evaluation.systems import BASELINE, System
 from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
 from vehicle_pf_tracker.parameters.table import (
     ParameterSpec,
@@ -50,84 +51,31 @@ ALL, ALL_BASELINES = "all", "baselines"
 _BASELINES_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not models)
 
 
-@dataclass(frozen=True)
-class ParameterSet:
-    """Named parameters; for one variant, or (None) for all that accept them."""
-
-    name: str
-    variant: str | None = None
-    files: list[Path] = field(default_factory=list)
-    assignments: list[str] = field(default_factory=list)
+Set: TypeAlias = tuple[list[Path], list[str]]
+"""Files and assignments of a set of parameters."""
+_NONE: Set = ([], [])
 
 
-def read_sets(
+def parameter_sets(
     files: Iterable[str], assignments: Iterable[str]
-) -> tuple[list[str], list[ParameterSet]]:
-    """Return the assignments that hold everywhere, and the sets in the order they are named.
+) -> tuple[list[str], dict[str, Set]]:
+    """Return the assignments that hold everywhere, and the sets of parameters by their labels.
 
-    Parameters
-    ----------
-    files : iterable of str
-        Each ``LABEL=FILE`` or ``VARIANT@LABEL=FILE``.
-    assignments : iterable of str
-        Each ``NAME=VALUE``, with ``LABEL:`` or ``VARIANT@LABEL:`` before it if it is for a set.
-
-    Raises
-    ------
-    UsageError
-        If one is malformed.
+    ``[VARIANT@][LABEL=]FILE`` is a set, labelled by the file's stem if not otherwise, and
+    ``[VARIANT@]LABEL:NAME=VALUE`` makes or completes one.
     """
     everywhere: list[str] = []
-    sets: dict[str, ParameterSet] = {}
-
-    def named(label: str) -> ParameterSet:
-        variant, at, name = label.rpartition("@")
-        if not name or (at and not variant):
-            raise UsageError(
-                f"{label!r} is not a label of a parameter set: give LABEL or VARIANT@LABEL"
-            )
-        return sets.setdefault(label, ParameterSet(name, variant or None))
-
+    sets: dict[str, Set] = {}
     for word in files:
-        label, equals, file = word.partition("=")
-        if not (equals and file):
-            raise UsageError(f"--params expects LABEL=FILE, not {word!r}")
-        named(label).files.append(Path(file))
+        label, file = word.split("=", 1) if "=" in word else (Path(word).stem, word)
+        sets.setdefault(label, ([], []))[0].append(Path(file))
     for word in assignments:
         label = word.partition("=")[0].rpartition(":")[0]
         if label:
-            named(label).assignments.append(word[len(label) + 1 :])
+            sets.setdefault(label, ([], []))[1].append(word[len(label) + 1 :])
         else:
             everywhere.append(word)
-    return everywhere, list(sets.values())
-
-
-def _fitting_systems(
-    variants: Sequence[Variant], sets: Iterable[ParameterSet], everywhere: Sequence[str]
-) -> tuple[dict[str, list[System]], list[str]]:
-    """Return each variant with the sets that fit it, and notes on those that do not.
-
-    Raises
-    ------
-    InputError
-        If a set fits no variant.
-    """
-    systems: dict[str, list[System]] = {variant.name: [] for variant in variants}
-    notes: list[str] = []
-    for each in sets:
-        misfits, is_fitting = [], False
-        for variant in variants:
-            if each.variant in {None, variant.name}:
-                try:
-                    systems[variant.name].append(_variant_system(variant, each, everywhere))
-                    is_fitting = True
-                except InputError as error:
-                    misfits.append(f"{variant.name} is not run with {each.name}: {error}")
-        if not is_fitting:
-            missing = f"the parameter set {each.name} is for no variant among --variants"
-            raise InputError(misfits[0] if misfits else missing)
-        notes += misfits
-    return systems, notes
+    return everywhere, sets
 
 
 def configure(variant: Variant, files: Iterable[Path], assignments: Iterable[str]) -> Configuration:
@@ -175,9 +123,9 @@ class EvaluationRequest(WorkersOption):
         f"{', '.join(_BASELINES_WITHOUT_MODELS)}",
     )  # fmt: skip
     params: Sequence[str] = option(
-        action="append", default=[], metavar="[VARIANT@]LABEL=FILE",
-        help="run with this file of parameters too, named LABEL in the results; for all variants "
-        "that it fits, or one",
+        action="append", default=[], metavar="[[VARIANT@]LABEL=]FILE",
+        help="run with this file of parameters too, named LABEL (default: the file's name) in the "
+        "results; for all variants that it fits, or one",
     )  # fmt: skip
     assignments: Sequence[str] = option(
         "--set", action="append", default=[],
@@ -211,24 +159,22 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
     """
     words = _words(request.variants)
     variants = [find_variant(word) for word in words if not word.startswith(BASELINE)]
-    everywhere, sets = read_sets(request.params, request.assignments)
+    everywhere, sets = parameter_sets(request.params, request.assignments)
     known = {name for variant in variants for name in settable(variant)}
     for name in (word.partition("=")[0] for word in everywhere):
         if name not in known:
             raise InputError(unknown_name(name, known))
-    fitting, notes = _fitting_systems(variants, sets, everywhere)
-    systems: list[System] = []
-    for variant in variants:
-        own = fitting[variant.name]
-        if not (own and request.without_defaults):
-            systems.append(_variant_system(variant, ParameterSet(""), everywhere))
-        systems += own
+    systems, notes = _with_sets(variants, everywhere, sets)
+    if request.without_defaults:
+        having = {one.kind for one in systems if one.parameter_set}
+        systems = [one for one in systems if one.parameter_set or one.kind not in having]
     models = _models(request.baseline_model)
-    for word in words:
-        if word.startswith(BASELINE):
-            name = word.removeprefix(BASELINE)
-            systems.append(_baseline_system(name, request.baselines_python, models, notes))
-    return systems, notes
+    baselines = [
+        _baseline_system(word.removeprefix(BASELINE), request.baselines_python, models, notes)
+        for word in words
+        if word.startswith(BASELINE)
+    ]
+    return [*systems, *baselines], notes
 
 
 def _words(text: str) -> list[str]:
@@ -240,14 +186,40 @@ def _words(text: str) -> list[str]:
     return list(dict.fromkeys(words))
 
 
+def _with_sets(
+    variants: Sequence[Variant], everywhere: Sequence[str], sets: Mapping[str, Set]
+) -> tuple[list[System], list[str]]:
+    """Return each variant with its defaults and the sets that fit it, and notes on the others."""
+    found = [
+        (label, _variant_system(variant, everywhere, label.rpartition("@")[2], own))
+        for variant in variants
+        for label, own in {"": _NONE, **sets}.items()
+        if label.rpartition("@")[0] in {"", variant.name}
+    ]
+    notes = [(label, one) for label, one in found if isinstance(one, str)]
+    fitting = {label for label, one in found if isinstance(one, System)}
+    for label in sets:
+        if label not in fitting:
+            why = (note for of, note in notes if of == label)
+            missing = f"the parameter set {label} is for no variant among --variants"
+            raise InputError(next(why, missing))
+    systems = [one for _, one in found if isinstance(one, System)]
+    return systems, [note for _, note in notes]
+
+
 def _variant_system(
-    variant: Variant, parameter_set: ParameterSet, everywhere: Iterable[str]
-) -> VariantSystem:
-    table = settable(variant)
-    fitting = [word for word in everywhere if word.partition("=")[0] in table]
-    words = [*fitting, *parameter_set.assignments]
-    configuration = configure(variant, parameter_set.files, words)
-    return make_system(variant, parameter_set.name, configuration, parse_assignments(table, words))
+    variant: Variant, everywhere: Sequence[str], label: str, own: Set
+) -> System | str:
+    """Return the variant with a set of parameters, or say why it does not fit."""
+    table, (files, assignments) = settable(variant), own
+    words = [word for word in everywhere if word.partition("=")[0] in table] + assignments
+    try:
+        configuration = configure(variant, files, words)
+        return make_system(variant, label, configuration, parse_assignments(table, words))
+    except InputError as error:
+        if not label:
+            raise
+        return f"{variant.name} is not run with {label}: {error}"
 
 
 def make_system(
@@ -255,7 +227,7 @@ def make_system(
     parameter_set: str,
     configuration: Configuration,
     overrides: Mapping[str, Value],
-) -> VariantSystem:
+) -> System:
     """Make the system of a variant with all that decides about it in `configuration`.
 
     Raises
@@ -269,11 +241,8 @@ def make_system(
             "box of each recording"
         )
     values = {**to_mapping(configuration.tracker), **to_mapping(configuration.session)}
-    label = f"{variant.name}@{parameter_set}" if parameter_set else variant.name
-    return VariantSystem(
-        label, variant.name, parameter_set, tuple(overrides.items()),
-        tuple((name, values[name]) for name in settable(variant)),
-    )  # fmt: skip
+    own = tuple((name, values[name]) for name in settable(variant))
+    return System.of_variant(variant.name, own, parameter_set, tuple(overrides.items()))
 
 
 def _models(words: Iterable[str]) -> dict[str, dict[str, str]]:
@@ -289,7 +258,7 @@ def _models(words: Iterable[str]) -> dict[str, dict[str, str]]:
 
 def _baseline_system(
     name: str, python: Path | None, models: dict[str, dict[str, str]], notes: list[str]
-) -> BaselineSystem:
+) -> System:
     if name not in MODELS:
         raise unknown_baseline(name, MODELS)
     own = models.get(name, {})
@@ -301,4 +270,4 @@ def _baseline_system(
     except InputError as error:
         notes.append(f"{BASELINE}{name} cannot run: {error}")
     interpreter = "" if python is None else str(python.absolute())
-    return BaselineSystem(name, interpreter, tuple(sorted(own.items())), build)
+    return System.of_baseline(name, interpreter, tuple(sorted(own.items())), build)

@@ -18,7 +18,7 @@
 
     evaluation.json                                      the plan
     recordings/<recording>/truth.csv
-    cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json, run.json and digests.json; or
+    cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json and run.json; or
     cells/<recording>/<system>/seed-<n>/failed.json      {"reason": a sentence}
     cells/<recording>/<system>/seed-<n>-<start>/         the same from a shifted first box
 """
@@ -27,7 +27,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Any
@@ -35,9 +35,10 @@ from typing import Any
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.offline.output_files import write_csv
-from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN, damage
+from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 
 
@@ -102,52 +103,20 @@ def read_truth(path: Path) -> dict[int, Truth]:
     InputError
         If there is no such file, or a line of it is not as `write_truth` writes it.
     """
-    lines = list(csv.reader(read_text(path, "the truth").splitlines()))
-    if lines[:1] != [list(COLUMNS)]:
+    lines = csv.DictReader(read_text(path, "the truth").splitlines())
+    if lines.fieldnames is None or tuple(lines.fieldnames) != COLUMNS:
         raise InputError(f"the truth {path} must begin with the line {','.join(COLUMNS)}")
-    return dict(_row(path, number, line) for number, line in enumerate(lines[1:], start=2))
-
-
-def _row(path: Path, number: int, line: Sequence[str]) -> tuple[int, Truth]:
     try:
-        frame, stamp_ns, *numbers, occlusion = line
-        box = Box(*map(float, numbers))
-        if not all(abs(value) <= LARGEST_PX for value in astuple(box)):
-            raise ValueError(f"a box beyond {LARGEST_PX:.0f} px")
-        return int(frame), Truth(int(stamp_ns), box, Occlusion[occlusion.upper()])
+        return {int(line["frame"]): _truth(line) for line in lines}
     except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"line {number} of the truth {path} is broken: {error}") from error
+        raise InputError(f"line {lines.line_num} of the truth {path} is broken: {error}") from error
 
 
-@dataclass(frozen=True, slots=True)
-class SystemEntry:
-    """A system of the plan.
-
-    Attributes
-    ----------
-    label : str
-        Name of the system in all tables.
-    kind : str
-        The variant, or the baseline as ``baseline:<name>``.
-    parameter_set : str
-        Label of its parameter set; empty for the defaults.
-    overrides, parameters : mapping of str to Any
-        Parameters set on the command line, and all parameters in effect.
-    seeds : tuple of int
-        Seeds of its runs; only the first for a deterministic system.
-    """
-
-    label: str
-    kind: str
-    parameter_set: str
-    overrides: Mapping[str, Any]
-    parameters: Mapping[str, Any]
-    seeds: tuple[int, ...]
-
-    @property
-    def effective(self) -> dict[str, Any]:
-        """All parameters in effect, those that were set first."""
-        return {**self.overrides, **self.parameters}
+def _truth(line: Mapping[str, str]) -> Truth:
+    box = Box(*(float(line[name]) for name in ("x", "y", "width", "height")))
+    if not all(abs(value) <= LARGEST_PX for value in astuple(box)):
+        raise ValueError(f"a box beyond {LARGEST_PX:.0f} px")
+    return Truth(int(line["stamp_ns"]), box, Occlusion[line["occlusion"].upper()])
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +142,7 @@ class EvaluationFolder:
         Content of `evaluation.json`.
     recordings : tuple of Source
         See the plan for the order.
-    systems : tuple of SystemEntry
+    systems : tuple of System
         See the plan for the order.
     seeds : tuple of int
         See the plan for the order.
@@ -197,11 +166,11 @@ class EvaluationFolder:
                 f"{self.plan['format']}, not {FORMAT}): evaluate again into another folder"
             )
         try:
-            self.recordings = tuple(_source(entry) for entry in self.plan["recordings"])
+            self.recordings = tuple(Source(**entry) for entry in self.plan["recordings"])
             self.seeds = tuple(map(int, self.plan["seeds"]))
             self.shifted = tuple(map(str, self.plan.get("shifted_starts", ())))
-            self.systems = tuple(_system(entry, self.seeds) for entry in self.plan["systems"])
-        except (KeyError, TypeError, ValueError) as error:
+            self.systems = tuple(map(System.from_json, self.plan["systems"]))
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
             raise InputError(f"the plan {path / PLAN} is broken: {error!r}") from error
 
     def truth(self, recording: str) -> dict[int, Truth]:
@@ -217,10 +186,6 @@ class EvaluationFolder:
             return Cell(None, {}, reason)
         if not (folder / ESTIMATES).is_file():
             return Cell(None, {}, "it was not run")
-        fault = damage(folder)
-        if fault:
-            reason = f"its stored result is damaged: {fault}; the same `evaluate` runs it again"
-            return Cell(None, {}, reason)
         rows = tuple(read_estimates(folder / ESTIMATES))
         return Cell(rows, read_document(folder / RUN), "")
 
@@ -252,20 +217,3 @@ def read_document(path: Path) -> dict[str, Any]:
     if not isinstance(document, dict):
         raise InputError(f"{path} does not hold a JSON object")
     return document
-
-
-def _source(entry: Mapping[str, Any]) -> Source:
-    name, path, topic, digest = (str(entry[key]) for key in ("name", "path", "topic", "digest"))
-    frames, width, height = (int(entry[key]) for key in ("frames", "width", "height"))
-    return Source(name, path, topic, frames, width, height, digest, entry.get("identity"))
-
-
-def _system(entry: Mapping[str, Any], seeds: Sequence[int]) -> SystemEntry:
-    return SystemEntry(
-        label=str(entry["label"]),
-        kind=str(entry.get("variant") or f"baseline:{entry['baseline']}"),
-        parameter_set=str(entry.get("parameter_set") or ""),
-        overrides=entry.get("overrides") or {},
-        parameters=entry.get("parameters") or {},
-        seeds=tuple(map(int, entry.get("seeds", seeds))),
-    )

@@ -12,20 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Figures of runs, readable in grey and for colour-blind readers."""
+"""Styles of figures, readable in grey and for colour-blind readers, and stretches to shade."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Mapping
-from pathlib import Path
 from typing import NamedTuple
 
-from matplotlib import rc_context
-from matplotlib.figure import Figure
-
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.offline.output_files import replacing
 
 
 class Style(NamedTuple):
@@ -45,22 +40,6 @@ STYLES = (
     Style("#E69F00", (0, (5, 1, 1, 1, 1, 1)), "v"),
     Style("#56B4E9", (0, (8, 2)), "P"),
 )
-_DPI = 150
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Write `figure` to the file `path`, whose suffix names the format.
-
-    The same figure gives the same file: no date is written, and names within it are not random.
-
-    Raises
-    ------
-    InputError
-        If it cannot be written.
-    """
-    metadata = {"Date": None} if path.suffix == ".svg" else {}
-    with replacing(path) as partial, rc_context({"svg.hashsalt": "vehicle_pf_tracker"}):
-        figure.savefig(partial, dpi=_DPI, metadata=metadata)
 
 
 def stretches(truths: Mapping[int, Truth], kinds: Collection[Occlusion]) -> list[tuple[int, int]]:

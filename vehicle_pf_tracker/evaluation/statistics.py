@@ -12,31 +12,18 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Statistics of a metric: intervals of its mean, tests of pairs of systems, and ranks.
-
-Every recording ranks the systems. Friedman's test decides whether their mean ranks differ at all,
-and Nemenyi's critical difference which of them do: on few recordings with far more power than
-pairwise tests have.
-
-Source: Demsar 2006, "Statistical comparisons of classifiers over multiple data sets", section 3.2.
-"""
+"""Statistics of a metric: its mean, spread and interval over runs or recordings."""
 
 from __future__ import annotations
 
 import inspect
-import math
 import statistics
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
-ALPHA = 0.05
-"""Level of the tests."""
-FEWEST_RECORDINGS = 6
-"""Fewest recordings that are tested: a clean sweep of 5 has p = 2 / 2^5, above `ALPHA`."""
 CONFIDENCE = 0.95
 RESAMPLES = 9999
 _GENERATOR = "rng" if "rng" in inspect.signature(stats.bootstrap).parameters else "random_state"
@@ -103,104 +90,3 @@ def mean_of_means(runs: Mapping[str, Sequence[float | None]]) -> float | None:
             return None
         means.append(statistics.fmean(known))
     return statistics.fmean(means) if means else None
-
-
-@dataclass(frozen=True, slots=True)
-class Rank:
-    """The rank of one system.
-
-    Attributes
-    ----------
-    system : str
-        Label of the system.
-    mean_rank : float
-        Mean of its ranks on the recordings; 1 is best, ties share theirs.
-    place : int
-        Place: 1 plus the number of significantly better systems.
-    tied : tuple of str
-        Systems that do not differ from it significantly.
-    """
-
-    system: str
-    mean_rank: float
-    place: int
-    tied: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Ranking:
-    """Ranking of all systems, the least mean rank first.
-
-    Attributes
-    ----------
-    ranks : tuple of Rank
-        Rank of each system.
-    recordings : int
-        Number of recordings they were ranked on.
-    friedman_p : float or None
-        The p value of Friedman's test; None of fewer than three systems, or of too few recordings.
-    critical_difference : float or None
-        Mean ranks further apart than this differ significantly; None where nothing can.
-    """
-
-    ranks: tuple[Rank, ...]
-    recordings: int
-    friedman_p: float | None
-    critical_difference: float | None
-
-
-def rank_systems(
-    values: Mapping[str, Mapping[str, float]], *, higher_is_better: bool
-) -> Ranking | None:
-    """Rank systems by their value on each recording.
-
-    A system without a value on a recording is last there. Recordings and systems without any value
-    are left out; None if nothing is left.
-
-    Parameters
-    ----------
-    values : mapping of str to mapping of str to float
-        Values by system and recording, means over the seeds: runs on one recording share its
-        difficulties, and only recordings count as independent.
-    higher_is_better : bool
-        True if large values are best.
-    """
-    systems = [system for system, by_recording in values.items() if by_recording]
-    recordings = sorted({name for system in systems for name in values[system]})
-    if not systems:
-        return None
-    sign = -1.0 if higher_is_better else 1.0
-    table = [[sign * values[s].get(name, sign * math.inf) for s in systems] for name in recordings]
-    ranks = stats.rankdata(np.array(table), axis=1)
-    friedman_p = _friedman(ranks)
-    limit = _critical_difference(*ranks.shape)
-    differ = limit is not None and (friedman_p is None or friedman_p < ALPHA)
-    means = dict(zip(systems, map(float, ranks.mean(axis=0)), strict=True))
-    rows = [_rank(system, means, limit if differ else None) for system in systems]
-    ordered = tuple(sorted(rows, key=lambda row: row.mean_rank))
-    return Ranking(ordered, len(recordings), friedman_p, limit)
-
-
-def _rank(system: str, means: Mapping[str, float], limit: float | None) -> Rank:
-    own = means[system]
-    reach = math.inf if limit is None else limit
-    better = sum(own - mean > reach for mean in means.values())
-    tied = tuple(s for s, mean in means.items() if s != system and abs(mean - own) <= reach)
-    return Rank(system, own, 1 + better, tied)
-
-
-def _friedman(ranks: NDArray[np.float64]) -> float | None:
-    recordings, systems = ranks.shape
-    if systems < 3 or recordings < FEWEST_RECORDINGS:
-        return None
-    if not np.ptp(ranks, axis=1).any():  # all systems are equal on every recording
-        return 1.0
-    return float(stats.friedmanchisquare(*ranks.T).pvalue)
-
-
-def _critical_difference(recordings: int, systems: int) -> float | None:
-    """Return Nemenyi's critical difference of mean ranks (Demsar 2006, section 3.2.2)."""
-    if systems < 2 or recordings < FEWEST_RECORDINGS:
-        return None
-    quantile = float(stats.studentized_range.ppf(1 - ALPHA, systems, np.inf)) / math.sqrt(2)
-    return quantile * math.sqrt(systems * (systems + 1) / (6 * recordings))

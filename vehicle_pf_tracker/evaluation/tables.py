@@ -19,20 +19,15 @@ from __future__ import annotations
 import itertools
 import statistics
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
+from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, NO_VALUE, RECOVERED, Column
 from vehicle_pf_tracker.evaluation.report.aggregates import (
-    COLUMNS,
-    NO_VALUE,
-    RANKED,
-    RECOVERED,
     Aggregates,
-    Column,
     Summaries,
     counted,
     interval_text,
-    listing,
     mean_and_spread_text,
     mean_text,
 )
@@ -126,69 +121,65 @@ def recording_table(aggregates: Aggregates, recording: str, columns: Sequence[Co
     )
 
 
-def ranks_table(aggregates: Aggregates) -> Table:
-    """Show places with their ties and mean ranks, by each ranked metric."""
-    headers: list[Header] = []
-    rows: dict[str, list[TableCell]] = {label: [] for label in aggregates.order}
-    for column in RANKED:
-        if column.key not in aggregates.rankings:
-            continue
-        headers += [Header(f"{column.label}: place"), Header("mean rank")]
-        ranks = {rank.system: rank for rank in aggregates.rankings[column.key].ranks}
-        differ = any(rank.place > 1 for rank in ranks.values())
-        for label, row in rows.items():
-            if label not in ranks:
-                row += [TableCell(NO_VALUE), TableCell(NO_VALUE)]
-                continue
-            rank = ranks[label]
-            note = f"tied with {listing(rank.tied)}" if rank.tied else ""
-            place = f"{rank.place}{' =' if rank.tied else ''}"
-            row.append(TableCell(place, rank.place, differ and rank.place == 1, note))
-            row.append(TableCell(f"{rank.mean_rank:.2f}", rank.mean_rank))
-    return Table(headers, rows)
-
-
-def starts_table(aggregates: Aggregates) -> Table | None:
-    """Compare runs from shifted first boxes with those from the true one, by each ranked metric.
-
-    None without the former.
-    """
-    if aggregates.shifted is None:
-        return None
-    note = "Standard deviation over the shifted boxes of a recording, mean over the recordings."
+def behind_table(aggregates: Aggregates) -> Table:
+    """Show the means with their intervals, and how far each system is behind the first."""
     headers = [
-        header
-        for column in RANKED
-        for header in (
-            Header(f"{column.label}: true box", column.unit),
-            Header("shifted", column.unit),
-            Header("spread", column.unit, note),
-        )
+        Header(words, column.unit)
+        for column in COMPARED
+        for words in (column.label, f"{column.label}: difference")
     ]
     rows = {
         label: [
-            number_cell(value, f".{column.decimals}f")
-            for column in RANKED
-            for value in _start_values(aggregates, aggregates.shifted, label, column.key)
+            _with_interval(found.get(column.key), column, sign)
+            for column in COMPARED
+            for found, sign in ((means, ""), (aggregates.behind.get(label, {}), "+"))
         ]
-        for label in aggregates.order
+        for label, means in aggregates.overall.items()
     }
     return Table(headers, rows)
 
 
-def _start_values(
-    true: Aggregates, shifted: Aggregates, label: str, key: str
-) -> Iterator[float | None]:
-    """Give the means from the true and from shifted boxes, and the spread over the latter."""
-    for some in (true, shifted):
-        summary = some.overall.get(label, {}).get(key)
-        yield summary.mean if summary else None
-    spreads = [
-        found.spread
-        for by_system in shifted.recordings.values()
-        if (found := by_system.get(label, {}).get(key)) and found.spread is not None
+def _with_interval(found: Summary | None, column: Column, sign: str) -> TableCell:
+    if found is None:
+        return TableCell(NO_VALUE)
+    within = interval_text(found, column)
+    text = f"{found.mean:{sign}.{column.decimals}f}" + (f" ({within})" if within else "")
+    return TableCell(text, found.mean)
+
+
+def starts_table(aggregates: Aggregates) -> Table | None:
+    """Compare runs from shifted first boxes with those from the true one.
+
+    None without the former.
+    """
+    if (shifted := aggregates.shifted) is None:
+        return None
+    note = "± is the standard deviation over the shifted boxes, mean over the recordings."
+    headers = [
+        header
+        for column in COMPARED
+        for header in (
+            Header(f"{column.label}: true box", column.unit),
+            Header("shifted", column.unit, note),
+        )
     ]
-    yield statistics.fmean(spreads) if spreads else None
+
+    def cells(label: str, column: Column) -> Iterator[TableCell]:
+        for some in (aggregates, shifted):
+            found = some.overall.get(label, {}).get(column.key)
+            by_recording = (
+                found.get(label, {}).get(column.key) for found in some.recordings.values()
+            )
+            spreads = [one.spread for one in by_recording if one and one.spread is not None]
+            spread = statistics.fmean(spreads) if spreads and some is shifted else None
+            found = found and replace(found, spread=spread)
+            yield TableCell(mean_and_spread_text(found, column), found.mean if found else None)
+
+    rows = {
+        label: [c for column in COMPARED for c in cells(label, column)]
+        for label in aggregates.order
+    }
+    return Table(headers, rows)
 
 
 def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]]) -> Table | None:

@@ -12,42 +12,147 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Tuning: trials that Optuna proposes, and a comparison of the best with the initial parameters.
+"""Tuning: Optuna proposes parameters, and their runs on recordings score them.
 
-The sampler is seeded and every run is stored under the key of all that determines it, so that the
-same search goes through the same trials again. An interrupted search continues without a database:
-trials that were run before are reported to the sampler at once, and more trials than before
-continue where the last one ended. Results do not depend on the number of workers, since a batch has
-the same size for any.
+Optuna's journal keeps the trials: an interrupted search goes on, and more trials extend it. A study
+has the key of all that decides its scores as its name, so that none of other code or parameters are
+taken. A batch has the same size for any number of workers, so that results do not depend on it.
 """
 
 from __future__ import annotations
 
-import itertools
-import statistics
+import math
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any
 
+import numpy as np
 import optuna
+from optuna.distributions import (
+    BaseDistribution,
+    CategoricalDistribution,
+    FloatDistribution,
+    IntDistribution,
+)
+from optuna.storages import JournalStorage
+from optuna.storages.journal import JournalFileBackend
+from optuna.study import StudyDirection
+from optuna.trial import FrozenTrial, TrialState
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.cache_key import result_key
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.grid.cells import GridCell, VariantSystem, seeds_of
+from vehicle_pf_tracker.evaluation.grid.cells import GridCell
 from vehicle_pf_tracker.evaluation.grid.running import Runner
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
-from vehicle_pf_tracker.evaluation.result_store import ResultStore
-from vehicle_pf_tracker.evaluation.search_space import Dimension, Objective
-from vehicle_pf_tracker.evaluation.statistics import mean_of_means
-from vehicle_pf_tracker.evaluation.tables import NOTHING
-from vehicle_pf_tracker.offline.output_files import csv_text
+from vehicle_pf_tracker.evaluation.statistics import mean_of_means, summarise
+from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.offline.processes import OnProgress
-from vehicle_pf_tracker.parameters.table import Value
+from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, specs, unknown_name
+from vehicle_pf_tracker.trackers.registry import Variant
+
+OBJECTIVES = {
+    **dict.fromkeys(
+        ("success_auc", "precision_auc", "on_target", "p_error_lt_15px"), StudyDirection.MAXIMIZE
+    ),
+    "rmse_px": StudyDirection.MINIMIZE,
+}
+"""Direction of the search by the name of a metric."""
 
 BATCH = 6
 """Trials proposed before the first of them is known: enough to keep a few workers busy, few enough
 for the sampler to learn (40 trials are 7 batches)."""
+FACTOR = 4.0
+"""A number without a range is searched from its value divided by this to its value times this."""
+_DONE = (TrialState.COMPLETE, TrialState.PRUNED)
+
+Space = Mapping[str, BaseDistribution]
+"""Distribution that Optuna draws from, by the name of the parameter."""
+
+
+def default_search(variant: Variant) -> list[str]:
+    """Return the parameters of `variant` marked as tuned, as `search_space` takes them."""
+    return [
+        f"{spec.name}={spec.tuned[0]:g}:{spec.tuned[1]:g}"
+        if isinstance(spec.tuned, tuple)
+        else spec.name
+        for spec in specs(variant.parameters).values()
+        if spec.tuned
+    ]
+
+
+def search_space(variant: Variant, values: Mapping[str, Value], words: Sequence[str]) -> Space:
+    """Return what is searched.
+
+    Parameters
+    ----------
+    variant : Variant
+        Entry of the registry.
+    values : mapping of str to Value
+        Initial values; ranges are derived from these.
+    words : sequence of str
+        Each ``name`` or ``name=low:high``; none takes the parameters marked as tuned.
+
+    Raises
+    ------
+    InputError
+        If there is no such parameter, or a range is none or not within the parameter's bounds.
+    """
+    table = {name: spec for name, spec in specs(variant.parameters).items() if name != "seed"}
+    chosen = words or default_search(variant)
+    if not chosen:
+        raise InputError(
+            f"no parameter of {variant.name} is marked as tuned; name some with --search"
+        )
+    space = {}
+    for word in chosen:
+        name, equals, span = word.partition("=")
+        if name not in table:
+            raise InputError(unknown_name(name, table))
+        space[name] = _given(table[name], span) if equals else _derived(table[name], values[name])
+    return space
+
+
+def _given(spec: ParameterSpec, span: str) -> BaseDistribution:
+    low_text, colon, high_text = span.partition(":")
+    if not colon or spec.kind not in {int, float}:
+        raise InputError(
+            f"--search wants NAME or, for a number, NAME=LOW:HIGH, got {spec.name}={span}"
+        )
+    low, high = (float(spec.parse(text)) for text in (low_text, high_text))
+    if low >= high:
+        raise InputError(f"the range of {spec.name} is empty: {span}")
+    return _between(spec, low, high, is_logarithmic=low > 0 and high / low >= FACTOR)
+
+
+def _derived(spec: ParameterSpec, value: Value) -> BaseDistribution:
+    if spec.kind is bool:
+        return CategoricalDistribution((False, True))
+    if isinstance(value, str):
+        if not spec.choices:
+            raise InputError(f"{spec.name} can be any word, and so not be searched")
+        return CategoricalDistribution(spec.choices)
+    least, most = spec.bounds or (-math.inf, math.inf)
+    if most - least <= 1:  # a share
+        return _between(spec, least, most)
+    if value <= 0:
+        raise InputError(
+            f"{spec.name} is {value}, which gives no range: --search {spec.name}=LOW:HIGH"
+        )
+    low, high = max(value / FACTOR, least), min(value * FACTOR, most)
+    return _between(spec, low, high, is_logarithmic=True)
+
+
+def _between(
+    spec: ParameterSpec, low: float, high: float, *, is_logarithmic: bool = False
+) -> BaseDistribution:
+    if spec.kind is float:
+        return FloatDistribution(low, high, log=is_logarithmic)
+    low = max(low, 1.0) if is_logarithmic else low
+    return IntDistribution(round(low), round(high), log=is_logarithmic)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,59 +161,74 @@ class SearchTask:
 
     Attributes
     ----------
-    base : VariantSystem
+    base : System
         The first trial; parameters that are not searched keep its values.
-    space : sequence of Dimension
-        Dimensions of the space.
+    space : mapping of str to BaseDistribution
+        Parameters that are searched.
     sources : sequence of Source
         The recordings.
     seeds : sequence of int
         Seeds of the runs.
-    objective : Objective
-        The metric to optimise.
+    objective : str
+        The metric to optimise, of `OBJECTIVES`.
     max_diff : float
         Largest difference of stamps that belong together, in s.
-    sampler_seed : int
-        Seed of the proposals.
     """
 
-    base: VariantSystem
-    space: Sequence[Dimension]
+    base: System
+    space: Space
     sources: Sequence[Source]
     seeds: Sequence[int]
-    objective: Objective
+    objective: str
     max_diff: float
-    sampler_seed: int = 0
 
-    def cells(self, values: Mapping[str, Value]) -> list[GridCell] | None:
-        """Return the runs of a candidate; None if its values do not go together."""
+    def cells(self, values: Mapping[str, Value]) -> list[GridCell]:
+        """Return the runs of a candidate; none if its values do not go together."""
         try:
             system = self.base.changed("trial", values)
         except InputError:
-            return None
+            return []
         return [
             GridCell(source, system, seed, self.max_diff)
             for source in self.sources
-            for seed in seeds_of(system, self.seeds)
+            for seed in system.seeds(self.seeds)
         ]
 
-    def key(self, cell: GridCell) -> str:
-        """Return the key of a run's score."""
-        return f"{self.objective.metric}-{cell.key()}"
+    def key(self) -> str:
+        """Return the key of all that decides the search."""
+        space = {name: repr(distribution) for name, distribution in self.space.items()}
+        runs = [cell.key() for cell in self.cells({})]
+        return result_key({"objective": self.objective, "space": space, "runs": runs}, ())
 
 
-class Trial(NamedTuple):
-    """A tried point of the space and its score; None where it could not run."""
-
-    number: int
-    values: Mapping[str, Value]
-    score: float | None
+def open_study(what: SearchTask, journal: Path) -> optuna.Study:
+    """Open the study of a search in the file `journal`, which may have trials of it already."""
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    study = optuna.create_study(
+        storage=JournalStorage(JournalFileBackend(str(journal))),
+        study_name=what.key(),
+        direction=OBJECTIVES[what.objective],
+        load_if_exists=True,
+    )
+    for left in study.get_trials(states=[TrialState.RUNNING]):  # when it was interrupted
+        study.tell(left.number, state=TrialState.FAIL)
+    if not study.get_trials():
+        base = dict(what.base.parameters)
+        study.enqueue_trial({name: base[name] for name in what.space})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the option counts as experimental in some versions
+        study.sampler = optuna.samplers.TPESampler(
+            seed=len(study.get_trials(states=_DONE)), constant_liar=True
+        )
+    return study
 
 
 def search(
-    what: SearchTask, count: int, store: ResultStore, runner: Runner, on_progress: OnProgress
-) -> list[Trial]:
-    """Make `count` trials.
+    what: SearchTask, count: int, study: optuna.Study, runner: Runner, on_progress: OnProgress
+) -> list[FrozenTrial]:
+    """Make trials until there are `count`, and return them in order.
+
+    Those that could not be scored on all recordings have no value.
 
     Parameters
     ----------
@@ -116,211 +236,82 @@ def search(
         The search.
     count : int
         Number of trials.
-    store : ResultStore
-        Stores every run, and has those of earlier calls.
+    study : Study
+        Study of `open_study`.
     runner : callable
         Runs cells, see `grid.running`.
     on_progress : callable
         Called with the number of runs done, and of all.
     """
-    study = _study(what)
-    space = {dimension.name: dimension.distribution() for dimension in what.space}
-    fail = optuna.trial.TrialState.FAIL
-    runs = len(what.sources) * len(seeds_of(what.base, what.seeds))
-    trials: list[Trial] = []
-    while len(trials) < count:
-        asked = [study.ask(space) for _ in range(min(BATCH, count - len(trials)))]
-        values = [{d.name: d.tidy(one.params[d.name]) for d in what.space} for one in asked]
-        grids = [what.cells(tried) for tried in values]
-        before = len(trials) * runs
-        on_progress(before, count * runs)
-        for done in _run_missing(what, grids, store, runner):
-            on_progress(before + done, count * runs)
-        for one, tried, cells in zip(asked, values, grids, strict=True):
-            score = None if cells is None else _score(what, cells, store)
-            study.tell(one, score, state=fail if score is None else None)
-            trials.append(Trial(len(trials), tried, score))
-    return trials
+    runs = len(what.cells({}))
+    while (done := len(study.get_trials(states=_DONE))) < count:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the first trial may lie outside of a given range
+            asked = [study.ask(dict(what.space)) for _ in range(min(BATCH, count - done))]
+        grids = [what.cells(one.params) for one in asked]
+        found: dict[GridCell, Any] = {}
+        on_progress(done * runs, count * runs)
+        for number, (cell, outcome) in enumerate(
+            runner([cell for grid in grids for cell in grid]), start=1
+        ):
+            found[cell] = outcome.metrics and getattr(outcome.metrics, what.objective)
+            on_progress(done * runs + number, count * runs)
+        for one, grid in zip(asked, grids, strict=True):
+            scores: dict[str, list[float | None]] = {}
+            for cell in grid:
+                scores.setdefault(cell.source.name, []).append(found[cell])
+            score = mean_of_means(scores)
+            study.tell(one, score, state=TrialState.PRUNED if score is None else None)
+    return study.get_trials(states=_DONE)[:count]
 
 
-def best_of(trials: Sequence[Trial], objective: Objective) -> Trial:
-    """Return the best trial, of equals the first.
-
-    Raises
-    ------
-    InputError
-        If none could run.
-    """
-    sign = 1 if objective.maximise else -1
-    scored = [(sign * trial.score, trial) for trial in trials if trial.score is not None]
-    if not scored:
-        raise InputError(
-            "no trial could be scored on all recordings; run `evaluate` on them to see why"
-        )
-    return max(scored, key=lambda pair: pair[0])[1]
-
-
-def _run_missing(
-    what: SearchTask, grids: Sequence[Sequence[GridCell] | None], store: ResultStore, runner: Runner
-) -> Iterator[int]:
-    """Run what the store lacks, for all candidates; yield the number done after each."""
-    cells = {what.key(cell): cell for grid in grids for cell in grid or ()}
-    missing = [cell for key, cell in cells.items() if key not in store]
-    for done, (cell, outcome) in enumerate(runner(missing), start=1):
-        metrics = outcome.metrics
-        score = None if metrics is None else getattr(metrics, what.objective.metric)
-        if not outcome.reason:
-            store.add(what.key(cell), cell.label, {"score": score})
-        yield done
-
-
-def _score(what: SearchTask, cells: Sequence[GridCell], store: ResultStore) -> float | None:
-    runs: dict[str, list[float | None]] = {}
-    for cell in cells:
-        key = what.key(cell)
-        score = store[key]["score"] if key in store else None
-        runs.setdefault(cell.source.name, []).append(score)
-    return mean_of_means(runs)
-
-
-def _study(what: SearchTask) -> optuna.Study:
-    optuna.logging.set_verbosity(optuna.logging.WARNING)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the options below count as experimental in some versions
-        sampler = optuna.samplers.TPESampler(seed=what.sampler_seed, constant_liar=True)
-    study = optuna.create_study(
-        sampler=sampler, direction="maximize" if what.objective.maximise else "minimize"
-    )
-    base = dict(what.base.parameters)
-    if all(dimension.covers(base[dimension.name]) for dimension in what.space):
-        study.enqueue_trial({dimension.name: base[dimension.name] for dimension in what.space})
-    return study
-
-
-def to_csv(trials: Sequence[Trial], objective: Objective) -> str:
-    """Write a line for each trial, in order; the first is what the search began with."""
-    names = list(trials[0].values) if trials else []
-    rows = ([one.number, one.score, *(one.values[name] for name in names)] for one in trials)
-    return csv_text(["trial", objective.metric, *names], rows)
-
-
-TUNED, HELD_OUT = "tuned on", "held out"
-
-
-class ComparedMetric(NamedTuple):
-    """A metric on one recording, or the mean over several.
-
-    Attributes
-    ----------
-    part : str
-        `TUNED` or `HELD_OUT`.
-    recording : str
-        Name of the recording; for a mean, the number of recordings.
-    metric : str
-        Name of the metric in `metrics.json`.
-    base, best : float or None
-        Mean over the seeds, and then over the recordings.
-    base_spread, best_spread : float or None
-        Standard deviation over the seeds; None for a mean over recordings.
-    """
-
-    part: str
-    recording: str
-    metric: str
-    base: float | None
-    best: float | None
-    base_spread: float | None = None
-    best_spread: float | None = None
-
-    @property
-    def change(self) -> float | None:
-        """Difference of best minus base; None where either is unknown."""
-        return None if self.base is None or self.best is None else self.best - self.base
-
-
-def compare(
-    evaluation: ScoredEvaluation, held_out: Sequence[str], metrics: Sequence[str]
-) -> list[ComparedMetric]:
-    """Compare the two systems of an evaluation, the base first.
+def check_gain(
+    evaluation: ScoredEvaluation, held_out: Sequence[str], objective: str
+) -> tuple[list[list[str]], str]:
+    """Compare the best parameters with those before, and judge the gain.
 
     Parameters
     ----------
     evaluation : ScoredEvaluation
-        The runs of both.
+        Runs of the parameters before and of the best, all of which succeeded.
     held_out : sequence of str
         Names of the recordings that the search did not see.
-    metrics : sequence of str
-        Metrics to compare.
+    objective : str
+        The metric that was optimised, of `OBJECTIVES`.
+
+    Returns
+    -------
+    rows : list of list of str
+        Recording, score before, score of the best, and change; ± is the spread over the seeds.
+    verdict : str
+        Sentence on whether the gain holds on the recordings held out.
     """
-    names = [recording.name for recording in evaluation.recordings]
-    parts = {
-        TUNED: [name for name in names if name not in held_out],
-        HELD_OUT: [name for name in names if name in held_out],
-    }
-    failed = {(cell.system, cell.recording) for cell in evaluation.failed}
-    lines = []
-    for metric, (part, among) in itertools.product(metrics, parts.items()):
-        base, best = (
-            {
-                name: [
-                    None if (system.label, name) in failed else getattr(run.metrics, metric)
-                    for run in evaluation.of(name, system.label)
-                ]
-                for name in among
-            }
-            for system in evaluation.systems
-        )
-        for name in among:
-            means = (mean_of_means({name: runs[name]}) for runs in (base, best))
-            spreads = (_spread(runs[name]) for runs in (base, best))
-            lines.append(ComparedMetric(part, name, metric, *means, *spreads))
-        if among:
-            over_all = map(mean_of_means, (base, best))
-            lines.append(ComparedMetric(part, f"mean of {len(among)}", metric, *over_all))
-    return lines
+    sign = 1 if OBJECTIVES[objective] is StudyDirection.MAXIMIZE else -1
+    scores: dict[str, dict[str, Array]] = {"tuned on": {}, "held out": {}}
+    for name in (entry.name for entry in evaluation.recordings):
+        runs = [evaluation.of(name, system.label) for system in evaluation.systems]
+        found = [[getattr(run.metrics, objective) for run in some] for some in runs]
+        part = "held out" if name in held_out else "tuned on"
+        scores[part][name] = np.array(found, dtype=float)  # None is NaN
+    rows, gains = [], []
+    for part, by_name in scores.items():
+        mean = np.mean(list(by_name.values()), axis=0)
+        for name, (base, best) in {**by_name, f"mean of {len(by_name)}": mean}.items():
+            rows.append([f"{part}: {name}", _text(base), _text(best), _text(best - base, "+")])
+        gains.append(summarise(list(sign * (mean[1] - mean[0]))))
+    tuned, other = gains
+    assert tuned is not None and other is not None
+    low, high = (other.mean if end is None else end for end in (other.low, other.high))
+    if not tuned.mean > 0:
+        return rows, "With other seeds the best parameters are no better than those before."
+    if low > 0:
+        share = f"{other.mean:.3f} there, {tuned.mean:.3f} where it was tuned"
+        return rows, f"The gain holds on the recordings held out: {share}."
+    if high > 0:
+        return rows, "The gain on the recordings held out is within the spread of the seeds."
+    return rows, "The gain does not hold on the recordings held out: this is over-fitted."
 
 
-def _spread(values: Sequence[float | None]) -> float | None:
-    known = [value for value in values if value is not None]
-    return statistics.stdev(known) if len(known) > 1 else None
-
-
-def texts(lines: Sequence[ComparedMetric]) -> tuple[list[str], list[list[str]]]:
-    """Return the headings and the rows of the comparison."""
-    rows = [
-        [
-            f"{line.part}: {line.recording}",
-            line.metric,
-            _number(line.base, line.base_spread),
-            _number(line.best, line.best_spread),
-            NOTHING if line.change is None else f"{line.change:+.3f}",
-        ]
-        for line in lines
-    ]
-    return ["recording", "metric", "default", "best", "change"], rows
-
-
-def _number(value: float | None, spread: float | None) -> str:
-    if value is None:
-        return NOTHING
-    return f"{value:.3f}" + ("" if spread is None else f" ± {spread:.3f}")
-
-
-def verdict(lines: Sequence[ComparedMetric], objective: Objective) -> str:
-    """State in a sentence whether the gain holds on held-out recordings."""
-    sign = 1 if objective.maximise else -1
-    gains = {
-        line.part: None if line.change is None else sign * line.change
-        for line in lines
-        if line.metric == objective.metric and line.recording.startswith("mean of ")
-    }
-    tuned, held_out = gains.get(TUNED), gains.get(HELD_OUT)
-    if tuned is None or tuned <= 0:
-        return "With other seeds the best parameters are no better than those before."
-    if HELD_OUT not in gains:
-        return "Without --held-out nothing shows whether this holds on other recordings."
-    if held_out is None or held_out <= 0:
-        return "The gain does not hold on the recordings held out: this is over-fitted."
-    if held_out >= tuned:
-        return "The gain holds on the recordings held out."
-    return f"On the recordings held out {held_out / tuned:.0%} of the gain is left."
+def _text(scores: Array, sign: str = "") -> str:
+    spread = f" ± {np.std(scores, ddof=1):.3f}" if len(scores) > 1 else ""
+    return f"{np.mean(scores):{sign}.3f}{spread}"

@@ -40,8 +40,8 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.spectra import (
     PartialFourier,
-    SpectralKernels,
     Spectrum,
+    correlated,
     solved,
     upsampled,
 )
@@ -61,7 +61,7 @@ _STEPS, _GROWTH = 2, 5.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FilterWeights:
-    """A trained filter: what remains when it is kept for later.
+    """A trained filter.
 
     Attributes
     ----------
@@ -89,13 +89,10 @@ class CorrelationFilter:
         Width and height of the target in cells.
     penalty : float
         First ADMM penalty: the larger, the smoother the filter and the less a step changes it.
-    kernels : SpectralKernels
-        Correlation of spectra, in numpy or compiled.
     """
 
-    def __init__(self, cells: int, target: Array, penalty: float, kernels: SpectralKernels) -> None:
+    def __init__(self, cells: int, target: Array, penalty: float) -> None:
         self.penalty = penalty
-        self.kernels = kernels
         offsets = np.arange(cells) - cells // 2
         sigma = _LABEL_SIGMA * float(np.sqrt(target.prod()))
         label = np.exp(-0.5 * (offsets[:, np.newaxis] ** 2 + offsets**2) / sigma**2)
@@ -149,12 +146,9 @@ class CorrelationFilter:
             confined = self._target.spectrum_of(cells)
         self.weights = FilterWeights(cells, cells.transpose(1, 0, 2) * self._fading, confined)
 
-    def respond(self, spectrum: Spectrum, weights: FilterWeights | None = None) -> Response:
-        """Respond to cells (half spectrum), at `UPSAMPLING` places per cell.
-
-        By the present weights, unless others that this filter has had are given.
-        """
-        return self._response(spectrum, self._chosen(weights).spectrum)
+    def respond(self, spectrum: Spectrum) -> Response:
+        """Respond to cells (half spectrum), at `UPSAMPLING` places per cell."""
+        return self._response(spectrum, self._trained.spectrum)
 
     @property
     def extent(self) -> tuple[int, int]:
@@ -167,29 +161,28 @@ class CorrelationFilter:
 
         Columns and rows are even, and at least those of the target.
         """
-        assert self.weights is not None, "train the filter first"
         count, (columns, rows) = features.shape[1:], self.extent
         top, left = (count[0] - rows) // 2, (count[1] - columns) // 2
         seen = features.transpose(1, 0, 2)[top : top + rows, :, left : left + columns]
         # Long dot products of BLAS are summed by several threads, and rounded otherwise then.
-        return float(np.einsum("rcx,rcx->", seen, self.weights.faded))
+        return float(np.einsum("rcx,rcx->", seen, self._trained.faded))
 
     def wide_spectrum(self, features: CellFeatures) -> Spectrum:
         """Half spectrum of the cells (channels, m, m) of a larger patch, m even and above n."""
         return self._wide(features.shape[1])[0].spectrum_of(features)
 
-    def respond_wide(self, spectrum: Spectrum, weights: FilterWeights | None = None) -> Response:
-        """Respond to the cells of a larger patch, by the present weights or given ones."""
+    def respond_wide(self, spectrum: Spectrum) -> Response:
+        """Respond to the cells of a larger patch."""
         target = self._wide(len(spectrum))[1]
-        return self._response(spectrum, target.spectrum_of(self._chosen(weights).target))
+        return self._response(spectrum, target.spectrum_of(self._trained.target))
 
-    def _chosen(self, weights: FilterWeights | None) -> FilterWeights:
-        chosen = weights or self.weights
-        assert chosen is not None, "train the filter first"
-        return chosen
+    @property
+    def _trained(self) -> FilterWeights:
+        assert self.weights is not None, "train the filter first"
+        return self.weights
 
     def _response(self, spectrum: Spectrum, weights: Spectrum) -> Response:
-        return upsampled(self.kernels.correlated(spectrum, weights), UPSAMPLING)
+        return upsampled(correlated(spectrum, weights), UPSAMPLING)
 
     def _wide(self, size: int) -> tuple[PartialFourier, PartialFourier]:
         """Return transforms of a larger square of cells, and of the target in its middle."""

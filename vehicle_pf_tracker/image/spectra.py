@@ -18,14 +18,13 @@ A filter that is confined to its target has a tenth of the square's cells. Of th
 channels of 32 x 32 cells only so much has to be computed; that takes a quarter of the time of whole
 fast transforms.
 
-Products of spectra over all channels are the inner loops of a correlation filter. The correlation
-itself is also compiled (`image.kernels`), which saves some 4 % of a step of `fusion`.
+Products of spectra over all channels are the inner loops of a correlation filter.
 """
 
 from __future__ import annotations
 
 import functools
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -149,14 +148,6 @@ def _to_columns(places: npt.NDArray[np.integer] | Array, cells: int) -> _Matrix:
     counted = _counted(cells)[: cells // 2 + 1, np.newaxis]
     waves = np.exp(2j * np.pi / cells * np.outer(np.arange(cells // 2 + 1), places)) * counted
     return np.ascontiguousarray(np.vstack([waves.real, -waves.imag]), np.float32)
-
-
-class SpectralKernels(Protocol):
-    """The dearest product of spectra; `correlated` here, or compiled."""
-
-    def correlated(self, spectrum: Spectrum, weights: Spectrum) -> Spectrum:
-        """Correlate and sum over channels; see `correlated`."""
-        ...
 
 
 def solved(spectrum: Spectrum, right: Spectrum, total: float) -> Spectrum:

@@ -21,7 +21,6 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from fractions import Fraction
-from importlib import util
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -32,17 +31,12 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline.output_files import make_folder, replacing, write_picture
 from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.recordings.video import quiet_opencv
 
 Draw: TypeAlias = Callable[[], Frame]
 Take: TypeAlias = Callable[[tuple[str, ...], Draw, Frame, int], None]
 """Takes the modes, the drawing, the image and the stamp in ns of a frame."""
 
 SUFFIX = ".mp4"
-NO_ENCODER = (
-    "this video is MPEG-4 Part 2, which browsers do not play; for H.264 install the extra [video], "
-    "pip install 'vehicle_pf_tracker[video]'"
-)
 _TICKS = 90_000
 """Ticks of an H.264 video's clock per second, those of MPEG: whole for every usual frame rate."""
 _LONGEST_GAP = 10.0
@@ -66,8 +60,6 @@ Write: TypeAlias = Callable[[Frame, float], None]
 def video_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
     """Give a function that writes a frame; the video appears when it is complete.
 
-    It is H.264 where PyAV is installed, else MPEG-4 Part 2 by OpenCV.
-
     Parameters
     ----------
     path : Path
@@ -81,42 +73,15 @@ def video_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[Wri
     ------
     InputError
         If it cannot be written, or its name ends otherwise.
+    ModuleNotFoundError
+        If PyAV is not installed: OpenCV's wheels have no encoder that browsers play.
     """
     if path.suffix != SUFFIX:
         raise InputError(f"the video {path} must end in {SUFFIX}")
     make_folder(path.parent)
     even = size[0] // 2 * 2, size[1] // 2 * 2
-    encoded = _h264 if has_encoder() else _mpeg4
-    with replacing(path) as partial, encoded(partial, even, rate) as write:
+    with replacing(path) as partial, _h264(partial, even, rate) as write:
         yield lambda frame, at: write(np.ascontiguousarray(frame[: even[1], : even[0]]), at)
-
-
-def has_encoder() -> bool:
-    """Return whether videos will be ones that browsers play."""
-    return util.find_spec("av") is not None
-
-
-@contextmanager
-def _mpeg4(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
-    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"mp4v"), rate, size)
-    if not writer.isOpened():
-        raise InputError("this OpenCV cannot write mp4v videos")
-    count = 0
-
-    def write(frame: Frame, at: float) -> None:
-        nonlocal count
-        for _ in range(max(round(at * rate) + 1 - count, 1)):  # over a gap it stands still
-            count += 1
-            writer.write(cv2.cvtColor(frame, cv2.COLOR_RGB2BGR))
-
-    with quiet_opencv():
-        try:
-            yield write
-        finally:
-            writer.release()
-        written = cv2.VideoCapture(str(path)).get(cv2.CAP_PROP_FRAME_COUNT)
-    if written != count:  # the writer reports no failure, as that of a full disk
-        raise OSError("frames are missing; is the disk full?")
 
 
 @contextmanager
@@ -241,9 +206,7 @@ class Pictures:
     @property
     def notices(self) -> list[str]:
         """Shortcomings of the video, a sentence each."""
-        if self.problem:
-            return [f"{self.problem}; all else is written"]
-        return [NO_ENCODER] if self.video and not has_encoder() else []
+        return [f"{self.problem}; all else is written"] if self.problem else []
 
     @contextmanager
     def drawing(self, frames: Numbered) -> Iterator[tuple[Take, Numbered]]:

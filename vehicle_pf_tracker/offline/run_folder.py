@@ -16,8 +16,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import platform
 from collections.abc import Mapping, Sequence
 from datetime import datetime, timezone
@@ -107,8 +105,6 @@ def _installed(name: str) -> str | None:
 
 
 ESTIMATES, METRICS, RUN = "estimates.csv", "metrics.json", "run.json"
-DIGESTS = "digests.json"
-"""File with the SHA-256 of every other file of a sealed folder, by name."""
 
 
 def write_run(
@@ -132,37 +128,3 @@ def write_run(
             (folder / name).unlink(missing_ok=True)
     write_estimates(folder / ESTIMATES, rows, extra)
     write_json(folder / RUN, description)
-
-
-def seal(folder: Path) -> None:
-    """Write the digests of the files in `folder`, so that `damage` can check them later.
-
-    Raises
-    ------
-    InputError
-        If they cannot be written.
-    """
-    with output_errors(folder):
-        digests = {path.name: _digest(path) for path in sorted(folder.iterdir()) if path.is_file()}
-    write_json(folder / DIGESTS, digests)
-
-
-def damage(folder: Path) -> str:
-    """Check a sealed folder; returns the first fault as a clause, empty if there is none."""
-    try:
-        digests = json.loads((folder / DIGESTS).read_text(encoding="utf-8"))
-        for name in (ESTIMATES, METRICS, RUN):
-            if not isinstance(digests[name], str):
-                return f"{DIGESTS} has no digest of {name}"
-        for name, digest in digests.items():
-            if _digest(folder / name) != digest:
-                return f"{name} was changed"
-    except OSError as error:
-        return f"{Path(error.filename).name} cannot be read ({error.strerror})"
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        return f"{DIGESTS} is broken"
-    return ""
-
-
-def _digest(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -31,8 +31,9 @@ from evaluation_samples import (
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.grid import sources
-from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
+from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
+from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.recordings.reader import Recording
 
 
@@ -113,35 +114,15 @@ def test_what_is_there_is_not_run_again(plan, out):
     assert {path: path.stat().st_mtime_ns for path in out.glob("cells/**/*")} == before
 
 
-def _lose_rows(cell):
-    path = cell / "estimates.csv"
-    path.write_text("".join(path.read_text().splitlines(keepends=True)[:-5]))
-
-
-def _change_a_number(cell):
-    path = cell / "metrics.json"
-    metrics = json.loads(path.read_text())
-    path.write_text(json.dumps({**metrics, "rmse_px": 0.5}, indent=2))
-
-
 @pytest.mark.parametrize(
     "harm",
-    [
-        _lose_rows,
-        _change_a_number,
-        lambda cell: (cell / "estimates.csv").write_text(""),
-        lambda cell: (cell / "metrics.json").write_text(""),
-        lambda cell: (cell / "run.json").write_text("[" * 100_000),
-        lambda cell: (cell / "run.json").unlink(),
-        lambda cell: (cell / "digests.json").unlink(),
-        lambda cell: (cell / "digests.json").write_text("{}"),
-    ],
-)
-def test_a_damaged_cell_is_said_and_run_again(plan, out, harm):
+    [lambda run: run.write_text("[" * 100_000), lambda run: run.write_text("{}"),
+     lambda run: run.unlink()],
+)  # fmt: skip
+def test_a_cell_whose_description_is_damaged_is_run_again(plan, out, harm):
     complete(plan, out, here, silent)
     whole = results(out)
-    harm(out / "cells" / "free" / "pf" / "seed-1")
-    assert "is damaged: " in EvaluationFolder(out).cell("free", "pf", 1).reason
+    harm(out / "cells" / "free" / "pf" / "seed-1" / "run.json")
     assert complete(plan, out, here, silent) == 1
     assert results(out) == whole
 
@@ -192,7 +173,7 @@ def test_what_a_killed_run_left_half_written_goes(plan, out):
 
 
 def test_what_cannot_run_says_why_and_is_tried_again(recordings, out, tmp_path):
-    plan = make_plan(recordings, [BaselineSystem("csrt", str(tmp_path / "none")), system("ms")])
+    plan = make_plan(recordings, [System.of_baseline("csrt", str(tmp_path / "none")), system("ms")])
     assert complete(plan, out, here, silent) == 4
     folder = EvaluationFolder(out)
     assert "there is no interpreter" in folder.cell("free", "baseline:csrt", 0).reason

@@ -27,9 +27,10 @@ from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
 from vehicle_pf_tracker.evaluation.report.writing import write_toolkits
+from vehicle_pf_tracker.offline.estimates import EstimateRow
 
-FIGURES = {"intervals", "success", "precision", "normalised", *(f"errors_{n}" for n in HIDDEN)}
-WORDS = ["--no-images", "--figures", "svg,png,pdf,svg", "--write", "otb,vot,mot"]
+FIGURES = {"success", "precision", "normalised", *(f"errors_{n}" for n in HIDDEN)}
+WORDS = ["--figures", "svg,png,pdf,svg", "--write", "otb,vot,mot"]
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +66,7 @@ def test_the_same_folder_gives_the_same_files(written, evaluation_copy):
 
 def test_runs_are_written_for_otb_vot_and_mot(written):
     for run in score_folder(EvaluationFolder(written)).runs:
-        boxes = np.array([astuple(box) for box in run.boxes])
+        boxes = np.array([astuple(frame.scored_row.box) for frame in run.frames])
         name, seed, results = run.recording, run.seed, written / "results"
         otb = np.loadtxt(results / "otb" / run.system / f"{name}_{seed}.txt", delimiter=",")
         assert otb == pytest.approx(boxes, abs=5e-4)
@@ -75,7 +76,7 @@ def test_runs_are_written_for_otb_vot_and_mot(written):
         assert np.loadtxt(others, delimiter=",") == pytest.approx(boxes[1:], abs=5e-4)
         path = results / "mot" / f"{run.system}_seed-{seed}" / "data" / f"{name}.txt"
         mot = np.loadtxt(path, delimiter=",", ndmin=2)
-        reported = [row.frame for row in run.rows if row.mode != "LOST"]
+        reported = [frame.row.frame for frame in run.frames if frame.row.mode != "LOST"]
         assert mot[:, 0].tolist() == reported and set(mot[:, 1]) == {1.0}
         assert mot[:, 2:6] == pytest.approx(boxes[np.array(reported) - 1], abs=5e-4)
 
@@ -83,13 +84,18 @@ def test_runs_are_written_for_otb_vot_and_mot(written):
 def test_frames_before_the_start_and_lost_ones_are_marked_or_left_out(written):
     evaluation = score_folder(EvaluationFolder(written))
     run = evaluation.of("free", "ms")[0]
-    rows = [replace(run.rows[0], mode="LOST"), replace(run.rows[1], confidence=None)]
-    late = replace(run, seed=9, boxes=[None, *run.boxes[1:3]], rows=rows)
+    waiting, lost, last = run.frames[:3]
+    frames = [
+        replace(waiting, row=EstimateRow.without(1, waiting.row.stamp_ns, "WAITING")),
+        replace(lost, row=replace(lost.row, mode="LOST")),
+        replace(last, row=replace(last.row, confidence=None)),
+    ]
+    late = replace(run, seed=9, frames=frames)
     paths = write_toolkits(replace(evaluation, runs=(late,)), ("otb", "vot", "mot"))
     otb, vot, mot = (path.read_text().split() for path in paths)
     assert otb[0] == "nan,nan,nan,nan"
     assert vot == ["0", "1", otb[2]]
-    assert mot == [f"2,1,{otb[1]},1.0000,-1,-1,-1"]
+    assert mot == [f"3,1,{otb[2]},1.0000,-1,-1,-1"]
 
 
 def test_an_unknown_format_is_named(tmp_path, capsys):

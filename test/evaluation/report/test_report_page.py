@@ -76,7 +76,7 @@ def page(text):
 def test_the_page_needs_nothing_else(page):
     for _, attributes in page.elements:
         for name in ("src", "href", "xlink:href", "action", "data", "poster", "srcset"):
-            assert (attributes.get(name) or "#").startswith(("#", "data:image/jpeg;base64,"))
+            assert (attributes.get(name) or "#").startswith("#")
     assert not page.all("link") and not page.all("iframe")
     assert not any("src" in script for script in page.all("script"))
     styles = page.text("style")
@@ -96,7 +96,6 @@ def test_every_element_is_closed_no_id_is_used_twice_and_links_lead_somewhere(pa
 
 
 def test_pictures_and_tables_can_be_read_out(page):
-    assert all(image["alt"] for image in page.all("img"))
     figures = [svg for svg in page.all("svg") if svg.get("aria-hidden") != "true"]
     assert all(svg["role"] == "img" and svg["aria-label"] for svg in figures)
     assert all(heading.get("scope") for heading in page.all("th"))
@@ -106,9 +105,9 @@ def test_pictures_and_tables_can_be_read_out(page):
 def test_it_shows_all_systems_and_recordings(page):
     assert set(VARIANTS) <= {data for tag, data in page.texts if tag == "span"}
     assert {data for tag, data in page.texts if tag == "h3"} >= set(HIDDEN)
-    # The intervals, three curves, and for each recording the errors over time.
+    # Three curves, and for each recording the errors over time.
     figures = [svg for svg in page.all("svg") if svg.get("role") == "img"]
-    assert len(figures) == 4 + len(HIDDEN)
+    assert len(figures) == 3 + len(HIDDEN)
 
 
 def test_it_says_how_it_was_made_and_what_failed(page):
@@ -119,15 +118,9 @@ def test_it_says_how_it_was_made_and_what_failed(page):
     assert "40" in page.text("strong")  # num_particles was set
 
 
-def test_two_recordings_are_too_few_to_rank_by_and_it_says_so(page):
-    assert "2 recordings cannot tell systems apart" in page.text("li")
-
-
-def test_stills_around_the_occlusion(page):
-    captions = page.text("figcaption")
-    for moment in ("before, frame 8", "within, frame 11", "behind it, frame 15", "15 frames on"):
-        assert moment in captions
-    assert len(page.all("img")) == 4
+def test_differences_to_the_first_have_intervals(page):
+    rows = page.text("td")
+    assert re.search(r"[+-]0\.\d{3} \(-?\d\.\d{3} to -?\d\.\d{3}\)", rows)
 
 
 def test_colours_come_from_the_scheme(page, text):
@@ -151,27 +144,10 @@ def test_the_same_folder_gives_the_same_files(written):
     assert [path.read_bytes() for path in write_report(folder).paths] == before
 
 
-def test_a_recording_that_is_gone_is_said(made_evaluation, evaluation_copy, tmp_path):
-    plan = (evaluation_copy / "evaluation.json").read_text()
-    recording = str(made_evaluation.parent / "bridge")
-    assert recording in plan
-    (evaluation_copy / "evaluation.json").write_text(
-        plan.replace(recording, str(tmp_path / "gone"))
-    )
-    page = Page(write_report(evaluation_copy).paths[0].read_text())
-    assert "There are no stills:" in page.text("p") and "gone" in page.text("p")
-    assert page.all("img") == []
-
-
-def test_without_images(evaluation_copy):
-    page = Page(write_report(evaluation_copy, images=False).paths[0].read_text())
-    assert page.all("img") == []
-
-
 def test_names_are_no_markup(evaluation_copy):
     plan = (evaluation_copy / "evaluation.json").read_text()
     (evaluation_copy / "evaluation.json").write_text(plan.replace('"-o"', '"<script>x</script>"'))
-    page = Page(write_report(evaluation_copy, images=False).paths[0].read_text())
+    page = Page(write_report(evaluation_copy).paths[0].read_text())
     assert "<script>x</script>" in page.text("code")
     assert len(page.all("script")) == 1
 

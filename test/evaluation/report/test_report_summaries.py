@@ -17,27 +17,28 @@ import io
 import json
 import shutil
 import statistics
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import evaluation_samples as samples
 import pytest
 from evaluation_samples import ALONE, HIDDEN, SEEDS, VARIANTS
 
 from vehicle_pf_tracker.cli.main import main
+from vehicle_pf_tracker.evaluation.columns import COLUMNS
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     EvaluationFolder,
     cell_folder,
     read_document,
 )
-from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete
+from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
 from vehicle_pf_tracker.evaluation.report import writing
-from vehicle_pf_tracker.evaluation.report.aggregates import COLUMNS, aggregate
+from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
 from vehicle_pf_tracker.evaluation.report.page import make_page
-from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder, typical
-from vehicle_pf_tracker.evaluation.tables import overall_table, starts_table
+from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
+from vehicle_pf_tracker.evaluation.statistics import summarise
+from vehicle_pf_tracker.evaluation.tables import behind_table, overall_table, starts_table
 from vehicle_pf_tracker.offline.output_files import write_json
-from vehicle_pf_tracker.offline.run_folder import seal
 
 
 @pytest.fixture(scope="module")
@@ -90,11 +91,49 @@ def test_means_are_taken_over_seeds_and_then_over_recordings(aggregates, made_ev
     )
 
 
-def test_the_best_mean_rank_comes_first(aggregates):
-    ranks = [rank.mean_rank for rank in aggregates.rankings["success_auc"].ranks]
-    assert ranks == sorted(ranks)
-    assert aggregates.order == tuple(r.system for r in aggregates.rankings["success_auc"].ranks)
+def test_the_best_comes_first_and_the_others_are_compared_with_it_by_recording(
+    aggregates, made_evaluation
+):
     assert set(aggregates.order) == set(VARIANTS)  # the baseline has no result
+    means = [aggregates.overall[label]["success_auc"].mean for label in aggregates.order]
+    assert means == sorted(means, reverse=True)
+    first, *others = aggregates.order
+    for label in others:
+        pairs = [
+            [statistics.fmean(stored(made_evaluation, name, one, "rmse_px")) for name in HIDDEN]
+            for one in (label, first)
+        ]
+        expected = summarise([value - best for value, best in zip(*pairs, strict=True)])
+        found = aggregates.behind[label]["rmse_px"]
+        assert astuple(found) == pytest.approx(astuple(expected))
+        mean, behind = behind_table(aggregates).rows[label][-2:]
+        assert behind.text == f"{found.mean:+.1f} ({found.low:.1f} to {found.high:.1f})"
+        own = aggregates.overall[label]["rmse_px"]
+        assert mean.text == f"{own.mean:.1f} ({own.low:.1f} to {own.high:.1f})"
+
+
+def test_shifted_first_boxes_are_compared_with_the_true_one(shifted):
+    aggregates = aggregate(shifted)
+    values = [
+        [read_document(path)["success_auc"] for path in shifted.folder.path.glob(cells)]
+        for cells in (f"cells/{name}/ms/seed-0-*/metrics.json" for name in HIDDEN)
+    ]
+    true, other = starts_table(aggregates).rows["ms"][:2]
+    alone = aggregate(replace(shifted, shifted=())).overall["ms"]["success_auc"].mean
+    assert true.value == pytest.approx(alone) and "±" not in true.text
+    mean = statistics.fmean(map(statistics.fmean, values))
+    spread = statistics.fmean(map(statistics.stdev, values))
+    assert other.text == f"{mean:.3f} ± {spread:.3f}"
+    assert min(map(len, values)) == 11 and spread > 0
+    rows = csv.DictReader(io.StringIO(writing.summary_csv(aggregates)))
+    counts = [row["count"] for row in rows if row["start"] == "shifted"
+              and (row["system"], row["metric"]) == ("ms", "rmse_px")]  # fmt: skip
+    assert counts == ["2", "12", "11"]
+    text = writing.summary_markdown(shifted, aggregates)
+    assert "## Shifted starts\n" in text and "1 of 54 cells have no result" in text
+    assert "| ms | free | 0 left | it was not run |" in text
+    page = make_page(shifted, aggregates)
+    assert 'id="starts"' in page and "free: seed 0 left" in page
 
 
 def test_recoveries_are_counted_over_all_runs(aggregates, evaluation):
@@ -118,38 +157,11 @@ def test_csv_has_a_line_for_each_mean(evaluation, aggregates):
     assert {r["metric"] for r in overall} <= {column.key for column in COLUMNS}
 
 
-def test_shifted_first_boxes_are_compared_with_the_true_one(shifted):
-    aggregates = aggregate(shifted)
-    values = [
-        [read_document(path)["success_auc"] for path in shifted.folder.path.glob(cells)]
-        for cells in (f"cells/{name}/ms/seed-0-*/metrics.json" for name in HIDDEN)
-    ]
-    expected = [
-        aggregate(replace(shifted, shifted=())).overall["ms"]["success_auc"].mean,
-        statistics.fmean(map(statistics.fmean, values)),
-        statistics.fmean(map(statistics.stdev, values)),
-    ]
-    cells = starts_table(aggregates).rows["ms"]
-    assert [cell.value for cell in cells[:3]] == pytest.approx(expected)
-    assert min(map(len, values)) == 11 and expected[2] > 0
-    rows = csv.DictReader(io.StringIO(writing.summary_csv(aggregates)))
-    counts = [row["count"] for row in rows if row["start"] == "shifted"
-              and (row["system"], row["metric"]) == ("ms", "rmse_px")]  # fmt: skip
-    assert counts == ["2", "12", "11"]
-    text = writing.summary_markdown(shifted, aggregates)
-    assert "## Shifted starts\n" in text and "1 of 54 cells have no result" in text
-    assert "| ms | free | 0 left | it was not run |" in text
-    page = make_page(shifted, aggregates, images=False)
-    assert 'id="starts"' in page and "free: seed 0 left" in page
-
-
 def test_results_of_different_versions_are_told(evaluation_copy, capsys):
     folder = cell_folder(evaluation_copy, "free", "pf", 1)
     run = read_document(folder / "run.json")
     write_json(folder / "run.json", {**run, "versions": {**run["versions"], "opencv": "0.9.0"}})
-    (folder / "digests.json").unlink()
-    seal(folder)
-    assert main(["report", str(evaluation_copy), "--no-images"]) == 0
+    assert main(["report", str(evaluation_copy)]) == 0
     said = f"different versions are compared: opencv 0.9.0 and {run['versions']['opencv']}; "
     assert capsys.readouterr().err.count(said) == 1
     assert said in (evaluation_copy / "report.html").read_text()
@@ -159,18 +171,18 @@ def test_json_is_json_and_has_everything(evaluation, aggregates):
     document = writing.summary_json(evaluation, aggregates)
     document = json.loads(json.dumps(document, allow_nan=False))
     assert document["overall"]["pf"]["rmse_px"]["count"] == len(HIDDEN)
-    assert set(document["recordings"]) == set(HIDDEN)
-    assert document["rankings"]["rmse_px"]["recordings"] == len(HIDDEN)
-    assert len(document["failed"]) == len(HIDDEN)
     assert document["shifted"] is None
-    assert not any("versions" in sentence for sentence in document["findings"])
+    assert set(document["recordings"]) == set(HIDDEN)
+    assert document["behind"][aggregates.order[1]]["rmse_px"]["count"] == len(HIDDEN)
+    assert len(document["failed"]) == len(HIDDEN)
+    assert not any("versions" in sentence for sentence in document["notes"])
 
 
 def test_markdown_has_a_table_for_each_recording_and_every_failed_cell(evaluation, aggregates):
     text = writing.summary_markdown(evaluation, aggregates)
     assert text.startswith("# Trackers compared: evaluation\n")
     assert [line[3:] for line in text.splitlines() if line.startswith("## ")] == [
-        "Means over recordings", "Ranks", *HIDDEN, "Failed cells",
+        "Means over recordings", "Differences to the first", *HIDDEN, "Failed cells",
     ]  # fmt: skip
     tables = [line for line in text.splitlines() if line.startswith("| pf |")]
     assert len(tables) == 2 + len(HIDDEN)
@@ -186,9 +198,3 @@ def test_latex_escapes_what_it_must_and_marks_the_best(aggregates):
     for label, cells in overall_table(aggregates, ["success_auc"]).rows.items():
         (best,) = [cell.best for cell in cells]
         assert (rf"& \textbf{{{cells[0].text}}} &" in lines[label]) == best
-
-
-def test_the_typical_run_has_the_median_error(evaluation):
-    runs = evaluation.of("free", "pf")
-    assert typical(runs).metrics.rmse_px == min(run.metrics.rmse_px for run in runs)
-    assert typical([]) is None

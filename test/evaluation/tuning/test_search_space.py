@@ -17,12 +17,14 @@ from types import SimpleNamespace
 
 import pytest
 
+pytest.importorskip("optuna", reason="the extra [evaluation] is not installed")
+
+from optuna.distributions import CategoricalDistribution as Choice
+from optuna.distributions import FloatDistribution as Real
+from optuna.distributions import IntDistribution as Integer
+
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.search_space import (
-    Dimension,
-    default_search,
-    search_space,
-)
+from vehicle_pf_tracker.evaluation.tuning import default_search, search_space
 from vehicle_pf_tracker.parameters.table import parameter, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
@@ -37,13 +39,14 @@ def test_every_variant_has_a_space_that_holds_its_defaults_and_keeps_to_the_boun
     space = space_of(name)
     assert len(space) >= 2
     table = specs(find_variant(name).parameters)
-    for dimension in space:
-        spec = table[dimension.name]
-        assert dimension.covers(spec.default)
-        if not dimension.choices:
-            assert dimension.low < dimension.high
-            for end in (dimension.low, dimension.high):
-                spec.check(int(end) if spec.kind is int else end)
+    for parameter_name, found in space.items():
+        spec = table[parameter_name]
+        if isinstance(found, Choice):
+            assert spec.default in found.choices
+        else:
+            assert found.low <= spec.default <= found.high and found.low < found.high
+            for end in (found.low, found.high):
+                spec.check(end)
 
 
 def test_the_default_search_is_marked_in_the_table():
@@ -64,28 +67,28 @@ def test_a_mark_may_carry_the_range():
         still: float = parameter(1.0, "Not searched.")
 
     variant = SimpleNamespace(name="made", parameters=Parameters)
-    assert search_space(variant, to_mapping(Parameters()), []) == [
-        Dimension("wide", float, 0.25, 4.0, logarithmic=True),
-        Dimension("narrow", float, 0.5, 1.5),
-    ]
+    assert search_space(variant, to_mapping(Parameters()), []) == {
+        "wide": Real(0.25, 4.0, log=True),
+        "narrow": Real(0.5, 1.5),
+    }
 
 
 @pytest.mark.parametrize(
     ("name", "word", "expected"),
     [
-        ("pf", "sigma", Dimension("sigma", float, 2.0, 32.0, logarithmic=True)),
-        ("pf", "num_particles", Dimension("num_particles", int, 50, 800, logarithmic=True)),
-        ("pf", "histogram_bits", Dimension("histogram_bits", int, 1, 5, logarithmic=True)),
-        ("apf", "occlusion.tau", Dimension("occlusion.tau", float, 0.0, 1.0)),
-        ("apf", "as_printed", Dimension("as_printed", bool, choices=(False, True))),
-        ("mfpf", "estimate", Dimension("estimate", str, choices=("mean", "best"))),
-        ("pf", "sigma=3:5", Dimension("sigma", float, 3.0, 5.0)),
-        ("pf", "sigma=1:50", Dimension("sigma", float, 1.0, 50.0, logarithmic=True)),
-        ("apf", "velocity.window=0:20", Dimension("velocity.window", int, 0.0, 20.0)),
+        ("pf", "sigma", Real(2.0, 32.0, log=True)),
+        ("pf", "num_particles", Integer(50, 800, log=True)),
+        ("pf", "histogram_bits", Integer(1, 5, log=True)),
+        ("apf", "occlusion.tau", Real(0.0, 1.0)),
+        ("apf", "as_printed", Choice((False, True))),
+        ("mfpf", "estimate", Choice(("mean", "best"))),
+        ("pf", "sigma=3:5", Real(3.0, 5.0)),
+        ("pf", "sigma=1:50", Real(1.0, 50.0, log=True)),
+        ("apf", "velocity.window=0:20", Integer(0, 20)),
     ],
 )
 def test_ranges_come_from_the_table_or_the_user(name, word, expected):
-    assert space_of(name, word) == [expected]
+    assert space_of(name, word) == {word.partition("=")[0]: expected}
 
 
 @pytest.mark.parametrize(
@@ -104,20 +107,6 @@ def test_ranges_come_from_the_table_or_the_user(name, word, expected):
 def test_mistakes_are_told(word, said):
     with pytest.raises(InputError, match=said):
         space_of("pf", word)
-
-
-def test_a_name_twice_is_told():
-    with pytest.raises(InputError, match="names sigma twice"):
-        space_of("pf", "sigma", "sigma=1:2")
-
-
-def test_numbers_are_tidied_and_stay_in_range():
-    dimension = Dimension("sigma", float, 0.5, 1.23444)
-    assert dimension.tidy(0.7654321) == 0.7654
-    assert dimension.tidy(0.5) == 0.5
-    assert dimension.tidy(1.23444) == 1.234
-    assert Dimension("sigma", float, 0.5, 1.23456).tidy(1.23456) == 1.23456
-    assert Dimension("n", int, 1, 5).tidy(3) == 3
 
 
 def test_a_variant_without_marks_needs_names():

@@ -12,23 +12,22 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
+from types import SimpleNamespace
+
 import pytest
 
 pytest.importorskip("optuna", reason="the extra [evaluation] is not installed")
 
-from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.grid.cells import VariantSystem
 from vehicle_pf_tracker.evaluation.grid.running import CellResult
-from vehicle_pf_tracker.evaluation.result_store import ResultStore
-from vehicle_pf_tracker.evaluation.search_space import OBJECTIVES, search_space
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means
+from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.evaluation.tuning import (
     SearchTask,
-    Trial,
-    best_of,
+    check_gain,
+    open_study,
     search,
-    to_csv,
+    search_space,
 )
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
@@ -63,12 +62,12 @@ class FakeRunner:
                 yield cell, CellResult(metrics=Scored(cell))
 
 
-def what(objective="rmse_px", **more):
+def what(*words, objective="rmse_px", seeds=(100, 101)):
     variant = find_variant("pf")
     values = {n: v for n, v in to_mapping(variant.parameters()).items() if n != "seed"}
-    base = VariantSystem("pf", "pf", "", (), tuple(values.items()))
-    space = search_space(variant, values, ["sigma"])
-    return SearchTask(base, space, SOURCES, (100, 101), OBJECTIVES[objective], 0.01, **more)
+    base = System.of_variant("pf", tuple(values.items()))
+    space = search_space(variant, values, words or ["sigma"])
+    return SearchTask(base, space, SOURCES, seeds, objective, 0.01)
 
 
 def silent(done, total):
@@ -76,69 +75,81 @@ def silent(done, total):
 
 
 @pytest.fixture
-def store(tmp_path):
-    return ResultStore(tmp_path / "runs.jsonl")
+def journal(tmp_path):
+    return tmp_path / "study.log"
 
 
-def test_the_search_begins_with_the_base_and_comes_close_to_the_best(store):
-    trials = search(what(), 40, store, FakeRunner(), silent)
-    assert [trial.number for trial in trials] == list(range(40))
-    assert trials[0].values == {"sigma": 8.0}
-    assert trials[0].score == pytest.approx(5.0 + 1.005)
-    best = best_of(trials, OBJECTIVES["rmse_px"])
-    assert best.values["sigma"] == pytest.approx(BEST_SIGMA, abs=0.3)
+def find(journal, count, runner=None, on_progress=silent, task=None):
+    task = task or what()
+    return search(task, count, open_study(task, journal), runner or FakeRunner(), on_progress)
 
 
-def test_a_seed_gives_the_same_trials_again_and_nothing_is_run_twice(store, tmp_path):
-    first, second, other = FakeRunner(), FakeRunner(), FakeRunner()
-    trials = search(what(), 14, store, first, silent)
+def found(trials):
+    return [(trial.params, trial.value) for trial in trials]
+
+
+def test_the_search_begins_with_the_base_and_comes_close_to_the_best(journal):
+    trials = find(journal, 40)
+    assert len(trials) == 40
+    assert trials[0].params == {"sigma": 8.0}
+    assert trials[0].value == pytest.approx(5.0 + 1.005)
+    best = open_study(what(), journal).best_trial
+    assert best.value == min(trial.value for trial in trials)
+    assert best.params["sigma"] == pytest.approx(BEST_SIGMA, abs=0.3)
+
+
+def test_a_base_outside_of_a_given_range_is_tried_first_nevertheless(journal):
+    first, *others = find(journal, 8, task=what("sigma=2:5"))
+    assert first.params == {"sigma": 8.0}
+    assert all(2 <= trial.params["sigma"] <= 5 for trial in others)
+
+
+def test_the_same_search_gives_the_same_trials_and_nothing_is_run_twice(journal, tmp_path):
+    first, second = FakeRunner(), FakeRunner()
+    trials = find(journal, 14, first)
     assert len(first.asked) == len(set(first.asked)) == 14 * 4
-    assert search(what(), 14, ResultStore(tmp_path / "runs.jsonl"), second, silent) == trials
+    assert found(find(journal, 14, second)) == found(trials)
     assert second.asked == []
-    elsewhere = ResultStore(tmp_path / "other.jsonl")
-    assert search(what(sampler_seed=1), 14, elsewhere, other, silent) != trials
+    assert found(find(tmp_path / "other.log", 14)) == found(trials)
 
 
-def test_more_trials_go_on_where_fewer_ended(store, tmp_path):
-    few = search(what(), 9, store, FakeRunner(), silent)
-    runner = FakeRunner()
-    more = search(what(), 16, store, runner, silent)
-    assert more[:9] == few
+def test_more_trials_go_on_where_fewer_ended(journal):
+    few, runner = find(journal, 9), FakeRunner()
+    assert found(find(journal, 16, runner)[:9]) == found(few)
     assert len(runner.asked) == 7 * 4
-    whole = search(what(), 16, ResultStore(tmp_path / "whole.jsonl"), FakeRunner(), silent)
-    assert more == whole
+
+
+@pytest.mark.parametrize(
+    "other", [{"objective": "success_auc"}, {"seeds": (100,)}, {"words": ["sigma=2:9"]}]
+)
+def test_trials_of_another_search_do_not_count(journal, other):
+    find(journal, 3)
+    runner = FakeRunner()
+    find(journal, 3, runner, task=what(*other.pop("words", ()), **other))
+    assert runner.asked
 
 
 class InterruptedHereError(Exception):
     pass
 
 
-def test_an_interrupted_search_goes_on_with_the_next_run(store, tmp_path):
+def test_an_interrupted_search_goes_on_with_the_batch_that_was_under_way(journal):
     def interrupt(done, total):
         if done == 30:
             raise InterruptedHereError
 
     with pytest.raises(InterruptedHereError):
-        search(what(), 12, store, FakeRunner(), interrupt)
+        find(journal, 12, on_progress=interrupt)
     runner = FakeRunner()
-    trials = search(what(), 12, ResultStore(tmp_path / "runs.jsonl"), runner, silent)
-    assert len(runner.asked) == 12 * 4 - 30
-    whole = ResultStore(tmp_path / "whole.jsonl")
-    assert search(what(), 12, whole, FakeRunner(), silent) == trials
+    trials = find(journal, 12, runner)
+    assert len(trials) == 12 and all(trial.value is not None for trial in trials)
+    assert len(runner.asked) == 6 * 4
 
 
-def test_trials_that_cannot_run_have_no_score_and_are_never_best(store):
-    trials = search(what(), 20, store, FakeRunner(fail_above=4.0), silent)
-    assert trials[0].score is None
-    assert best_of(trials, OBJECTIVES["rmse_px"]).values["sigma"] <= 4.0
-    with pytest.raises(InputError, match="no trial could be scored"):
-        best_of(trials[:1], OBJECTIVES["rmse_px"])
-
-
-def test_of_equals_the_first_is_best():
-    trials = [Trial(0, {}, 2.0), Trial(1, {}, 1.0), Trial(2, {}, 1.0)]
-    assert best_of(trials, OBJECTIVES["rmse_px"]).number == 1
-    assert best_of(trials, OBJECTIVES["success_auc"]).number == 0
+def test_trials_that_cannot_run_have_no_score_and_are_never_best(journal):
+    trials = find(journal, 20, FakeRunner(fail_above=4.0))
+    assert len(trials) == 20 and trials[0].value is None
+    assert open_study(what(), journal).best_trial.params["sigma"] <= 4.0
 
 
 def test_the_mean_is_over_recordings_not_runs():
@@ -147,7 +158,46 @@ def test_the_mean_is_over_recordings_not_runs():
     assert mean_of_means({}) is None
 
 
-def test_all_trials_are_in_the_table():
-    trials = [Trial(0, {"sigma": 8.0}, 0.1), Trial(1, {"sigma": 2.5}, None)]
-    text = to_csv(trials, OBJECTIVES["success_auc"])
-    assert text == "trial,success_auc,sigma\n0,0.1,8.0\n1,,2.5\n"
+class Compared:
+    """Stands for an evaluation of two systems on two recordings, by the scores of their runs."""
+
+    systems = (SimpleNamespace(label="pf"), SimpleNamespace(label="pf@best"))
+    recordings = SOURCES
+
+    def __init__(self, metric, scores):
+        self.metric, self.scores = metric, scores
+
+    def of(self, recording, system):
+        found = self.scores[recording][system == "pf@best"]
+        return [SimpleNamespace(metrics=SimpleNamespace(**{self.metric: one})) for one in found]
+
+
+UP, DOWN = "success_auc", "rmse_px"
+
+
+@pytest.mark.parametrize(
+    ("metric", "tuned", "other", "said"),
+    [
+        (UP, ([0.5, 0.6], [0.7, 0.8]), ([0.5, 0.6], [0.6, 0.7]), "holds on the recordings held "
+         "out: 0.100 there, 0.200 where it was tuned."),
+        (UP, ([0.5, 0.6], [0.7, 0.8]), ([0.5, 0.6], [0.4, 0.5]), "over-fitted"),
+        (UP, ([0.5, 0.6], [0.7, 0.8]), ([0.5, 0.6], [0.4, 0.8]), "within the spread"),
+        (UP, ([0.5], [0.5]), ([0.5], [0.9]), "no better than those before"),
+        (UP, ([0.5], [0.7]), ([0.5], [0.6]), "The gain holds"),
+        (UP, ([0.5], [0.7]), ([0.5], [None]), "does not hold"),
+        (DOWN, ([20.0], [10.0]), ([20.0], [12.0]), "8.000 there, 10.000 where"),
+        (DOWN, ([20.0], [30.0]), ([20.0], [12.0]), "no better than those before"),
+    ],
+)  # fmt: skip
+def test_the_verdict_says_whether_the_gain_holds(metric, tuned, other, said):
+    rows, verdict = check_gain(Compared(metric, {"a": tuned, "b": other}), ["b"], metric)
+    assert said in verdict
+    parts = ["tuned on: a", "tuned on: mean of 1", "held out: b", "held out: mean of 1"]
+    assert [row[0] for row in rows] == parts
+
+
+def test_the_table_of_the_gain_shows_spread_and_change():
+    scores = {"a": ([1.0, 3.0], [2.0, 6.0]), "b": ([1.0, 1.0], [0.5, 0.5])}
+    rows, _ = check_gain(Compared(DOWN, scores), ["b"], DOWN)
+    assert rows[0] == ["tuned on: a", "2.000 ± 1.414", "4.000 ± 2.828", "+2.000 ± 1.414"]
+    assert rows[2] == ["held out: b", "1.000 ± 0.000", "0.500 ± 0.000", "-0.500 ± 0.000"]

@@ -16,7 +16,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from vehicle_pf_tracker.ros.replay.pacing import Pace
+from vehicle_pf_tracker.ros.replay.player import Pace
 from vehicle_pf_tracker.ros.replay.tracker_link import Answers, nearest_frame
 
 

@@ -43,7 +43,7 @@ def frame(x=PLACE[0], y=PLACE[1], vehicle=VEHICLE):
 
 def learnt(*, penalty=0.1):
     appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters(penalty=penalty))
-    appearance.learn_first(appearance.patch(frame(), PLACE, SIZE))
+    appearance.learn_first(frame(), PLACE, SIZE)
     return appearance
 
 
@@ -183,38 +183,9 @@ def test_the_peak_is_sought_within_reach_only_and_inside_the_patch():
 def test_an_image_without_any_contrast_gives_finite_responses(level):
     blank = np.full((120, 160, 3), level, np.uint8)
     appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters())
-    appearance.learn_first(appearance.patch(blank, np.array([80.0, 60.0]), SIZE))
+    appearance.learn_first(blank, np.array([80.0, 60.0]), SIZE)
     view = view_at(appearance, blank, (80, 60))
     assert np.isfinite(view.response).all()
     assert np.isfinite(appearance.response_at(blank, np.array([80.0, 60.0]), SIZE))
     appearance.learn(blank, view, np.array([80.0, 60.0]), SIZE, 5.0)
     assert np.isfinite(view_at(appearance, blank, (80, 60)).response).all()
-
-
-def turned_into_another():
-    """A filter that remembers `VEHICLE`, and has learnt `OTHER` since."""
-    appearance = usual()
-    appearance.remember(3, 0)
-    for _ in range(12):
-        view = view_at(appearance, frame(vehicle=OTHER), PLACE)
-        appearance.learn(frame(vehicle=OTHER), view, PLACE, SIZE, 0.0)
-    return appearance
-
-
-@pytest.mark.parametrize("wide", [False, True])
-def test_what_the_vehicle_once_looked_like_is_recalled(wide):
-    appearance = turned_into_another()
-    patch = appearance.patch(frame(), PLACE, SIZE, wide=wide)
-    now, recalled = appearance.view(patch), appearance.view(patch, recall=True)
-    assert now.at(PLACE) < 0.5
-    assert recalled.at(PLACE) == pytest.approx(1.0, abs=0.2)
-    assert (recalled.response >= now.response).all()
-
-
-@pytest.mark.parametrize(("count", "kept"), [(0, []), (1, [0]), (2, [0, 6]), (3, [0, 5, 6])])
-def test_the_first_and_the_latest_filters_are_kept(count, kept):
-    appearance = learnt()
-    for number in range(7):
-        appearance.usual_response = 1.0 + number
-        appearance.remember(count, 40 * number)
-    assert [each.usual_response - 1 for each in appearance.dated] == kept

@@ -339,13 +339,3 @@ def test_before_ten_frames_and_in_doubt_all_of_the_work_is_done_in_each(parts, m
     done.clear()
     tracker.step(street.frame(20))
     assert done == ["track", "judge"]
-
-
-def test_a_filter_is_dated_in_every_fortieth_calm_frame(parts):
-    street, tracker = Street(speed=0.5), fusion()
-    follow(tracker, street, range(60))
-    assert len(parts.appearance.dated) == 2
-    tracker.reconfigure(from_mapping(FusionParameters, {"filter.memory": 1}))
-    for time in range(60, 110):
-        tracker.step(street.frame(time))
-    assert len(parts.appearance.dated) == 1

@@ -32,7 +32,7 @@ def hypotheses(visible, weights, positions=None):
 
 def test_visibility_passes_one_frame_by_hand():
     """0.9 * 0.98 + 0.1 * 0.05 = 0.887, and 0.2 * 0.98 + 0.8 * 0.05 = 0.236."""
-    passed = hypotheses([0.9, 0.2], [0.5, 0.5]).passed(1.0, 0.02, 0.05)
+    passed = hypotheses([0.9, 0.2], [0.5, 0.5]).passed(1.0)
     assert passed.visible == pytest.approx([0.887, 0.236])
     assert passed.weights == pytest.approx([0.5, 0.5])
 
@@ -128,11 +128,11 @@ sets = st.integers(1, 12).flatmap(
 
 
 @given(
-    sets=sets, elapsed=st.floats(0, 30), hiding=st.floats(1e-6, 0.5), back=st.floats(1e-6, 0.5),
-    witness=st.floats(-50, 50), seed=st.integers(0, 99), count=st.integers(1, 30),
+    sets=sets, elapsed=st.floats(0, 30), witness=st.floats(-50, 50), seed=st.integers(0, 99),
+    count=st.integers(1, 30),
 )  # fmt: skip
 def test_weights_stay_normalised_and_probabilities_within_bounds(
-    sets, elapsed, hiding, back, witness, seed, count
+    sets, elapsed, witness, seed, count
 ):
     visible, weights, ratios, growths = (np.array(values) for values in sets)
     rng, size = np.random.default_rng(seed), len(weights)
@@ -140,7 +140,7 @@ def test_weights_stay_normalised_and_probabilities_within_bounds(
         rng.normal(0, 50, (size, 2)), rng.normal(0, 5, (size, 2)), growths, visible,
         weights / weights.sum(),
     )  # fmt: skip
-    one = one.driven(rng, elapsed, (2.0, 1.0)).passed(elapsed, hiding, back)
+    one = one.driven(rng, elapsed, (2.0, 1.0)).passed(elapsed)
     one = one.observed(ratios).witnessed(witness).resampled(rng, count)
     assert one.weights.sum() == pytest.approx(1)
     assert (one.weights >= 0).all()

@@ -52,8 +52,7 @@ def patch_of(picture, centre, size=SIZE):
 
 
 def share_living(points):
-    """Of the set of which fewest live."""
-    return min((each.alive.mean() for each in points.sets), default=1.0)
+    return points.points.alive.mean()
 
 
 class Drive:
@@ -186,22 +185,31 @@ def test_a_flat_vehicle_tells_nothing():
     assert points.stretch.tolist() == [0.0, 0.0]
 
 
-def test_no_set_is_placed_on_an_occluder():
-    drive = Drive()
-    drive.drive(12)
-    before = {id(points) for points in drive.points.sets}
+def test_points_are_replaced_every_five_frames_but_not_on_an_occluder():
+    drive, ages = Drive(), []
+    for _ in range(12):
+        drive.drive(1)
+        ages.append(drive.points.points.age)
+    assert ages == [1, 2, 3, 4, 0] * 2 + [1, 2]
     drive.drive(5, cover(-40, 80), whole=False)
-    assert {id(points) for points in drive.points.sets} <= before
+    assert drive.points.points.age == 7
+
+
+def test_points_that_are_all_lost_are_replaced_in_time():
+    drive = Drive()
+    drive.points.points.alive[:] = False
+    assert drive.drive(4) == 0
+    assert drive.drive(2) > 0.85
 
 
 def test_restarting_discards_all_points():
     drive = Drive(growth=(0.01, 0.01))
     drive.drive(12)
     drive.points.restart()
-    assert not drive.points.sets
+    assert drive.points.points is None
     assert drive.points.stretch.tolist() == [0.0, 0.0]
-    drive.step()
-    assert len(drive.points.sets) == 1
+    drive.points.renew(drive.centre, SIZE)
+    assert share_living(drive.points) == 1
 
 
 def first_motion(before, after, size=SIZE):

@@ -63,7 +63,7 @@ def drive(turns, paint=lambda picture, time: None, response=0.1, still=lambda ti
         paint(picture, time)
         branch.keep(SmallGrey(picture, 1.0), still=still(time))
         if time > DOUBT:
-            given.append(branch.follow(1.0, view(response)))
+            given.append(branch.follow(1.0, view(response), lambda size, position: True))
         elif time == DOUBT:
             motion = PerspectiveMotion(centre, np.array([SPEED, 0.0]), 0.0)
             branch.begin(motion, Sighting(0.0, centre, SIZE))
@@ -106,3 +106,13 @@ def test_the_turn_is_over_when_the_filter_knows_the_vehicle_again():
     given = [turned is not None for turned in drive(turns=0.08, response=0.9)[0]]
     assert sum(given) == 8
     assert not any(given[given.index(True) + 8 :])
+
+
+def test_frames_of_another_size_begin_anew():
+    branch = TurningBranch()
+    for time in range(60):
+        picture = ROAD if time < 59 else ROAD[:100]
+        assert branch.can_begin is (time > 20)
+        branch.keep(SmallGrey(picture, 1.0), still=True)
+    assert not branch.can_begin
+    assert branch.follow(1.0, view(0.1), lambda size, position: True) is None

@@ -15,13 +15,19 @@
 """Evidence on visibility, by hand: the surface's share, and the states whole and partial."""
 
 import math
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from fusion_samples import fusion
 from hypothesis import given
 from hypothesis import strategies as st
+from street import HEIGHT, SIZE, WIDTH, Street, follow
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.state import Step
 from vehicle_pf_tracker.trackers.fusion.visibility import points_evidence, wholeness
 
 
@@ -30,10 +36,7 @@ def visibility(**values):
     return from_mapping(FusionParameters, prefixed).visibility
 
 
-ROUND = visibility(
-    points_slope=4.0, hiding_rate=0.02, return_rate=0.05, partial_slope=8.0,
-    partial_middle=0.7,
-)  # fmt: skip
+ROUND = visibility(points_slope=4.0, partial_slope=8.0, partial_middle=0.7)
 
 
 def test_the_surface_s_share_speaks_for_a_visible_vehicle_above_the_middle():
@@ -68,12 +71,33 @@ def test_half_a_vehicle_is_partial_within_three_frames_and_whole_again_as_fast()
 
 @given(
     st.lists(st.tuples(st.floats(0, 1), st.floats(0, 30)), max_size=30), st.floats(0, 50),
-    st.floats(0, 1), st.floats(1e-6, 0.5), st.floats(1e-6, 0.5),
+    st.floats(0, 1),
 )  # fmt: skip
-def test_the_probability_stays_one(frames, slope, middle, hiding, returning):
-    whole, options = 0.99, visibility(
-        partial_slope=slope, partial_middle=middle, hiding_rate=hiding, return_rate=returning
-    )  # fmt: skip
+def test_the_probability_stays_one(frames, slope, middle):
+    whole, options = 0.99, visibility(partial_slope=slope, partial_middle=middle)
     for share, elapsed in frames:
         whole = wholeness(whole, share, elapsed, options)
         assert 0 <= whole <= 1
+
+
+@pytest.mark.parametrize(
+    ("position", "share"), [((100.0, 60.0), 1.0), ((0.0, 60.0), 0.5), ((0.0, 120.0), 0.25)]
+)
+def test_the_share_of_a_box_inside_the_image(position, share):
+    step = SimpleNamespace(frame=np.zeros((HEIGHT, WIDTH, 3), np.uint8))
+    assert Step.share_inside(step, np.array(position), np.array(SIZE)) == pytest.approx(share)
+
+
+class Leaves(Street):
+    """It stops when half of it has left the image."""
+
+    def box(self, time):
+        return Box(min(super().box(time).x, WIDTH - SIZE[0] / 2), 50, *SIZE)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_vehicle_half_outside_the_image_is_partly_hidden(seed):
+    estimates = follow(fusion(seed=seed), Leaves(seed=seed), range(80))
+    whole = [estimate.similarities["whole"] for estimate in estimates[1:]]
+    assert min(whole[5:40]) > 0.9
+    assert max(whole[60:]) < 0.5

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 from traffic_samples import DRIVE, track
 
-from vehicle_pf_tracker.trackers.traffic.association import FrameDetections, fits
+from vehicle_pf_tracker.trackers.traffic.association import FrameDetections, birth_odds
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
 from vehicle_pf_tracker.trackers.traffic.detections import DetectionEvidence, Detections
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
@@ -72,14 +72,16 @@ def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_a
     evidence = DetectionEvidence()
     one = track(1, 100.0)
     predict([one], -1000.0, 1.0, DRIVE)
-    here, aside = fits([one], found(evidence, (103, 100, 40, 30), (280, 20, 9, 9)), [0, 1], 0.05)[0]
+    here, aside = birth_odds(
+        [one], found(evidence, (103, 100, 40, 30), (280, 20, 9, 9)), [0, 1], 0.05
+    )[0]
     assert here > 2
     assert aside < -10
     sample = found(evidence, (103, 100, 40, 30)).samples[0]
     for _ in range(30):  # of a place where false alarms are common, less so
         evidence.look()
         evidence.learn(sample, False)
-    assert fits([one], found(evidence, (103, 100, 40, 30)), [0], 0.05)[0, 0] < here - 2
+    assert birth_odds([one], found(evidence, (103, 100, 40, 30)), [0], 0.05)[0, 0] < here - 2
 
 
 def test_a_detector_that_finds_one_vehicle_in_three_is_known_to():
@@ -122,14 +124,21 @@ def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
     assert min(missed([200.0, 200.0])) > 0
 
 
-def test_what_drives_at_the_horizon_does_not_make_vehicles_small():
-    evidence = DetectionEvidence()
-    existence = Existence(TrafficParameters(), evidence)
-    for bottom in (50, 200):
-        one = track(1, 40.0, bottom - 30.0, confirmed=True)
-        for way in range(0, 120, 3):
-            predict([one], 48.0, 1.0 if way else 0.0, replace(DRIVE, acceleration=0.001))
-            detections = found(evidence, (40 + way, bottom - 50, 60, 50))
-            one.state.measure(detections.edges[0], np.ones(4))
-            existence.detected(one, detections, 0, 0.0)
-        assert one.has_driven
+def evidence_of(fit, *, drives=True):
+    """Evidence that a detection which fits its confirmed vehicle so well adds by where it is."""
+    existence, evidence = Existence(TrafficParameters(), DetectionEvidence()), DetectionEvidence()
+    one = track(1, 100.0, confirmed=True, has_driven=True)
+    for frame in range(20):
+        left = 100.0 + 3 * frame * drives
+        predict([one], -1000.0, 1.0, replace(DRIVE, acceleration=0.001))
+        one.state.measure(np.array([left, 100, left + 40, 130]), np.full(4, 0.5))
+    existence.detected(one, found(evidence, (left, 100, 40, 30)), 0, fit)
+    return one.log_odds
+
+
+def test_a_detection_of_a_vehicle_counts_by_how_much_better_it_fits_than_a_false_alarm():
+    assert evidence_of(9.0) > evidence_of(0.5) > 0 > evidence_of(-0.2)
+
+
+def test_where_a_vehicle_stands_any_false_alarm_there_would_fit():
+    assert evidence_of(9.0, drives=False) == 0

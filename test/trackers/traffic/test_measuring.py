@@ -19,7 +19,7 @@ import pytest
 
 from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import Track
+from vehicle_pf_tracker.trackers.traffic.track import FEW, Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
 SIZE = (320, 240)
@@ -108,7 +108,7 @@ def test_a_thin_first_box_may_grow():
 )
 def test_a_box_that_was_several_vehicles_becomes_the_nearest_one(track, other, is_several):
     own = np.array([100.0, 114, 118, 130])
-    for _ in range(3):
+    for _ in range(FEW):
         measured(track, own, other)
     assert (track.state.edges == pytest.approx(own, abs=1)) is is_several
 

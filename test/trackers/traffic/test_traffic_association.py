@@ -81,6 +81,25 @@ def test_a_likely_vehicle_that_overlaps_by_half_may_be_one_whose_drive_was_wrong
     frame = np.zeros((240, 320, 3), np.uint8)
     found = FrameDetections(boxes, DetectionEvidence(), ColourBins(frame), (320, 240))
     found.log_odds = np.array([log_odds])
-    settings = DetectionParameters(colour_cost=0.0, edge_noise=0.02)
-    (cost,) = pair_costs([sure], found, [0], settings)
+    settings = DetectionParameters(edge_noise=0.02)
+    cost, _ = pair_costs([sure], found, [0], settings)
     assert (cost < GATE).all() == (log_odds > 0)
+
+
+def test_the_log_odds_of_a_pair_fall_with_its_distance_and_with_false_alarms_there():
+    evidence, vehicle = DetectionEvidence(), track(1, 100.0)
+    frame = np.zeros((240, 320, 3), np.uint8)
+
+    def odds(left):
+        boxes = Detections.make([(left, 100, 40, 30)], [0.8])
+        found = FrameDetections(boxes, evidence, ColourBins(frame), (320, 240))
+        return float(pair_costs([vehicle], found, [0], DetectionParameters())[1][0, 0])
+
+    before = odds(100)
+    assert before > 2
+    assert odds(115) < 0
+    sample = evidence.samples(vehicle.state.edges[np.newaxis], np.ones(1), (320, 240))[0]
+    for _ in range(30):
+        evidence.look()
+        evidence.learn(sample, False)
+    assert odds(100) < before - 2

@@ -22,10 +22,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.evaluation.cache_key import result_key, variant_modules
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     FORMAT,
     PLAN,
@@ -35,191 +35,11 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     safe_name,
     write_truth,
 )
-from vehicle_pf_tracker.evaluation.result_store import result_key, variant_modules
+from vehicle_pf_tracker.evaluation.grid.starts import TRUE_START, Start
+from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.run_folder import versions
-from vehicle_pf_tracker.parameters.configuration import SessionParameters
-from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs
-from vehicle_pf_tracker.trackers.parameters import ParticleParameters
-from vehicle_pf_tracker.trackers.registry import Variant, find_variant
-
-BASELINE = "baseline:"
-Settings = tuple[tuple[str, Value], ...]
-
-
-_SHIFT = 0.1
-"""Shift of OTB's spatial robustness (Wu, Lim and Yang 2013), in widths and heights of the box."""
-_SCALES = (0.8, 0.9, 1.1, 1.2)
-_SIDES = {
-    "left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1),
-    "left_up": (-1, -1), "right_up": (1, -1), "left_down": (-1, 1), "right_down": (1, 1),
-}  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class Start:
-    """Displacement of the first box, in its widths and heights, and the factor of its sides."""
-
-    name: str = ""
-    shift: tuple[float, float] = (0.0, 0.0)
-    scale: float = 1.0
-
-    def box(self, true: Box) -> Box:
-        """Return the box to start on."""
-        if self == TRUE_START:
-            return true
-        x, y = true.centre
-        centre = x + self.shift[0] * true.width, y + self.shift[1] * true.height
-        return Box.around(centre, true.width * self.scale, true.height * self.scale)
-
-
-TRUE_START = Start()
-"""The true box."""
-
-
-def shifted_starts() -> list[Start]:
-    """Return the twelve starts of OTB: eight shifts by a tenth of the box, and four scales."""
-    shifts = [Start(name, (_SHIFT * x, _SHIFT * y)) for name, (x, y) in _SIDES.items()]
-    return shifts + [Start(f"scale_{scale:g}", scale=scale) for scale in _SCALES]
-
-
-@dataclass(frozen=True, slots=True)
-class VariantSystem:
-    """A variant with its parameters.
-
-    Attributes
-    ----------
-    label, variant : str
-        Name of the system in all tables, and of the variant in the registry.
-    parameter_set : str
-        Label of its parameter set; empty for the defaults.
-    overrides : tuple of (str, Value)
-        Parameters set on the command line.
-    parameters : tuple of (str, Value)
-        All parameters in effect but the seed and the target.
-    """
-
-    label: str
-    variant: str
-    parameter_set: str
-    overrides: Settings
-    parameters: Settings
-
-    @property
-    def is_deterministic(self) -> bool:
-        """True if the seed has no effect: a variant without particles is deterministic."""
-        return not issubclass(self._entry.parameters, ParticleParameters)
-
-    @property
-    def _entry(self) -> Variant:
-        return find_variant(self.variant)
-
-    def tracker_parameters(self, seed: int) -> Any:
-        """Make the variant's parameters."""
-        kind = self._entry.parameters
-        return from_mapping(kind, {**self._own(kind), "seed": seed})
-
-    def changed(self, name: str, values: Mapping[str, Value]) -> VariantSystem:
-        """Return the same variant with `values`, as the parameter set `name`.
-
-        Raises
-        ------
-        InputError
-            If a value does not fit, alone or together with others.
-        """
-        kinds = {**specs(self._entry.parameters), **specs(SessionParameters)}
-        checked = {key: kinds[key].check(value) for key, value in values.items()}
-        changed = VariantSystem(
-            f"{self.variant}@{name}", self.variant, name, tuple(sorted(checked.items())),
-            tuple({**dict(self.parameters), **checked}.items()),
-        )  # fmt: skip
-        changed.tracker_parameters(0)
-        return changed
-
-    def session_parameters(self) -> SessionParameters:
-        """Make the parameters of the session."""
-        return from_mapping(SessionParameters, self._own(SessionParameters))
-
-    def _own(self, kind: type[Any]) -> dict[str, Value]:
-        table = specs(kind)
-        return {name: value for name, value in self.parameters if name in table}
-
-    def facts(self, seed: int) -> dict[str, Any]:
-        """Return what determines its runs, besides the code."""
-        return {"variant": self.variant, "parameters": {**dict(self.parameters), "seed": seed}}
-
-    def to_json(self) -> dict[str, Any]:
-        """Return plain values for JSON."""
-        return {
-            "label": self.label,
-            "variant": self.variant,
-            "parameter_set": self.parameter_set,
-            "overrides": dict(self.overrides),
-            "parameters": dict(self.parameters),
-            "deterministic": self.is_deterministic,
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class BaselineSystem:
-    """One of OpenCV's trackers, in an environment of its own.
-
-    A new process repeats a run exactly, so that one run of it is enough.
-
-    Attributes
-    ----------
-    baseline : str
-        Name of the baseline without ``baseline:``.
-    python : str
-        The interpreter that runs it; empty looks where `baseline_python` says.
-    models : tuple of (str, str)
-        Model files by name.
-    build : str
-        Version of the interpreter's OpenCV, so that results of another one are not reused.
-    """
-
-    baseline: str
-    python: str = ""
-    models: tuple[tuple[str, str], ...] = ()
-    build: str = ""
-
-    @property
-    def label(self) -> str:
-        """Name of the system in all tables."""
-        return f"{BASELINE}{self.baseline}"
-
-    @property
-    def is_deterministic(self) -> bool:
-        """True: the seed has no effect."""
-        return True
-
-    def facts(self, seed: int) -> dict[str, Any]:
-        """Return what determines its runs, besides the code."""
-        return {"baseline": self.baseline, "models": self.models, "build": self.build, "seed": seed}
-
-    def model_files(self) -> Mapping[str, Path]:
-        """Return its model files."""
-        return {name: Path(path) for name, path in self.models}
-
-    def to_json(self) -> dict[str, Any]:
-        """Return plain values for JSON."""
-        models: dict[str, Value] = dict(self.models)
-        return {
-            "label": self.label,
-            "baseline": self.baseline,
-            "parameter_set": "",
-            "overrides": models,
-            "parameters": {**models, "opencv": self.build},
-            "deterministic": True,
-        }
-
-
-System = VariantSystem | BaselineSystem
-
-
-def seeds_of(system: System, seeds: Sequence[int]) -> Sequence[int]:
-    """Return the seeds that `system` runs with: the first alone where the seed has no effect."""
-    return seeds[:1] if system.is_deterministic else seeds
+from vehicle_pf_tracker.trackers.registry import find_variant
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,7 +50,7 @@ class GridCell:
     ----------
     source : Source
         The recording.
-    system : VariantSystem or BaselineSystem
+    system : System
         The system that tracks the vehicle.
     seed : int
         Seed of the random numbers.
@@ -261,9 +81,9 @@ class GridCell:
             "start": asdict(self.start),
             **self.system.facts(self.seed),
         }
-        if isinstance(self.system, BaselineSystem):
-            return result_key(facts, ())
-        return result_key(facts, variant_modules(find_variant(self.system.variant)))
+        kind = self.system.kind
+        modules = () if self.system.is_baseline else variant_modules(find_variant(kind))
+        return result_key(facts, modules)
 
     def folder(self, evaluation: Path) -> Path:
         """Return its folder in the folder of the evaluation."""
@@ -314,12 +134,12 @@ class Plan:
     def cells(self) -> list[GridCell]:
         """Return all cells, recording by recording."""
         # Baselines are slow: begun last, they would be waited for.
-        ordered = sorted(self.systems, key=lambda system: isinstance(system, VariantSystem))
+        ordered = sorted(self.systems, key=lambda system: not system.is_baseline)
         return [
             GridCell(source, system, seed, self.max_diff, start)
             for source, system in itertools.product(self.recordings, ordered)
             for start in (TRUE_START, *self.shifted)
-            for seed in seeds_of(system, self.seeds[:1] if start.name else self.seeds)
+            for seed in system.seeds(self.seeds[:1] if start.name else self.seeds)
         ]
 
     def write(self, folder: Path) -> None:
@@ -335,7 +155,7 @@ class Plan:
             "command": self.command,
             "recordings": [asdict(source) for source in self.recordings],
             "systems": [
-                {**system.to_json(), "seeds": list(seeds_of(system, self.seeds))}
+                {**system.to_json(), "seeds": list(system.seeds(self.seeds))}
                 for system in self.systems
             ],
             "seeds": list(self.seeds),

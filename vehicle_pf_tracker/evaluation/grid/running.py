@@ -30,10 +30,11 @@ from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
-from vehicle_pf_tracker.evaluation.grid.cells import BaselineSystem, GridCell, Plan, VariantSystem
+from vehicle_pf_tracker.evaluation.grid.cells import GridCell, Plan
 from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
+from vehicle_pf_tracker.evaluation.systems import BASELINE
 from vehicle_pf_tracker.offline.driver import OfflineTracker
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.output_files import flush, make_folder, write_json
@@ -41,10 +42,8 @@ from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.offline.run_folder import (
     METRICS,
     RUN,
-    damage,
     describe,
     describe_run,
-    seal,
     write_run,
 )
 from vehicle_pf_tracker.trackers.registry import find_variant
@@ -77,10 +76,10 @@ def run_cell(cell: GridCell) -> CellResult:
     cv2.setNumThreads(1)
     try:
         recording = footage(cell.source)
-        if isinstance(cell.system, VariantSystem):
-            rows, run = _run_variant(cell, cell.system, recording)
-        else:
-            rows, run = _run_baseline(cell, cell.system, recording)
+        true = recording.truth[0]
+        first = replace(true, box=cell.start.box(true.box))
+        run_it = _run_baseline if cell.system.is_baseline else _run_variant
+        rows, run = run_it(cell, recording, first)
         metrics = measure(score_frames(rows, recording.truth, cell.max_diff))
         return CellResult(rows, run, metrics)
     except InputError as error:
@@ -90,14 +89,15 @@ def run_cell(cell: GridCell) -> CellResult:
 
 
 def _run_variant(
-    cell: GridCell, system: VariantSystem, recording: Footage
+    cell: GridCell, recording: Footage, first: Truth
 ) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a variant and its `run.json`."""
+    system = cell.system
     tracker = OfflineTracker(
-        find_variant(system.variant),
+        find_variant(system.kind),
         system.tracker_parameters(cell.seed),
         system.session_parameters(),
-        first_truth=_first_truth(cell, recording),
+        first_truth=first,
         max_diff=cell.max_diff,
     )
     rows = list(tracker.rows(recording.frames()))
@@ -106,18 +106,13 @@ def _run_variant(
     return rows, describe_run(tracker.session, tracker.start_frame, [], *source)
 
 
-def _first_truth(cell: GridCell, recording: Footage) -> Truth:
-    first = recording.truth[0]
-    return replace(first, box=cell.start.box(first.box))
-
-
 def _run_baseline(
-    cell: GridCell, system: BaselineSystem, recording: Footage
+    cell: GridCell, recording: Footage, first: Truth
 ) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a baseline and its `run.json`."""
-    first = _first_truth(cell, recording)
+    system, name = cell.system, cell.system.kind.removeprefix(BASELINE)
     python = Path(system.python) if system.python else None
-    with Baseline(system.baseline, python, system.model_files()) as baseline:
+    with Baseline(name, python, system.model_files()) as baseline:
         rows = list(baseline_rows(baseline, recording.frames(), first))
         opencv = baseline.versions["opencv"]
     started = (row.frame for row in rows if row.mode not in {WAITING, REJECTED})
@@ -126,11 +121,11 @@ def _run_baseline(
         cell.source.path,
         cell.source.topic,
         recording.notices,
-        baseline=system.baseline,
+        baseline=name,
         seed=cell.seed,
         target=list(astuple(first.box)),
         start_frame=next(started, None),
-        parameters=dict(system.models),
+        parameters=dict(system.overrides),
     )
     description["versions"]["opencv"] = opencv
     return rows, description
@@ -177,10 +172,11 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) 
 
 
 def _is_stored(cell: GridCell, folder: Path) -> bool:
-    """Return whether the folder has a valid result of the cell; one that failed is tried again."""
-    if damage(folder):
+    """Return whether the folder has the result of the cell; one that failed is tried again."""
+    try:
+        return bool(read_document(folder / RUN).get("key") == cell.key())
+    except InputError:  # it is not there, or nothing that can be read
         return False
-    return read_document(folder / RUN).get("key") == cell.key()
 
 
 def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]) -> None:
@@ -192,5 +188,4 @@ def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]
             keys = {"command": command, "key": cell.key()}
             write_run(partial, outcome.rows, {**outcome.run, **keys})
             write_json(partial / METRICS, outcome.metrics.to_json())
-            seal(partial)
     flush(folder.parent)

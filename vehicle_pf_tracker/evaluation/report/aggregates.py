@@ -12,131 +12,18 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The metrics of a report, their summaries over seeds and recordings, and its findings."""
+"""The metrics of a report, and their summaries over seeds and recordings."""
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from vehicle_pf_tracker.evaluation.metrics import Metrics
+from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, Column, number_text
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
-from vehicle_pf_tracker.evaluation.statistics import (
-    FEWEST_RECORDINGS,
-    Ranking,
-    Summary,
-    rank_systems,
-    summarise,
-)
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """A metric of a run.
-
-    Attributes
-    ----------
-    key, group : str
-        Name of the metric in files, and the group of columns it stands in.
-    label, unit : str
-        Name and unit for readers; shares have no unit.
-    decimals : int
-        Decimals shown to readers.
-    higher_is_better : bool or None
-        True if large values are best; None where neither end is.
-    help : str
-        Explanation, one sentence.
-    by_recording : bool
-        True if the page shows it for each recording, not only in the summary and in files.
-    """
-
-    key: str
-    group: str
-    label: str
-    unit: str
-    decimals: int
-    higher_is_better: bool | None
-    help: str
-    by_recording: bool = True
-
-    @property
-    def title(self) -> str:
-        """Label and unit."""
-        return f"{self.label}, {self.unit}" if self.unit else self.label
-
-    def value(self, metrics: Metrics) -> float | None:
-        """Return the metric of a run; of occlusions the mean of those that have it."""
-        if hasattr(metrics, self.key) and self.key != "recovered":
-            value: float | None = getattr(metrics, self.key)
-            return None if value is None else float(value)
-        known = [
-            number
-            for occlusion in metrics.occlusions
-            if (number := getattr(occlusion, self.key)) is not None
-        ]
-        return sum(known) / len(known) if known else None
-
-
-OVERLAP, ERRORS, HIDDEN, CLAIMS, RUN = (
-    "Overlap and precision", "Error of the centre", "Total occlusions", "Claims", "Run"
-)  # fmt: skip
-
-COLUMNS = (
-    Column("success_auc", OVERLAP, "success AUC", "", 3, True,
-           "Area under the success curve: share of frames whose overlap (intersection over union) "
-           "is above thresholds from 0 to 1."),
-    Column("precision_20px", OVERLAP, "precision at 20 px", "", 3, True,
-           "Share of frames with an error of the centre of at most 20 px."),
-    Column("normalised_precision_auc", OVERLAP, "normalised precision AUC", "", 3, True,
-           "Area under the curve of the error in sizes of the true box, from 0 to 0.5.", False),
-    Column("p_error_lt_15px", OVERLAP, "below 15 px", "", 3, True,
-           "Share of frames with an error below 15 px."),
-    Column("on_target", OVERLAP, "on target", "", 3, True,
-           "Share of visible frames with an error below half the true box's diagonal.", False),
-    Column("rmse_px", ERRORS, "RMSE", "px", 1, False,
-           "Root of the mean squared error of the centre, all scored frames."),
-    Column("rmse_visible_px", ERRORS, "RMSE visible", "px", 1, False,
-           "The same over the frames that are not totally occluded."),
-    Column("median_px", ERRORS, "median", "px", 1, False, "Median error of the centre."),
-    Column("p95_px", ERRORS, "95\u00a0%", "px", 1, False,
-           "Error of the centre that 95 % of the frames stay below.", False),
-    Column("max_px", ERRORS, "largest", "px", 1, False, "Largest error of the centre."),
-    Column("recovered", HIDDEN, "recovered", "", 2, True,
-           "Judged total occlusions after which the track was on the vehicle again: their number "
-           "over all runs, or their mean share.", False),
-    Column("frames_to_recover", HIDDEN, "return", "frames", 1, False,
-           "Frames from the last hidden one until the track stays on the vehicle, where it does.",
-           False),
-    Column("error_at_exit_px", HIDDEN, "error at exit", "px", 1, False,
-           "Error in the first frame after a total occlusion.", False),
-    Column("occluded_precision", CLAIMS, "OCCLUDED precision", "", 2, True,
-           "Share of the frames with the mode OCCLUDED that are totally occluded.", False),
-    Column("occluded_recall", CLAIMS, "OCCLUDED recall", "", 2, True,
-           "Share of the totally occluded frames with the mode OCCLUDED; baselines have none.",
-           False),
-    Column("lost_visible", CLAIMS, "LOST though visible", "frames", 1, None,
-           "Frames with the mode LOST while the vehicle can be seen."),
-    Column("failures", RUN, "failures", "", 1, False,
-           "Times per run that the estimate came to have no overlap with a visible vehicle."),
-    Column("step_ms_p50", RUN, "step", "ms", 2, False,
-           "Median time of a step, measured while other cells of the grid may have run beside it."),
-)  # fmt: skip
-_BY_KEY = {column.key: column for column in COLUMNS}
-SUCCESS, PRECISION, RMSE, RECOVERED, STEP = (
-    _BY_KEY[key] for key in ("success_auc", "precision_20px", "rmse_px", "recovered", "step_ms_p50")
-)
-
-RANKED = (SUCCESS, PRECISION, RMSE)
-"""Metrics that systems are ranked by; the first one orders the tables."""
-
-
-NO_VALUE = "–"
-
-
-def number_text(value: float | None, decimals: int) -> str:
-    """Return a number with so many decimals, a dash for None."""
-    return NO_VALUE if value is None else f"{value:.{decimals}f}"
+from vehicle_pf_tracker.evaluation.statistics import Summary, summarise
 
 
 def mean_text(summary: Summary | None, column: Column) -> str:
@@ -160,18 +47,6 @@ def interval_text(summary: Summary | None, column: Column) -> str:
     return f"{low} to {high}"
 
 
-def p_value_text(value: float | None) -> str:
-    """Return a p value as it is usually printed."""
-    if value is None:
-        return NO_VALUE
-    return "< 0.001" if value < 0.001 else f"{value:.3f}"
-
-
-def listing(names: Sequence[str]) -> str:
-    """Return ``a``, ``a and b``, or ``a, b and c``."""
-    return " and ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))
-
-
 def counted(count: int, noun: str) -> str:
     """Return ``1 frame``, ``2 frames``."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
@@ -193,8 +68,8 @@ class Aggregates:
         Summaries over seeds, by recording and system.
     overall : mapping of system to Summaries
         Summaries over the means of the recordings, so that long ones do not outweigh short ones.
-    rankings : mapping of str to Ranking
-        Rankings by the key of a ranked column.
+    behind : mapping of str to Summaries
+        Differences to the first system over the recordings that both have, by system.
     recoveries : mapping of str to (int, int)
         Total occlusions recovered from and judged, of all runs of a system.
     shifted : Aggregates or None
@@ -205,7 +80,7 @@ class Aggregates:
     order: tuple[str, ...]
     recordings: Mapping[str, Mapping[str, Summaries]]
     overall: Mapping[str, Summaries]
-    rankings: Mapping[str, Ranking]
+    behind: Mapping[str, Summaries]
     recoveries: Mapping[str, tuple[int, int]]
     shifted: Aggregates | None
 
@@ -225,19 +100,12 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
         }
         for label, columns in values.items()
     }
-    rankings = {
-        column.key: ranking
-        for column in RANKED
-        if (
-            ranking := rank_systems(
-                {label: columns[column.key] for label, columns in means.items()},
-                higher_is_better=bool(column.higher_is_better),
-            )
-        )
-    }
-    main = RANKED[0].key
-    ranked = [rank.system for rank in rankings[main].ranks] if main in rankings else []
-    order = (*ranked, *(label for label in runs if label not in ranked))
+    main = COMPARED[0].key
+
+    def mean(label: str) -> float:
+        return statistics.fmean(means[label][main].values()) if means[label][main] else -math.inf
+
+    order = tuple(sorted(runs, key=mean, reverse=True))
     return Aggregates(
         order=order,
         recordings={
@@ -252,7 +120,13 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
             label: {key: summarise(list(found.values())) for key, found in means[label].items()}
             for label in order
         },
-        rankings=rankings,
+        behind={
+            label: {
+                column.key: _differences(means[label][column.key], means[order[0]][column.key])
+                for column in COMPARED
+            }
+            for label in order[1:]
+        },
         recoveries={label: _recoveries(runs[label]) for label in order},
         shifted=aggregate(replace(evaluation, runs=shifted, shifted=())) if shifted else None,
     )
@@ -272,53 +146,5 @@ def _recoveries(runs: Sequence[ScoredRun]) -> tuple[int, int]:
     return sum(judged), len(judged)
 
 
-def findings(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[str]:
-    """State the leader, the systems statistically tied with it, and missing results."""
-    best = (_best(aggregates, column) for column in (PRECISION, RMSE, RECOVERED))
-    failed = len(evaluation.failed)
-    cells = counted(len(evaluation.runs) + len(evaluation.shifted) + failed, "cell")
-    result = f"All {cells} of the grid have a result."
-    if failed:
-        result = f"{failed} of {cells} have no result; see Failed cells."
-    return [*_leader(aggregates), *filter(None, best), result, *evaluation.mixed_versions]
-
-
-def _leader(aggregates: Aggregates) -> list[str]:
-    column = RANKED[0]
-    ranking = aggregates.rankings.get(column.key)
-    if ranking is None:
-        return ["There is no truth to rank the systems by."]
-    leader = ranking.ranks[0]
-    summary = aggregates.overall[leader.system].get(column.key)
-    within = interval_text(summary, column)
-    text = (
-        f"{leader.system} has the best mean rank by {column.label}, "
-        f"whose mean is {mean_text(summary, column)}"
-    )
-    sentences = [f"{text} (95 % interval {within})." if within else f"{text}."]
-    if ranking.critical_difference is None and len(ranking.ranks) > 1:
-        sentences.append(
-            f"{counted(ranking.recordings, 'recording')} cannot tell systems apart: "
-            f"ranks need at least {FEWEST_RECORDINGS}."
-        )
-    elif leader.tied:
-        sentences.append(
-            f"{counted(ranking.recordings, 'recording')} cannot tell it apart from "
-            f"{listing(leader.tied)}."
-        )
-    return sentences
-
-
-def _best(aggregates: Aggregates, column: Column) -> str:
-    known = {
-        label: round(summary.mean, column.decimals)
-        for label, summaries in aggregates.overall.items()
-        if (summary := summaries.get(column.key)) is not None
-    }
-    if len(known) < 2:
-        return ""
-    best = max(known.values()) if column.higher_is_better else min(known.values())
-    leaders = [label for label, value in known.items() if value == best]
-    unit = f" {column.unit}" if column.unit else ""
-    end = "Highest" if column.higher_is_better else "Lowest"
-    return f"{end} mean of {column.label}: {listing(leaders)}, {best:.{column.decimals}f}{unit}."
+def _differences(values: Mapping[str, float], first: Mapping[str, float]) -> Summary | None:
+    return summarise([value - first[name] for name, value in values.items() if name in first])

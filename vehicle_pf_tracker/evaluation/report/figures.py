@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Figures of a report: success and precision, intervals, errors over time."""
+"""Figures of a report: success and precision, errors over time."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
 from vehicle_pf_tracker.evaluation.metrics import Curve
 from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
-from vehicle_pf_tracker.evaluation.report.aggregates import RANKED, Aggregates
+from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 from vehicle_pf_tracker.offline.output_files import make_folder, replacing
@@ -94,8 +94,6 @@ ERRORS = "errors_"
 """Beginning of the names of figures of errors over time; the recording follows."""
 LEAST_ERROR = 0.5
 """Errors below this, in px, are drawn at the foot of the logarithmic scale."""
-_ROW = 0.19
-"""Height of a system's row in a figure of intervals, inches."""
 _PANEL_HEIGHT = 1.35
 """Height of a panel of errors over time, inches: three in a row are then about 5 to 3."""
 _PANELS_IN_A_ROW = 3
@@ -117,9 +115,7 @@ def draw_all(
     Systems in `slots` have the style of this number.
     """
     with rc_context(SETTINGS):
-        found = {"intervals": _intervals(aggregates)}
-        for name in CURVES:
-            found[name] = _curves(evaluation, aggregates.order, slots, name)
+        found = {name: _curves(evaluation, aggregates.order, slots, name) for name in CURVES}
         for entry in evaluation.recordings:
             runs = evaluation.by_system(entry.name, aggregates.order)
             truths = evaluation.truths[entry.name]
@@ -201,39 +197,6 @@ def _curves(
     )  # fmt: skip
     areas = ", ".join(f"{label} {line.auc:.3f}" for label, line in lines.items())
     return Drawn(figure, title, f"{title}; areas: {areas}")
-
-
-def _intervals(aggregates: Aggregates) -> Drawn | None:
-    """Draw the first ranked metric of all systems, with intervals.
-
-    Small dots are the means on the recordings.
-    """
-    column = RANKED[0]
-    overall = {label: aggregates.overall[label].get(column.key) for label in aggregates.order}
-    rows = {label: summary for label, summary in overall.items() if summary is not None}
-    if not rows:
-        return None
-    figure = Figure(figsize=(_NARROW, 0.55 + _ROW * len(rows)), layout="constrained")
-    axes = figure.add_subplot(xlabel=column.title, ylim=(len(rows) - 0.4, -0.6))
-    for position, (label, whole) in enumerate(rows.items()):
-        known = [
-            summary.mean
-            for found in aggregates.recordings.values()
-            if label in found and (summary := found[label].get(column.key)) is not None
-        ]
-        heights = [position] * len(known)
-        axes.plot(known, heights, ".", color=MUTED, ms=4, alpha=0.8, mew=0)
-        if whole.low is not None and whole.high is not None:
-            axes.hlines(position, whole.low, whole.high, color=ACCENT, lw=2.2)
-        axes.plot([whole.mean], [position], "D", color=ACCENT, ms=4.2)
-    axes.set_yticks(range(len(rows)), list(rows))
-    axes.tick_params(axis="y", length=0, labelcolor=INK)
-    axes.grid(axis="x", alpha=0.6)
-    axes.spines["left"].set_visible(False)
-    axes.set_axisbelow(True)
-    words = ", ".join(f"{label} {found.mean:.{column.decimals}f}" for label, found in rows.items())
-    caption = f"{column.label}: mean, 95 % interval, and each recording"
-    return Drawn(figure, caption, f"{column.label}: {words}")
 
 
 def draw_errors(axes: Axes, errors: Array) -> None:

@@ -21,25 +21,18 @@ import io
 import re
 import shlex
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from matplotlib import rc_context
 
-from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation import tables
+from vehicle_pf_tracker.evaluation.columns import COLUMNS
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
 from vehicle_pf_tracker.evaluation.plots import STYLES
-from vehicle_pf_tracker.evaluation.report.aggregates import (
-    COLUMNS,
-    RANKED,
-    Aggregates,
-    counted,
-    findings,
-    p_value_text,
-)
+from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, counted
 from vehicle_pf_tracker.evaluation.report.figures import (
     COLOURS,
     CURVES,
@@ -48,13 +41,7 @@ from vehicle_pf_tracker.evaluation.report.figures import (
     Drawn,
     draw_all,
 )
-from vehicle_pf_tracker.evaluation.report.filmstrip import Still, film_strips
-from vehicle_pf_tracker.evaluation.report.scored_runs import (
-    FailedCell,
-    ScoredEvaluation,
-    ScoredRun,
-    typical,
-)
+from vehicle_pf_tracker.evaluation.report.scored_runs import FailedCell, ScoredEvaluation
 
 
 def render(template: str, **values: Any) -> str:
@@ -88,16 +75,8 @@ def svg_element(drawn: Drawn, number: int) -> str:
     return re.sub(r"^<svg[^>]*", head, element).replace("\n", " ").replace("  ", " ")
 
 
-def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: bool = True) -> str:
-    """Return the text of the page.
-
-    Parameters
-    ----------
-    evaluation, aggregates : ScoredEvaluation, Aggregates
-        The evaluation to show, and its summaries.
-    images : bool
-        True to show stills of the recordings.
-    """
+def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
+    """Return the text of the page that shows an evaluation and its summaries."""
     slots = styled(aggregates)
     figures = {
         name: {"svg": svg_element(drawn, number), "caption": drawn.caption}
@@ -110,17 +89,14 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates, *, images: b
         "report.html",
         title=title(evaluation),
         facts=_facts(evaluation),
-        findings=findings(evaluation, aggregates),
+        notes=evaluation.notes,
         slots=slots,
         overall=tables.overall_table(aggregates),
         figures=figures,
-        ranks=tables.ranks_table(aggregates),
-        rank_notes=list(_rank_notes(aggregates)),
+        behind=tables.behind_table(aggregates),
         starts=tables.starts_table(aggregates),
         curves=[name for name in CURVES if name in figures],
-        recordings=[
-            _section(evaluation, aggregates, entry, images) for entry in evaluation.recordings
-        ],
+        recordings=[_section(evaluation, aggregates, entry) for entry in evaluation.recordings],
         systems=evaluation.systems,
         sources=evaluation.recordings,
         seeds=folder.seeds,
@@ -149,26 +125,10 @@ def _facts(evaluation: ScoredEvaluation) -> str:
     return " × ".join(counted(len(some), noun) for noun, some in counts.items())
 
 
-def _rank_notes(aggregates: Aggregates) -> Iterator[str]:
-    for column in RANKED:
-        ranking = aggregates.rankings.get(column.key)
-        if ranking is None:
-            continue
-        parts = [f"{column.label}: {counted(ranking.recordings, 'recording')}"]
-        if ranking.friedman_p is not None:
-            parts.append(f"Friedman p {p_value_text(ranking.friedman_p)}")
-        if ranking.critical_difference is not None:
-            parts.append(f"critical difference of mean ranks {ranking.critical_difference:.2f}")
-        yield ", ".join(parts)
-
-
-def _section(
-    evaluation: ScoredEvaluation, aggregates: Aggregates, entry: Source, images: bool
-) -> dict[str, Any]:
+def _section(evaluation: ScoredEvaluation, aggregates: Aggregates, entry: Source) -> dict[str, Any]:
     """Return the values of a recording's section of the template."""
     truths = evaluation.truths[entry.name]
     runs = evaluation.by_system(entry.name, aggregates.order)
-    strips, note = _strips(entry, truths, runs, styled(aggregates)) if images else ({}, "")
     shown = [column for column in COLUMNS if column.by_recording]
     return {
         "name": entry.name,
@@ -176,8 +136,6 @@ def _section(
         "table": tables.recording_table(aggregates, entry.name, shown),
         "occlusions": tables.occlusions_table(runs),
         "figure": ERRORS + safe_name(entry.name),
-        "strips": strips,
-        "note": note,
     }
 
 
@@ -188,20 +146,6 @@ def _recording_facts(entry: Source, truths: Mapping[int, Truth]) -> str:
     parts += [f"{kinds['partial']} partly occluded"] if kinds["partial"] else []
     parts += [f"{kinds['total']} totally occluded"] if kinds["total"] else []
     return ", ".join(parts)
-
-
-def _strips(
-    entry: Source,
-    truths: Mapping[int, Truth],
-    runs: Mapping[str, Sequence[ScoredRun]],
-    slots: Mapping[str, int],
-) -> tuple[dict[str, list[Still]], str]:
-    """Take the stills, and say why there are none."""
-    shown = {label: run for label, some in runs.items() if (run := typical(some)) is not None}
-    try:
-        return film_strips(entry, truths, shown, slots), ""
-    except InputError as error:
-        return {}, f"There are no stills: {error}."
 
 
 def _failed_groups(failed: Sequence[FailedCell]) -> list[tuple[str, str, str]]:

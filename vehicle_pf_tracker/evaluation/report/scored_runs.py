@@ -23,14 +23,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, SystemEntry
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source
 from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
 from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
-from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.evaluation.systems import System
 
 _DECIDING = ("vehicle_pf_tracker", "opencv", "numpy")
 """Programs whose version moves estimates."""
@@ -48,10 +47,8 @@ class ScoredRun:
         Metrics of the run.
     errors : (N,) array
         Error of the centre in px by frame of the recording; NaN where nothing is scored.
-    boxes : sequence of Box or None
-        Box of the scored estimate by frame.
-    rows : sequence of EstimateRow
-        Estimates by frame.
+    frames : sequence of FrameScore
+        Estimate and truth by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
     versions : mapping of str to str or None
@@ -64,8 +61,7 @@ class ScoredRun:
     start: str
     metrics: Metrics
     errors: NDArray[np.float64]
-    boxes: Sequence[Box | None]
-    rows: Sequence[EstimateRow]
+    frames: Sequence[FrameScore]
     curves: Mapping[str, Curve]
     versions: Mapping[str, str | None]
 
@@ -115,7 +111,7 @@ class ScoredEvaluation:
         return self.folder.recordings
 
     @property
-    def systems(self) -> tuple[SystemEntry, ...]:
+    def systems(self) -> tuple[System, ...]:
         """See `EvaluationFolder`."""
         return self.folder.systems
 
@@ -128,9 +124,19 @@ class ScoredEvaluation:
         ]
 
     @property
+    def notes(self) -> list[str]:
+        """Say how many cells have a result, and whether versions are mixed."""
+        failed = len(self.failed)
+        cells = len(self.runs) + len(self.shifted) + failed
+        result = f"All {cells} cells of the grid have a result."
+        if failed:
+            result = f"{failed} of {cells} cells have no result; see Failed cells."
+        return [result, *self.mixed_versions]
+
+    @property
     def mixed_versions(self) -> list[str]:
         """A sentence where runs were made with different versions; baselines have their own."""
-        ours = {one.label for one in self.systems if not one.kind.startswith("baseline:")}
+        ours = {one.label for one in self.systems if not one.is_baseline}
         runs = [run for run in (*self.runs, *self.shifted) if run.system in ours]
         found = {key: {str(run.versions.get(key)) for run in runs} for key in _DECIDING}
         mixed = [f"{key} {' and '.join(sorted(v))}" for key, v in found.items() if len(v) > 1]
@@ -149,7 +155,7 @@ def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
         _result(folder, (recording.name, system.label, seed, start), truths[recording.name])
         for recording, system in itertools.product(folder.recordings, folder.systems)
         for start in ("", *folder.shifted)
-        for seed in (system.seeds[:1] if start else system.seeds)
+        for seed in system.seeds(folder.seeds[:1] if start else folder.seeds)
     ]
     runs = [result for result in results if isinstance(result, ScoredRun)]
     return ScoredEvaluation(
@@ -159,13 +165,6 @@ def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
         tuple(run for run in runs if run.start),
         tuple(result for result in results if isinstance(result, FailedCell)),
     )
-
-
-def typical(runs: Sequence[ScoredRun]) -> ScoredRun | None:
-    """Return the run with the median error (RMSE) of several seeds, the lower of two."""
-    judged = [run for run in runs if run.metrics.rmse_px is not None]
-    ordered = sorted(judged, key=lambda run: (run.metrics.rmse_px or 0.0, run.seed))
-    return ordered[(len(ordered) - 1) // 2] if ordered else None
 
 
 def _result(
@@ -179,19 +178,12 @@ def _result(
         scores = score_frames(cell.rows, list(truth.values()), max_diff)
     except InputError as error:
         return FailedCell(*key, str(error))
-    counted, frames = scores.counted, scores.frames
-    errors = [frame.error if frame.counts else None for frame in frames]
+    errors = [frame.error if frame.counts else None for frame in scores.frames]
     return ScoredRun(
         *key,
         metrics=measure(scores),
         errors=np.array(errors, dtype=np.float64),  # None is NaN
-        boxes=[_box(frame) for frame in frames],
-        rows=cell.rows,
-        curves=curves(counted),
+        frames=scores.frames,
+        curves=curves(scores.counted),
         versions=cell.run.get("versions", {}),
     )
-
-
-def _box(frame: FrameScore) -> Box | None:
-    row = frame.scored_row
-    return None if row is None or frame.waiting else row.box

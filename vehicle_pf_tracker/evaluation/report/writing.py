@@ -22,8 +22,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, safe_name
-from vehicle_pf_tracker.evaluation.report.aggregates import (
+from vehicle_pf_tracker.evaluation.columns import (
     COLUMNS,
     NO_VALUE,
     PRECISION,
@@ -31,10 +30,9 @@ from vehicle_pf_tracker.evaluation.report.aggregates import (
     RMSE,
     STEP,
     SUCCESS,
-    Aggregates,
-    aggregate,
-    findings,
 )
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, safe_name
+from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, aggregate
 from vehicle_pf_tracker.evaluation.report.figures import write_figures
 from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
 from vehicle_pf_tracker.evaluation.report.scored_runs import (
@@ -43,9 +41,9 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
     score_folder,
 )
 from vehicle_pf_tracker.evaluation.tables import (
+    behind_table,
     markdown,
     overall_table,
-    ranks_table,
     recording_table,
     starts_table,
 )
@@ -62,13 +60,13 @@ _LATEX = str.maketrans(
 
 
 def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
-    """Return the findings, the means, the ranks and each recording as Markdown."""
+    """Return the notes, the means, the differences and each recording as Markdown."""
     parts = [f"# {title(evaluation)}\n"]
-    parts.append("".join(f"- {line}\n" for line in findings(evaluation, aggregates)))
+    parts.append("".join(f"- {line}\n" for line in evaluation.notes))
     starts = starts_table(aggregates)
     tables = {
         "Means over recordings": overall_table(aggregates),
-        "Ranks": ranks_table(aggregates),
+        "Differences to the first": behind_table(aggregates),
         **({"Shifted starts": starts} if starts else {}),
         **{
             entry.name: recording_table(aggregates, entry.name, COLUMNS)
@@ -123,7 +121,7 @@ def _tex(text: str) -> str:
 def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, Any]:
     """Return everything as plain values."""
     return {
-        "format": 2,
+        "format": 3,
         "metrics": {
             column.key: {
                 "label": column.label,
@@ -133,7 +131,7 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
             }
             for column in COLUMNS
         },
-        "findings": findings(evaluation, aggregates),
+        "notes": evaluation.notes,
         "failed": [asdict(cell) for cell in evaluation.failed],
         **asdict(aggregates),
     }
@@ -150,7 +148,6 @@ class Report(NamedTuple):
 def write_report(
     folder: Path,
     *,
-    images: bool = True,
     figures: Sequence[str] = (),
     toolkits: Sequence[str] = (),
     on_stage: Callable[[str], object] = lambda _: None,
@@ -163,8 +160,6 @@ def write_report(
     ----------
     folder : Path
         Folder of an evaluation.
-    images : bool
-        True for stills of the recordings in the page.
     figures : sequence of str
         Formats of the figures in ``figures/``: ``pdf``, ``svg`` and ``png``.
     toolkits : sequence of str
@@ -182,7 +177,7 @@ def write_report(
     aggregates = aggregate(evaluation)
     page = folder / "report.html"
     on_stage("drawing the page")
-    write_text(page, make_page(evaluation, aggregates, images=images))
+    write_text(page, make_page(evaluation, aggregates))
     written = [page, *_write_summaries(folder, evaluation, aggregates)]
     if figures:
         on_stage("drawing the figures")
@@ -232,20 +227,23 @@ def write_toolkits(evaluation: ScoredEvaluation, toolkits: Sequence[str]) -> lis
 
 def _otb(run: ScoredRun) -> Iterator[str]:
     """Give the scored box of each frame; NaN before the start."""
-    return ("nan,nan,nan,nan" if box is None else _numbers(box) for box in run.boxes)
+    for frame in run.frames:
+        box = None if frame.waiting or frame.scored_row is None else frame.scored_row.box
+        yield "nan,nan,nan,nan" if box is None else _numbers(box)
 
 
 def _vot(run: ScoredRun) -> Iterator[str]:
     """Give the scored box of each frame, with VOT's 0 (unknown) before and 1 in the first one."""
     started = False
-    for box in run.boxes:
-        yield "0" if box is None else _numbers(box) if started else "1"
-        started = started or box is not None
+    for line in _otb(run):
+        known = not line.startswith("nan")
+        yield line if known and started else "1" if known else "0"
+        started = started or known
 
 
 def _mot(run: ScoredRun) -> Iterator[str]:
     """Give the boxes that the system reports, as the track 1; none where it is lost."""
-    for row in run.rows:
+    for row in (frame.row for frame in run.frames):
         if row.box is not None and row.mode != Mode.LOST.value:
             confidence = 1.0 if row.confidence is None else row.confidence
             yield f"{row.frame},1,{_numbers(row.box)},{confidence:.4f},-1,-1,-1"

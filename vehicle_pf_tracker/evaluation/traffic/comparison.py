@@ -14,7 +14,7 @@
 
 """The tracker of many vehicles and baselines on the same detections of scenes with truth.
 
-The report of a comparison is a page, Markdown, CSV and JSON.
+The report of a comparison is Markdown, CSV and JSON.
 """
 
 from __future__ import annotations
@@ -30,8 +30,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.report.page import render
-from vehicle_pf_tracker.evaluation.tables import NOTHING, Header, Table, TableCell, markdown
+from vehicle_pf_tracker.evaluation.tables import NOTHING, Rows, markdown
 from vehicle_pf_tracker.evaluation.traffic.scoring import (
     TRAFFIC_BASELINES,
     TrafficWorker,
@@ -233,7 +232,6 @@ COLUMNS: Mapping[str, tuple[str, int]] = {
     "count_error": ("count error", 1), "step_ms": ("ms", 1),
 }  # fmt: skip
 """Measures, with their headings and decimals."""
-_LOWER_IS_BETTER = ("IDSW", "Frag", "step_ms")
 
 RULES = """\
 HOTA, DetA, AssA, IDF1 and MOTA (percent), identity switches and fragmentations are TrackEval's, at
@@ -264,8 +262,8 @@ def means(results: Sequence[TrafficResult]) -> list[TrafficResult]:
 
 def write_traffic_report(
     results: Sequence[TrafficResult], folder: Path, options: Mapping[str, Any]
-) -> dict[str, Table]:
-    """Write the four files, and return their tables.
+) -> dict[str, tuple[list[str], Rows]]:
+    """Write the three files, and return headings and rows by case.
 
     Parameters
     ----------
@@ -287,8 +285,7 @@ def write_traffic_report(
     for line in lines:
         cases.setdefault(f"{line.scene}, {line.source}", []).append(line)
     shown = {title: _table(group) for title, group in cases.items()}
-    page = render("traffic.html", tables=shown, about=RULES, command=" ".join(options["command"]))
-    parts = [f"## {title}\n\n{markdown(*table.texts())}" for title, table in shown.items()]
+    parts = [f"## {title}\n\n{markdown(*table)}" for title, table in shown.items()]
     rows = [
         [line.scene, line.source, line.system, line.runs,
          *(line.values.get(name) for name in COLUMNS), line.occlusions, line.true]
@@ -296,7 +293,6 @@ def write_traffic_report(
     ]  # fmt: skip
     header = ["scene", "detections", "system", "runs", *COLUMNS, "occlusions", "true"]
     texts = {
-        "html": page,
         "md": "\n".join(["# Many vehicles\n", RULES, *parts]),
         "csv": csv_text(header, rows),
     }
@@ -312,33 +308,19 @@ def write_traffic_report(
     return shown
 
 
-def _table(lines: Sequence[TrafficResult]) -> Table:
+def _table(lines: Sequence[TrafficResult]) -> tuple[list[str], Rows]:
     names = [name for name in COLUMNS if any(name in line.values for line in lines)]
-    best = {
-        name: max(_rated(line.values[name], name) for line in lines if name in line.values)
-        for name in names
-    }
-    rows = {line.system: [_cell(line, name, best[name]) for name in names] for line in lines}
-    return Table([Header(COLUMNS[name][0]) for name in names], rows)
+    rows = [[line.system, *(_text(line, name) for name in names)] for line in lines]
+    return ["system", *(COLUMNS[name][0] for name in names)], rows
 
 
-def _cell(line: TrafficResult, name: str, best: float) -> TableCell:
-    value = line.values.get(name)
+def _text(line: TrafficResult, name: str) -> str:
+    value, decimals = line.values.get(name), COLUMNS[name][1]
     if value is None:
-        return TableCell(NOTHING)
-    decimals = COLUMNS[name][1]
-    text = f"{value:.{decimals}f}"
+        return NOTHING
     if name == "kept":
-        text += f" % of {line.occlusions}"
-    elif name == "count_error":
-        text = f"{value:+.{decimals}f} % of {line.true}"
-    elif name in {"IDSW", "Frag"} and value == int(value):
-        text = str(int(value))
-    return TableCell(text, value, best=_rated(value, name) == best)
-
-
-def _rated(value: float, name: str) -> float:
-    """Return a number that is larger where the value is better."""
+        return f"{value:.{decimals}f} % of {line.occlusions}"
     if name == "count_error":
-        return -abs(value)
-    return -value if name in _LOWER_IS_BETTER else value
+        return f"{value:+.{decimals}f} % of {line.true}"
+    is_count = name in {"IDSW", "Frag"} and value == int(value)
+    return str(int(value)) if is_count else f"{value:.{decimals}f}"

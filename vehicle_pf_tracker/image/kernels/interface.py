@@ -23,7 +23,7 @@ from collections.abc import Sequence
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image import gradient_cells, mean_shift, spectra
+from vehicle_pf_tracker.image import gradient_cells, mean_shift
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Coefficients, Positions, Window, WindowFeature
 
@@ -49,7 +49,6 @@ class Kernels:
     name = "opencv"
 
     gradient_cells = staticmethod(gradient_cells.gradient_cells)
-    correlated = staticmethod(spectra.correlated)
     kernel_similarity = staticmethod(mean_shift.kernel_similarity)
     mean_shift = staticmethod(mean_shift.mean_shift)
 

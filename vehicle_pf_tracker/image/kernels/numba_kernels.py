@@ -24,7 +24,7 @@ import numpy as np
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections, gradients_of
-from vehicle_pf_tracker.image.kernels import numba_correlation, numba_jit
+from vehicle_pf_tracker.image.kernels import numba_cells, numba_jit
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.kernels.numba_edges import TANGENTS, count_edges
 from vehicle_pf_tracker.image.kernels.numba_jit import Cells, Table, marginal_cells, pair_cells
@@ -129,8 +129,7 @@ class NumbaKernels(Kernels):
 
     name = "numba"
 
-    gradient_cells = staticmethod(numba_correlation.gradient_cells)
-    correlated = staticmethod(numba_correlation.correlated)
+    gradient_cells = staticmethod(numba_cells.gradient_cells)
     kernel_similarity = staticmethod(kernel_similarity)
     mean_shift = staticmethod(mean_shift)
 

@@ -44,21 +44,17 @@ class Spinner:
         The node; its context must outlive this object.
     stop : Event
         Once it is set, every wait ends with `Interrupted`.
-    watch : callable
-        Called during every wait; what it raises ends the wait.
     """
 
-    def __init__(self, node: Node, stop: Event, watch: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, node: Node, stop: Event) -> None:
         self._executor = SingleThreadedExecutor(context=node.context)
         self._executor.add_node(node)
         self._stop = stop
-        self._watch = watch
 
     def check(self) -> None:
-        """Raise `Interrupted` if the user asked to end, or what `watch` raises."""
+        """Raise `Interrupted` if the user asked to end."""
         if self._stop.is_set():
             raise Interrupted
-        self._watch()
 
     def until(self, holds: Callable[[], bool], timeout: float | None = None) -> bool:
         """Wait until `holds()`; False if it does not within `timeout` s (None: however long)."""

@@ -16,11 +16,9 @@
 
 from __future__ import annotations
 
-import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
 
 import rclpy
 from rclpy.context import Context
@@ -28,6 +26,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.signals import ending_signals, handled
 from vehicle_pf_tracker.recordings.messages import COMPRESSED_IMAGE
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.ros.replay.discovery import Spinner
@@ -47,22 +46,8 @@ def noted_interrupts() -> Iterator[threading.Event]:
     thread, where Python allows no handlers, signals stay as they are.
     """
     noted = threading.Event()
-    if threading.current_thread() is not threading.main_thread():
+    with handled(ending_signals(), lambda *_: noted.set()):
         yield noted
-        return
-
-    def note(*_: Any) -> None:
-        noted.set()
-
-    numbers = [signal.SIGINT, signal.SIGTERM]
-    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as nohup sets it
-        numbers.append(signal.SIGHUP)
-    before = {number: signal.signal(number, note) for number in numbers}
-    try:
-        yield noted
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 NODE_NAME = "bag_replay"
@@ -73,7 +58,6 @@ def replay(
     options: ReplayOptions,
     on_progress: Callable[[Progress], None] = lambda progress: None,
     tell: Callable[[str], None] = lambda sentence: None,
-    watch: Callable[[], None] = lambda: None,
 ) -> ReplayReport:
     """Play a recording to tracker nodes and collect what they answer.
 
@@ -90,8 +74,6 @@ def replay(
         Called after each image.
     tell : callable
         Called with sentences for the user while it is getting ready.
-    watch : callable
-        Called all the time; raises to end the replay, as when a node's process has ended.
 
     Raises
     ------
@@ -101,7 +83,7 @@ def replay(
         If a node is missing, refuses the target or does not answer in time.
     """
     with noted_interrupts() as stop, _ros_node(recording, options, tell) as node:
-        spinner = Spinner(node, stop, watch)
+        spinner = Spinner(node, stop)
         try:
             return Player(node, spinner, recording, options, on_progress, tell).run()
         finally:

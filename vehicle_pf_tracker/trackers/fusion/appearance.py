@@ -22,7 +22,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -34,7 +33,6 @@ from vehicle_pf_tracker.image.canonical_patch import Patch, cut_image, cut_patch
 from vehicle_pf_tracker.image.correlation_filter import (
     UPSAMPLING,
     CorrelationFilter,
-    FilterWeights,
     Response,
 )
 from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures, Grey
@@ -65,14 +63,19 @@ _LEAST_USUAL = 1e-3
 zeros."""
 _RIM = 1
 """Cells around the target that are measured with it: their gradients normalise its outermost."""
-_DATED_EVERY = 40
-"""Frames between two filters that are kept: in a second a vehicle turns."""
 _COLOURS = 3
 _HUE_GAIN = 4.0
 """Weight of Lab's a and b. Paint spans some 20 of their 100 units: unweighted, a grey car answers
 to the filter of a beige one of the same shape (scenes `bus` and `braking`, seeds 100 to 104)."""
 _COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32) / 100
 _COLOUR_MIDDLE = np.array([0.5, 0, 0], np.float32)
+_PAINTED = 0.6
+"""Middle of a box that paint is measured in, of each side."""
+_PAINT_SIDE = 8
+"""Side in px that it is resampled to."""
+_OTHER_CHROMA, _OTHER_LIGHTNESS = 9.0, 18.0
+"""Differences of paint, in units of Lab, above which two vehicles are not the same. Over each of 25
+sequences a tenth of the differences is larger; of those between sequences two thirds are."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,13 +138,6 @@ def _vertex(before: float, at: float, after: float) -> float:
     return min(max(0.5 * (before - after) / bend, -0.5), 0.5) if bend < 0 else 0.0
 
 
-class _Dated(NamedTuple):
-    """An earlier filter, and the usual response at its time."""
-
-    weights: FilterWeights
-    usual_response: float
-
-
 class Appearance:
     """Learns the target from patches of canonical size, and responds to others.
 
@@ -163,15 +159,13 @@ class Appearance:
         target = np.minimum(learnt * zoom, _LARGEST_SHARE * self._side)
         self._box = target * (size / learnt)
         self._kernels, self.first_size = kernels, size
-        self._filter = CorrelationFilter(_CELLS, target / CELL, options.penalty, kernels)
+        self._filter = CorrelationFilter(_CELLS, target / CELL, options.penalty)
         self.usual_response = 0.0
         self._least_usual = 0.0
-        self.dated: tuple[_Dated, ...] = ()
-        self._dated_next = 0
 
     def use_kernels(self, kernels: Kernels) -> None:
         """Measure gradients and multiply spectra by another implementation from now on."""
-        self._kernels = self._filter.kernels = kernels
+        self._kernels = kernels
 
     def patch(self, frame: Frame, position: Array, size: Array, *, wide: bool = False) -> Patch:
         """Cut the surroundings of a box of this centre and size (px) out of a frame."""
@@ -182,8 +176,8 @@ class Appearance:
         """Return the part of a wide patch that a usual one shows; a usual one itself."""
         return patch if patch.side == self._side else patch.middle(self._side)
 
-    def view(self, patch: Patch, *, recall: bool = False) -> View:
-        """Respond to a patch; with `recall`, by the best of the present and the dated filters."""
+    def view(self, patch: Patch) -> View:
+        """Respond to a patch."""
         wide = patch.side > self._side
         respond = self._filter.respond_wide if wide else self._filter.respond
         spectrum = self._spectrum(patch)
@@ -192,22 +186,7 @@ class Appearance:
             least = max(self._least_usual, _LEAST_USUAL)
             self.usual_response = max(float(response.max()), least)
         response = response / np.float32(self.usual_response)
-        for dated in self.dated if recall else ():
-            once = respond(spectrum, dated.weights) / np.float32(dated.usual_response)
-            response = np.maximum(response, once)
         return View(patch, None if wide else spectrum, response)
-
-    def remember(self, count: int, frame: int) -> None:
-        """Date the filter now and then: the first and the latest ones are kept, `count` in all."""
-        if frame < self._dated_next:
-            return
-        self._dated_next = frame + _DATED_EVERY
-        if self._filter.weights is None or not self.usual_response:
-            return
-        dated = *self.dated, _Dated(self._filter.weights, self.usual_response)
-        if len(dated) > count:
-            dated = (*dated[: min(count, 1)], *dated[len(dated) - max(count - 1, 0) :])
-        self.dated = dated
 
     def response_at(self, frame: Frame, position: Array, size: Array) -> float:
         """Response to a box of this centre and size (px), relative to the usual one."""
@@ -217,9 +196,10 @@ class Appearance:
         grey = np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), np.uint8)
         return self._filter.respond_in_middle(self._features(image, grey)) / self.usual_response
 
-    def learn_first(self, patch: Patch) -> None:
-        """Train the filter on the first patch, in whose middle the target is."""
-        spectrum = self._spectrum(patch)
+    def learn_first(self, frame: Frame, position: Array, size: Array) -> None:
+        """Train the filter on the first frame."""
+        self.learn_paint(frame, position, size)
+        spectrum = self._spectrum(self.patch(frame, position, size))
         self._filter.train(spectrum, 0.0)
         self._least_usual = _USUAL_SHARE * float(self._filter.respond(spectrum).max())
 
@@ -237,6 +217,15 @@ class Appearance:
         """Let the usual response follow one of a visible frame, given relative to it."""
         self.usual_response *= 1 + rate * (response - 1)
 
+    def learn_paint(self, frame: Frame, position: Array, size: Array) -> None:
+        """Measure the paint of a vehicle that is clearly seen whole: occluders have another."""
+        self._paint = _paint(frame, position, size)
+
+    def unlike(self, frame: Frame, size: Array, position: Array) -> float:
+        """How far the paint in a box is from the one learnt last: above 1 it is another."""
+        lightness, *chroma = (_paint(frame, position, size) - self._paint).tolist()
+        return float(max(abs(lightness) / _OTHER_LIGHTNESS, math.hypot(*chroma) / _OTHER_CHROMA))
+
     def _spectrum(self, patch: Patch) -> Spectrum:
         wide = patch.side > self._side
         transform = self._filter.wide_spectrum if wide else self._filter.spectrum
@@ -250,6 +239,13 @@ class Appearance:
         # Lightness is 0 to 100, a and b about as much to either side: all within about one.
         features[GRADIENT_CHANNELS:] = (lab * _COLOUR_GAINS - _COLOUR_MIDDLE).transpose(2, 0, 1)
         return features
+
+
+def _paint(frame: Frame, position: Array, size: Array) -> Array:
+    """Median of the colours in the middle of a box, as L, a and b."""
+    small = cut_image(frame, position, _PAINT_SIDE / (_PAINTED * size), (_PAINT_SIDE, _PAINT_SIDE))
+    lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
+    return np.asarray(np.median(lab.reshape(-1, 3), axis=0), float)
 
 
 _DIRECTIONS = ((1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))

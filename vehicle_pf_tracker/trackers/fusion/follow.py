@@ -149,11 +149,10 @@ def _learn_sighting(state: State, seen: Observation, step: Step) -> None:
         memory.points.restart()
     if _is_sure(state) and seen.response > CLEAR_RESPONSE:
         memory.surface.learn_usual()
+        memory.appearance.learn_paint(step.frame, state.position, state.size)
     if Work.SIZE in state.work:
         memory.points.renew(state.position, state.size, whole=state.is_whole)
     _learn_appearance(state, seen, step)
-    if state.work is not Work.BOTH:  # in full view
-        memory.appearance.remember(step.parameters.filter.memory, state.frames)
     if state.is_whole:
         memory.strangers.measure(seen.view, state.position, state.size)
     if seen.again:  # what was kept shows an occluder; until now its share bounds the learning

@@ -89,7 +89,7 @@ def _set_off(state: State, step: Step) -> State:
 
 def _driven(state: State, step: Step) -> State:
     """Drive all hypotheses on; a hidden vehicle grows as they do."""
-    motion, rates, elapsed = step.parameters.motion, step.parameters.visibility, step.elapsed
+    motion, elapsed = step.parameters.motion, step.elapsed
     particles, size, extent = state.particles, state.size, state.extent
     seen = state.visibility.is_seen
     sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
@@ -101,7 +101,7 @@ def _driven(state: State, step: Step) -> State:
         )
     across = 1.0 if seen else ACROSS_LANES
     driven = particles.driven(step.rng, elapsed, sigmas, across=across)
-    driven = driven.passed(elapsed, rates.hiding_rate, rates.return_rate)
+    driven = driven.passed(elapsed)
     return replace(
         state,
         particles=replace(driven, positions=step.inside(driven.positions)),
@@ -144,7 +144,7 @@ def _look(state: State, step: Step, scale: float) -> tuple[View, Array, Array]:
     appearance, options = step.memory.appearance, step.parameters
     wide = hidden and particles.spread > _WIDE_FROM * state.extent
     patch = appearance.patch(step.frame, particles.mean, scale * state.size, wide=wide)
-    view = appearance.view(patch, recall=hidden and options.filter.memory > 0)
+    view = appearance.view(patch)
     climb = STAY if state.sets_off else CLIMB_ON_PATH if hidden else CLIMB_FREELY
     return view, *response_evidence(view, particles.positions, climb, options.visibility)
 

@@ -47,11 +47,6 @@ class FilterParameters:
         "Higher: a smoother filter, which discriminates less and bears changed appearance longer.",
         bounds=(0.001, 100.0), source="STRCF, first gamma", effect="relearns", tuned=(0.03, 1.0),
     )  # fmt: skip
-    memory: int = parameter(
-        3,
-        "More: a hidden vehicle is recognised by what it looked like at more times; 0: only last.",
-        bounds=(0, 20), unit="dated filters",
-    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,14 +90,6 @@ class VisibilityParameters:
     points_slope: float = parameter(
         4.0, "Higher: how many points move with the vehicle counts more; 0: they are not tracked.",
         bounds=(0.0, 50.0), unit="log ratio per usual share", tuned=(0.5, 8.0),
-    )  # fmt: skip
-    hiding_rate: float = parameter(
-        0.02, "Probability that a visible vehicle is hidden in the next frame.",
-        bounds=(1e-6, 0.5), unit="per frame",
-    )  # fmt: skip
-    return_rate: float = parameter(
-        0.05, "Probability that a hidden vehicle is visible in the next frame.",
-        bounds=(1e-6, 0.5), unit="per frame",
     )  # fmt: skip
     partial_slope: float = parameter(
         8.0, "Higher: a vehicle is taken as partly hidden sooner; 0: never, and walls are learnt.",

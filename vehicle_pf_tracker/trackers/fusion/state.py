@@ -156,6 +156,11 @@ class Step:
         """Bound width and height."""
         return np.clip(size, _LEAST_SIDE, _LARGEST_SHARE * max(frame_size(self.frame)))
 
+    def share_inside(self, position: Array, size: Array) -> float:
+        """Share of a box that is inside the image."""
+        ends = np.clip([position - size / 2, position + size / 2], 0, frame_size(self.frame))
+        return float(((ends[1] - ends[0]) / size).prod())
+
     @property
     def hidden_velocity_sigma(self) -> float:
         """Change of a hidden vehicle's velocity, of the size, per frame squared.

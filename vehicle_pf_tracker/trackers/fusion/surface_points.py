@@ -32,15 +32,13 @@ from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.shared_motion import Found, PointFlow, Points
 
-_GRID = 6
-"""Points along each axis of a set: two thirds of 36 may be lost until they tell no more of the size
+_GRID = 8
+"""Points along each axis: four fifths of 64 may be lost until they tell no more of the size
 (`shared_motion.FEWEST_POINTS`)."""
 _REACH = 0.4
 """Outermost points from the centre, of the size: the box's rim is background."""
-_SEEDED_EVERY = 5
-"""Frames between two sets: points that are lost are soon replaced."""
-_OLDEST = 10
-"""Age in frames at which a set ends; two sets overlap, so that sizes are told all the time."""
+_RENEWED_AFTER, _OLDEST = 5, 10
+"""Age in frames of points that are replaced, and the same where a part of the vehicle is hidden."""
 _STRAYED = 0.2
 """A point farther than this (fraction of the box size) from its predicted position in the box has
 left the vehicle; the prediction turns with the other points."""
@@ -60,8 +58,8 @@ _FIRST_ALIKE_PX = 2.0
 
 
 @dataclass(slots=True, eq=False)
-class _PointSet:
-    """Points placed in one frame: places in the box, positions (px), whether each lives, age."""
+class _Points:
+    """Places in the box, positions (px), whether each lives, and their age in frames."""
 
     places: Array
     positions: Array
@@ -70,7 +68,7 @@ class _PointSet:
 
 
 class SurfacePoints:
-    """Sets of points on the vehicle.
+    """Points on the vehicle.
 
     Attributes
     ----------
@@ -84,7 +82,7 @@ class SurfacePoints:
 
     def restart(self) -> None:
         """Discard all points."""
-        self.sets: list[_PointSet] = []
+        self.points: _Points | None = None
         self.stretch = np.zeros(2)
 
     def keep(self, patch: Patch, position: Array) -> None:
@@ -123,41 +121,31 @@ class SurfacePoints:
             Estimated centre, and width and height, px; the search starts from the displacement
             since the patch that was kept.
         """
-        self.stretch = np.zeros(2)
-        self._move_points(patch, position, size)
-        for points in self.sets:
-            points.age += 1
-            present = (points.positions - position) / size
-            points.alive = shared_motion.staying(points.places, present, points.alive, _STRAYED)
-
-    def renew(self, position: Array, size: Array, *, whole: bool = True) -> None:
-        """End old sets, and place a new one if it is time, and the vehicle is whole or has none."""
-        self.sets = [points for points in self.sets if points.age < _OLDEST]
-        youngest = min((points.age for points in self.sets), default=None)
-        if youngest is None or (youngest >= _SEEDED_EVERY and whole):
-            places = _grid(_GRID, _REACH)
-            alive = np.ones(len(places), bool)
-            self.sets.append(_PointSet(places, position + places * size, alive))
-
-    def _move_points(self, patch: Patch, position: Array, size: Array) -> None:
-        alive = np.concatenate([points.alive for points in self.sets] or [np.zeros(0, bool)])
-        if self._previous is None or not alive.any():
+        self.stretch, points = np.zeros(2), self.points
+        if self._previous is None or points is None:
+            return
+        points.age += 1
+        if not points.alive.any():
             return
         previous, started = self._previous
-        positions = np.concatenate([points.positions for points in self.sets])
-        before = positions[alive]
+        before = points.positions[points.alive]
         start = np.asarray(previous.to_patch(before) - 0.5, np.float32)
         guess = np.asarray(patch.to_patch(before + position - started) - 0.5, np.float32)
         end, found = _flow(previous, patch, start, guess, _FLOW)
         after = patch.to_frame(end.astype(np.float64) + 0.5)
         self.stretch = shared_motion.shared_stretch(before[found], after[found], size)
-        positions[alive] = after
-        alive[alive] = found
-        place = 0
-        for points in self.sets:
-            part = slice(place, place + len(points.alive))
-            points.positions, points.alive = positions[part], alive[part]
-            place = part.stop
+        points.positions[points.alive] = after
+        points.alive[points.alive] = found
+        present = (points.positions - position) / size
+        points.alive = shared_motion.staying(points.places, present, points.alive, _STRAYED)
+
+    def renew(self, position: Array, size: Array, *, whole: bool = True) -> None:
+        """Place new points if it is time."""
+        age = _OLDEST if self.points is None else self.points.age
+        if age >= (_RENEWED_AFTER if whole else _OLDEST):
+            places = _grid(_GRID, _REACH)
+            alive = np.ones(len(places), bool)
+            self.points = _Points(places, position + places * size, alive)
 
 
 @functools.cache

@@ -87,7 +87,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         size = np.array([target.box.width, target.box.height])
         learnt = np.array([window.width or size[0], window.height or size[1]])
         appearance = Appearance(self.kernels, size, learnt, self.parameters.filter)
-        appearance.learn_first(appearance.patch(target.patch, np.array(target.centre), size))
+        appearance.learn_first(target.patch, np.array(target.centre), size)
         self._memory.appearance = appearance
 
     def reconfigure(self, parameters: FusionParameters) -> None:

@@ -20,12 +20,14 @@ of them is weighed here, and whether all of a visible vehicle is seen.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import replace
 
 import numpy as np
 
 from vehicle_pf_tracker.trackers.fusion.departure import Departure, is_too_far
+from vehicle_pf_tracker.trackers.fusion.hypotheses import chain
 from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
@@ -52,15 +54,16 @@ def judge(state: State, seen: Observation, step: Step) -> State:
         state = _witnessed(state, seen, step)
     visible = state.particles.probability_visible > 0.5
     turning = step.memory.turning
+    unlike = functools.partial(step.memory.appearance.unlike, step.frame)
     departure, turned = _departure(state, step, visible=visible), None
     if departure is not None:
         visibility = Visibility.GONE
-    elif (turned := turning.follow(step.elapsed, seen.view)) is not None:
+    elif (turned := turning.follow(step.elapsed, seen.view, unlike)) is not None:
         visibility = Visibility.TURNING
     elif not visible:
         visibility = Visibility.HIDDEN
     else:
-        state = _judged_whole(state, step, again=seen.again)
+        state = _judged_whole(state, seen, step)
         visibility = Visibility.VISIBLE if state.is_whole else Visibility.PARTLY_HIDDEN
     if departure is not None or (turned is None and visible):
         turning.end()
@@ -113,14 +116,15 @@ def _departure(state: State, step: Step, *, visible: bool) -> Departure | None:
     return None
 
 
-def _judged_whole(state: State, step: Step, *, again: bool) -> State:
+def _judged_whole(state: State, seen: Observation, step: Step) -> State:
     """Judge whether all of the vehicle is seen; predict the size of one that is partly hidden.
 
-    It grows as it did in the sightings before: what shows of it tells no size.
+    It grows as it did in the sightings before: what shows of it tells no size. What is outside the
+    image is hidden like what is behind an occluder.
     """
     whole = state.whole
-    if not again:  # until then the share is of what was there before
-        share = step.memory.surface.share
+    if not seen.again:  # until then the share is of what was there before
+        share = step.memory.surface.share * step.share_inside(seen.position, state.size)
         whole = wholeness(whole, share, step.elapsed, step.parameters.visibility)
     if whole > 0.5:
         return replace(state, whole=whole)
@@ -128,7 +132,7 @@ def _judged_whole(state: State, step: Step, *, again: bool) -> State:
     if state.is_whole:
         fitted = step.memory.sightings.fit()
         growth = 0.0 if fitted is None else fitted[0].rate
-    if state.is_whole or again:
+    if state.is_whole or seen.again:
         measured = state.size
     grown = state.size * math.exp(growth * step.elapsed)
     grown = np.clip(grown, measured / _LARGEST_PARTIAL, measured * _LARGEST_PARTIAL)
@@ -143,9 +147,8 @@ def wholeness(
     *Whole* and *partial* are a Markov chain. Covering begins and ends as often as occlusions do; an
     occluder shows in the share while response and position do not yet fall.
     """
-    covered = 1 - (1 - parameters.hiding_rate) ** elapsed
-    uncovered = 1 - (1 - parameters.return_rate) ** elapsed
-    before = before * (1 - covered) + (1 - before) * uncovered
+    stays, returns = chain(elapsed)
+    before = before * stays + (1 - before) * returns
     ratio = parameters.partial_slope * (share - parameters.partial_middle)
     bound = _LARGEST_PARTIAL_LOG_RATIO
     whole = before * math.exp(min(max(ratio, -bound), bound))

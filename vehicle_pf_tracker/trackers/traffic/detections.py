@@ -44,6 +44,8 @@ vehicles; a detector that reports more is out of order, and association would ta
 
 INSIDE = 0.7
 """Share of a box inside another one above which it is a part of it: a bonnet, a second box."""
+HALF, LITTLE = 0.5, 0.1
+"""Shares of a box, or of what is counted, above which it is most of it, and below which none."""
 NOTHING = np.empty((0, 4))
 """No boxes."""
 _LARGEST_SHARE = 4
@@ -169,7 +171,7 @@ _MEMORY = 1500.0
 _FALSE_ALARMS, _IMAGES = 1.0, 50.0
 """False alarms per image that are expected before any is seen, and the images that this, and the
 mean of all places for the number of one, are worth."""
-_LARGEST_LOG_ODDS = 6.0
+_LARGEST_LOG_ODDS = 7.0
 
 
 class Sample(NamedTuple):
@@ -279,28 +281,10 @@ def _columns(samples: list[Sample]) -> tuple[Array, IntArray, IntArray]:
 
 @dataclass(frozen=True, slots=True)
 class TrafficNumbers:
-    """Weights and thresholds of `traffic` that can be fitted but that no user turns.
-
-    `laboratory/traffic_fit.py` fits them to synthetic scenes. The defaults were chosen by hand;
-    laboratory/notes/traffic.md has the comparison.
+    """Thresholds of the detection of motion.
 
     Attributes
     ----------
-    agreement : float
-        Log odds that a detection adds by being where a track predicts it.
-    proven_by_scores : float
-        Sum of the log odds of scores above which no drive is asked for.
-    missed_held, missed_hidden : float
-        Log odds that a detection missed in plain sight takes off a vehicle that its pixels hold,
-        and off one that may be hidden by something unknown.
-    partial : float
-        Cost of taking a detection for a part of the vehicle.
-    missing : float
-        Cost of all of the vehicle that the detection lacks.
-    held_fall : float
-        Fall of the colours' similarity below its usual value above which pixels do not hold it.
-    held_caution : float
-        Factor on the deviations of pixels: errors of successive frames go the same way and add up.
     colour_threshold : float
         Least sum of the differences of the three channels of a pixel that has changed.
     patience : float
@@ -312,14 +296,6 @@ class TrafficNumbers:
         Advantage in shape above which a blob is taken for several vehicles.
     """
 
-    agreement: float = 1.2
-    proven_by_scores: float = 4.0
-    missed_held: float = 0.3
-    missed_hidden: float = 0.12
-    partial: float = 3.0
-    missing: float = 12.0
-    held_fall: float = 0.15
-    held_caution: float = 1.5
     colour_threshold: float = 32.0
     patience: float = 100.0
     shadow: float = 0.6

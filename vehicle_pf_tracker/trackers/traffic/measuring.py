@@ -28,44 +28,28 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import INWARD, cut_edges, deviations
-from vehicle_pf_tracker.trackers.traffic.detections import INSIDE, areas
+from vehicle_pf_tracker.trackers.traffic.detections import INSIDE, LITTLE, areas
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import (
-    CONTRADICTIONS,
+from vehicle_pf_tracker.trackers.traffic.track import FEW, RATE, Track, edges_of
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
+    FAR,
     SETTLED_AFTER,
-    Track,
-    edges_of,
+    Drive,
+    Edge,
+    VehicleState,
 )
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
-_PUSHED = 1.0
-"""Standard deviations that the opposite edge may at most be pushed out by, where an edge is drawn
-in because it is covered. A vehicle that brakes pushes it out."""
 _WHOLE = 0.85
 """Share of the width or height, of the predicted and of the latest detections, below which one of
 the two edges is covered: at the rim of an occluder the edge does not jump, it creeps, and would
 brake the vehicle."""
-_LESS = 0.95
-"""Share of the latest detections' width or height below which an edge can have jumped inward: a
-box of the same size as before is not covered, it was predicted wrong."""
-_FADED = 0.985
-"""Decay per detection of the largest latest width and height: a vehicle that drives away
-becomes smaller by about 1 % per frame."""
-_SETTLED = 4
-"""Least detections by which a box is known well enough to tell that an edge is covered."""
 _ASPECT = 0.8
 """Height of a vehicle over its width where a border cuts it when it is first seen: that of cars
 from the front. From the side it is half of it, hence the deviation."""
 _ASPECT_DEVIATION = 0.25
 _IMPLAUSIBLE = 0.6
 """Side of a first box, of the usual one, below which something hides a part: its edges may grow."""
-_BESIDE = 0.1
-"""Share of another detection up to which it overlaps with this one and is still beside it."""
-_NOTABLE = 0.15
-"""Share of the prediction above which another detection in it is no fragment."""
-_DRIFT_RATE = 0.25
-"""Rate per detection at which the mean residual of an edge follows."""
-_CONTRADICTED = 5.0
+_CONTRADICTED = 4.0
 """Sum of the squared mean residuals, of the edges whose opposite went as far, from which a drive is
 wrong. At 2.5 the errors that detectors repeat are followed, too: HOTA of CenterNet on the exam's
 clip falls by one; at 9 more boxes stay behind vehicles that come near."""
@@ -139,27 +123,27 @@ def measure(
     opposite = normal[:, _OPPOSITE]
     unknown = cut_edges(edges, size) & cut_edges(predicted, size)
     sides = edges[:, 2:] - edges[:, :2]
-    latest = np.maximum(sides, _FADED * np.array([track.sides for track in tracks]))
+    latest = np.maximum(sides, np.array([track.sides for track in tracks]))
     shrunk = sides < _WHOLE * np.minimum(predicted[:, 2:] - predicted[:, :2], latest)
-    less = sides < _LESS * latest
-    jumped = np.tile(less, 2) & (normal > settings.covered) & (opposite > -_PUSHED)
+    jumped = (normal > FAR) & (opposite > 0)  # a vehicle that brakes pushes it out
     crept = np.tile(shrunk, 2) & (normal > np.maximum(opposite, 0.0))
     covered = (jumped | crept) & ~unknown
-    patient = np.array([one.matches >= _SETTLED and one.partial < SETTLED_AFTER for one in tracks])
+    patient = np.array([one.matches >= FEW and one.partial < SETTLED_AFTER for one in tracks])
     left_out = unknown | (covered & patient[:, np.newaxis])
-    _doubt_drives(tracks, states, np.where(left_out, 0.0, (predicted - edges) * INWARD), spread)
+    residuals = np.where(left_out, 0.0, (predicted - edges) * INWARD)
+    drifts = _doubt_drives(tracks, states, residuals, spread)
     states.measure(edges, np.where(left_out, np.inf, spread))
     states.give_back([track.state for track in tracks])
     whole = ~covered.any(axis=1)
-    for track, own, is_whole in zip(tracks, latest, whole.tolist(), strict=True):
-        track.measured(own, is_whole=is_whole)
+    for track, own, drift, is_whole in zip(tracks, latest, drifts, whole.tolist(), strict=True):
+        track.measured(own, drift, is_whole=is_whole)
     return np.asarray(whole)
 
 
 def _doubt_drives(
     tracks: Sequence[Track], states: VehicleState, residuals: Array, spread: Array
-) -> None:
-    """Be less sure of drives that detections keep contradicting: the next ones count for more.
+) -> Array:
+    """Be less sure of drives that detections keep contradicting; the drifts (N, 4) from now on.
 
     Where the horizon is wrong or the road bends, a drive is wrong in every frame by a little, on
     the same side, and a state that is sure of it would stay behind until no detection fits. The
@@ -181,7 +165,7 @@ def _doubt_drives(
     variances = states.edge_covariance.diagonal(axis1=1, axis2=2)
     alone = (intersections(states.edges[:, np.newaxis], states.edges) > 0).sum(axis=1) == 1
     drift = np.array([track.drift for track in tracks])
-    drift += _DRIFT_RATE * (residuals / np.sqrt(variances + spread**2) - drift)
+    drift += RATE * (residuals / np.sqrt(variances + spread**2) - drift)
     outward = np.clip(drift, 0.0, np.abs(drift[:, _OPPOSITE]))
     seen = (residuals > 0) & (outward > 0)
     expected = np.where(seen, variances, 0.0).sum(axis=1)
@@ -190,8 +174,7 @@ def _doubt_drives(
     wider = np.where(wrong, lacking / np.where(wrong, expected, 1.0), 1.0)
     states.covariance *= wider[:, np.newaxis, np.newaxis]
     drift[wrong] = 0.0
-    for track, own in zip(tracks, drift, strict=True):
-        track.drift = own
+    return drift
 
 
 def _divide(tracks: Sequence[Track], edges: Array, others: Array) -> None:
@@ -212,11 +195,11 @@ def _divide(tracks: Sequence[Track], edges: Array, others: Array) -> None:
     predicted = edges_of(tracks)
     each, own = predicted[:, np.newaxis], edges[:, np.newaxis]
     beside = (
-        (intersections(each, others) > _NOTABLE * areas(each))
-        & (intersections(own, others) < _BESIDE * areas(others))
+        (intersections(each, others) > LITTLE * areas(each))
+        & (intersections(own, others) < LITTLE * areas(others))
         & (others[:, Edge.BOTTOM] < own[..., Edge.BOTTOM])
     ).any(axis=1)
     known = intersections(predicted, edges) > INSIDE * areas(edges)
     for track, box, crowded in zip(tracks, edges, (known & beside).tolist(), strict=True):
-        if track.crowd(crowded=crowded) >= CONTRADICTIONS:
+        if track.crowd(crowded=crowded) >= FEW:
             track.shrink_to(box)

@@ -22,13 +22,8 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.detections import NOTHING, areas, inside_image
-from vehicle_pf_tracker.trackers.traffic.track import Track, edges_of
-
-_OCCLUDER_SEEN = 3.0
-"""Nominal periods since it was seen, up to which a vehicle can hide others."""
-_NAMED_SHARE = 0.3
-"""Share of a vehicle above which the one that hides it is named as its occluder."""
+from vehicle_pf_tracker.trackers.traffic.detections import HALF, NOTHING, areas, inside_image
+from vehicle_pf_tracker.trackers.traffic.track import SEEN_WITHIN, Track, edges_of
 
 
 def nearest_first(tracks: Sequence[Track], road: RoadPlane | None) -> list[Track]:
@@ -66,11 +61,11 @@ def cover(tracks: Sequence[Track], size: tuple[int, int], occlusions: bool) -> N
     hiding = [
         rank
         for rank, one in enumerate(tracks)
-        if occlusions and one.confirmed and one.unseen <= _OCCLUDER_SEEN and not one.lost
+        if occlusions and one.confirmed and one.unseen <= SEEN_WITHIN and not one.lost
     ]
     common = intersections(edges[:, np.newaxis], edges[hiding]) / areas(edges)[:, np.newaxis]
     common[np.arange(len(tracks))[:, np.newaxis] <= np.array(hiding, dtype=np.intp)] = 0.0
-    most = common.max(axis=1, initial=0.0) > _NAMED_SHARE
+    most = common.max(axis=1, initial=0.0) > HALF
     visible = np.maximum(1 - common.sum(axis=1), 0.0).tolist()
     for track, row, inside, seen, named in zip(
         tracks, common, inside_image(edges, size).tolist(), visible, most.tolist(), strict=True

@@ -52,25 +52,12 @@ class DetectionParameters:
         0.05, "Larger: boxes are smoothed more.", bounds=(0.001, 0.5), unit="of the size",
         tuned=(0.02, 0.1),
     )  # fmt: skip
-    covered: float = parameter(
-        2.5, "Smaller: an edge that jumps inward is sooner taken to be covered and not measured.",
-        bounds=(0.5, 20.0), unit="standard deviations", tuned=(1.5, 4.0),
-    )  # fmt: skip
-    colour_cost: float = parameter(
-        8.0,
-        "Higher: colours count more in deciding which detection is which vehicle; 0: not at all.",
-        bounds=(0.0, 100.0), tuned=(0.0, 20.0),
-    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
 class BirthParameters:
     """Evidence that a new vehicle needs."""
 
-    matches: int = parameter(
-        3, "More: a new vehicle is reported later, and fewer false ones are.", bounds=(1, 100),
-        unit="detections", tuned=(2, 6),
-    )  # fmt: skip
     evidence: float = parameter(
         3.0, "Higher: a new vehicle is reported later, and fewer false ones are.",
         bounds=(0.0, 8.0), unit="log odds", tuned=(1.0, 6.0),

@@ -30,43 +30,23 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.shared_motion import PointFlow
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
-from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, TrafficNumbers, areas
-from vehicle_pf_tracker.trackers.traffic.track import Track
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import V, X
+from vehicle_pf_tracker.trackers.traffic.detections import HALF, areas
+from vehicle_pf_tracker.trackers.traffic.track import FALL, FEW, Track
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR, PIXEL_NOISE, V, X
 
 Grey: TypeAlias = npt.NDArray[np.uint8]
 
 _GRID = 5
-"""Points along each side of a box."""
+"""Points along each side of a box, the fewest that a motion is taken from, and as many as count as
+independent: neighbours err together."""
 _REACH = 0.8
 """Part of the box that points are placed in; its rim is background."""
-_ROUND_TRIP_PX = 0.7
-"""Largest error of a point that was followed forth and back (Kalal et al. 2010)."""
-_POINT_SIGMA_PX = 0.5
-"""Standard deviation of a point's flow."""
-_FEWEST = 5
-"""Fewest points that a motion is taken from."""
 _OUTLIER = 0.02
 """Likelihood of a point that went elsewhere."""
-_INDEPENDENT = 6.0
-"""Number of points that count as independent: neighbours err together."""
-_AGREEING = 9.0
-"""Squared standard deviations within which a point agrees with a motion."""
-_LEAST_SHARE = 0.5
-"""Share of the points that must agree."""
-_GROWTH_SIGMA = 0.02
-"""Standard deviation of the change of size in a frame beyond the predicted one."""
-_DRIVES_PX = 0.7
-"""Least predicted way in a frame that tells standing points from those on the vehicle, px."""
+_SLIP = 0.02
+"""Standard deviation, of its size, by which a box grows or slips on its vehicle in a frame."""
 _STANDS = 0.4
 """Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
-_SLIP, _SLIP_PX = 0.02, 0.3
-"""Standard deviation by which a box slips on its vehicle in a frame, of its size and in px."""
-_HELD_WITHIN = 4.0
-"""Nominal periods since it was seen, up to which pixels can hold a vehicle: later the points lie on
-what hides it."""
-_HELD_SHARE = 0.3
-"""Least visible share of a vehicle, and share in the image, for pixels to hold it."""
 _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 
 
@@ -79,16 +59,9 @@ class Hold:
 
 
 class PixelHold:
-    """Flow between two frames, of points in boxes.
+    """Flow between two frames, of points in boxes."""
 
-    Parameters
-    ----------
-    numbers : TrafficNumbers
-        Thresholds.
-    """
-
-    def __init__(self, numbers: TrafficNumbers = SHIPPED) -> None:
-        self._numbers = numbers
+    def __init__(self) -> None:
         self._before: Grey | None = None
         self._present: Grey | None = None
 
@@ -103,8 +76,8 @@ class PixelHold:
             for track in tracks
             if track.confirmed
             and track.undetected > 0
-            and track.unseen < _HELD_WITHIN
-            and min(track.visible, track.inside) > _HELD_SHARE
+            and track.unseen < FEW  # later the points lie on what hides it
+            and track.in_sight
         ]
         for track, hold in zip(held, self.measure(held, colours, normals), strict=True):
             if hold is not None:
@@ -132,7 +105,7 @@ class PixelHold:
         moved = _follow(before, present, np.concatenate(starts), np.concatenate(guesses))
         parts = np.split(moved, np.cumsum([len(one) for one in starts])[:-1])
         return [
-            _hold(track, old, new, normals, colours, self._numbers)
+            _hold(track, old, new, normals, colours)
             for track, old, new in zip(tracks, starts, parts, strict=True)
         ]
 
@@ -143,13 +116,12 @@ def _hold(
     new: Array,
     normals: Array,
     colours: ColourBins,
-    numbers: TrafficNumbers,
 ) -> Hold | None:
     """Weight particles by the flow of one vehicle's points."""
     before, predicted = track.before, track.state.edges
     found = np.isfinite(new[:, 0])
     alive = found & ~_standing(old, new, before, predicted)
-    if alive.sum() < max(_FEWEST, _LEAST_SHARE * found.sum()):
+    if alive.sum() < max(_GRID, HALF * found.sum()):
         return None
     centre, size = (predicted[:2] + predicted[2:]) / 2, predicted[2:] - predicted[:2]
     relative = (old[alive] - (before[:2] + before[2:]) / 2) * _growth(before, predicted)
@@ -157,13 +129,13 @@ def _hold(
     particles = _particles(track, observed - relative, normals)
     expected = (1 + particles[:, 2])[:, np.newaxis, np.newaxis] * relative
     expected += particles[:, np.newaxis, :2]
-    squared = ((observed - expected) ** 2).sum(axis=2) / _POINT_SIGMA_PX**2
+    squared = ((observed - expected) ** 2).sum(axis=2) / PIXEL_NOISE**2
     logs = np.log(np.exp(-squared / 2) + _OUTLIER).mean(axis=1)
-    logs *= min(_INDEPENDENT, float(len(relative)))
+    logs *= min(_GRID, len(relative))
     middles = centre + particles[:, :2]
     halves = size * (1 + particles[:, 2:]) / 2
     boxes = np.hstack([middles - halves, middles + halves])
-    if (squared[int(np.argmax(logs))] < _AGREEING).mean() < _LEAST_SHARE:
+    if (squared[int(np.argmax(logs))] < FAR**2).mean() < HALF:
         return None
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
@@ -171,18 +143,18 @@ def _hold(
     fall = track.usual_similarity - similarity(
         track.colours, colours.histogram(edges, track.covers)
     )
-    if fall > numbers.held_fall:
+    if fall > FALL:
         return None
     spread = np.sqrt(weights @ (boxes - edges) ** 2)
     sides = np.tile(edges[2:] - edges[:2], 2)
-    return Hold(edges, numbers.held_caution * (np.hypot(spread, _SLIP * sides) + _SLIP_PX))
+    return Hold(edges, (np.hypot(spread, _SLIP * sides) + PIXEL_NOISE))
 
 
 def _standing(old: Array, new: Array, before: Array, predicted: Array) -> npt.NDArray[np.bool_]:
     """Points that stand while the vehicle drives: they lie on what hides it."""
     drive = (predicted[:2] + predicted[2:] - before[:2] - before[2:]) / 2
     length = float(np.hypot(*drive))
-    if length < _DRIVES_PX:
+    if length < PIXEL_NOISE:
         return np.zeros(len(old), dtype=np.bool_)
     return np.asarray(np.hypot(*(new - old).T) < _STANDS * length)
 
@@ -194,10 +166,10 @@ def _particles(track: Track, motions: Array, normals: Array) -> Array:
     prediction may be far off.
     """
     covariance = track.state.covariance
-    place = np.sqrt([covariance[X, X], covariance[V, V]]) + _POINT_SIGMA_PX
-    spread = np.append(place, _GROWTH_SIGMA)
+    place = np.sqrt([covariance[X, X], covariance[V, V]]) + PIXEL_NOISE
+    spread = np.append(place, _SLIP)
     particles = np.asarray(normals * spread)
-    particles[::2, :2] = np.median(motions, axis=0) + normals[::2, :2] * _POINT_SIGMA_PX
+    particles[::2, :2] = np.median(motions, axis=0) + normals[::2, :2] * PIXEL_NOISE
     return particles
 
 
@@ -209,7 +181,7 @@ def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
     start, first = (old - 0.5).astype(np.float32), (guess - 0.5).astype(np.float32)
     new, found, error = _FLOW.follow_and_return(before, present, start, first)
     moved = new.astype(np.float64) + 0.5
-    moved[~found | (np.abs(error).max(axis=1) > _ROUND_TRIP_PX)] = np.nan
+    moved[~found | (np.abs(error).max(axis=1) > PIXEL_NOISE)] = np.nan
     return moved
 
 

@@ -24,27 +24,27 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.colours import BINS
-from vehicle_pf_tracker.trackers.traffic.detections import NOTHING, Sample
+from vehicle_pf_tracker.trackers.traffic.detections import HALF, NOTHING, Sample
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import SETTLED_AFTER, Drive, VehicleState
 
-MOST_EVIDENCE = 8.0
-"""Bound of the log odds that a vehicle exists: however long it was seen, some ten missed
-detections in plain sight speak against it."""
+CERTAIN = 7.0
+"""Log odds, one in a thousand, beyond which nothing is surer: however long a vehicle was seen, some
+missed detections in plain sight speak against it."""
 SEEN_WITHIN = 2.0
 """Nominal periods within which a vehicle counts as seen: one frame may fail."""
-SETTLED_AFTER = 30
-"""Detections, one second of 30 Hz, by which what a track shows is no passing state: a covered edge,
-a part of another vehicle, standing still."""
-CONTRADICTIONS = 3
-"""Detections in a row that tell a wrong size: one may have been torn apart, or joined, by chance."""
-PLAIN_SIGHT = 0.5
-"""Share of a vehicle that no other hides, and in the image, in which it ought to be detected."""
-_COLOUR_RATE = 0.1
-"""Rate per detection at which colours and their usual similarity are learnt."""
+FEW = 4
+"""Detections, or nominal periods without one, that tell something: fewer come by chance."""
+RATE = 0.25
+"""Rate per detection at which colours, their usual similarity and residuals of edges are learnt:
+the latest four count for two thirds."""
+FALL = 0.2
+"""Fall of the colours' similarity below its usual value above which it is not the vehicle."""
 _FIRST_SIMILARITY = 0.9
 """Similarity of a vehicle's colours from frame to frame before it is known."""
+_STRAIGHT = 0.8
+"""Straightness of a drive, which a leap between two places that flicker cannot reach (0.75)."""
 _STRAIGHTEST = 1e-4
 """Share of the scatter that is left of the straightest drive: boxes have whole pixels."""
 _HIDDEN_CONFIDENCE = 0.5
@@ -147,7 +147,7 @@ class Track:
     @property
     def in_sight(self) -> bool:
         """True where nothing known hides it, and it is in the image."""
-        return min(self.visible, self.inside) > PLAIN_SIGHT
+        return min(self.visible, self.inside) > HALF
 
     @property
     def label(self) -> str:
@@ -171,7 +171,7 @@ class Track:
         """Become the vehicle of this number, by hand if it is `given`: then without a doubt."""
         self.identity, self.given = identity, given
         if given:
-            self.log_odds = MOST_EVIDENCE
+            self.log_odds = CERTAIN
 
     def resume(self, track: Track) -> None:
         """Go on where the new track is that this hidden vehicle turned out to be."""
@@ -191,9 +191,9 @@ class Track:
         if label:
             self.votes[label] = self.votes.get(label, 0) + 1
 
-    def measured(self, sides: Array, *, is_whole: bool) -> None:
-        """Take the largest latest sides (2,) in px, and whether a detection showed all of it."""
-        self.sides = sides
+    def measured(self, sides: Array, drift: Array, *, is_whole: bool) -> None:
+        """Take its largest sides (2,) in px, drift (4,), and if a detection showed all of it."""
+        self.sides, self.drift = sides, drift
         self.partial = 0 if is_whole else self.partial + 1
 
     def crowd(self, *, crowded: bool) -> int:
@@ -202,9 +202,9 @@ class Track:
         return self.crowded
 
     def outgrown_by(self, edges: Array) -> bool:
-        """Take a detection (4,) around its box; True where it was too small all along."""
+        """Take a detection (4,) around its box; True where that was too small all along."""
         young = self.undetected > 0 and self.in_sight and self.matches < SETTLED_AFTER
-        if not young or self.crowd(crowded=True) < CONTRADICTIONS:
+        if not young or self.crowd(crowded=True) < FEW:
             return False
         self.shrink_to(edges)
         return True
@@ -220,14 +220,18 @@ class Track:
         self.unseen = 0.0
         self.state.measure(edges, deviations)
 
+    def grow(self, edges: Array) -> None:
+        """Take a detection (4,) that shows the whole vehicle for how it grows."""
+        self.growth.add(edges)
+
     def learn_colours(self, colours: Array) -> None:
         """Let the colours follow those of a box in plain sight."""
         known = self.colours.any()
-        self.colours = self.colours + (_COLOUR_RATE if known else 1.0) * (colours - self.colours)
+        self.colours = self.colours + (RATE if known else 1.0) * (colours - self.colours)
 
     def learn_similarity(self, similarity: float) -> None:
         """Let the usual similarity of the colours follow that of a detected vehicle."""
-        self.usual_similarity += _COLOUR_RATE * (similarity - self.usual_similarity)
+        self.usual_similarity += RATE * (similarity - self.usual_similarity)
 
     def add_evidence(self, edges: Array, score: float, fit: float) -> None:
         """Take the evidence of a detection.
@@ -243,33 +247,33 @@ class Track:
         self.hidden_by = None
         self.matches += 1
         self.doubt = max(self.doubt - score, 0.0)
-        self.log_odds = min(self.log_odds + score + fit, MOST_EVIDENCE)
+        self.log_odds = min(self.log_odds + score + fit, CERTAIN)
         x, y = ((edges[:2] + edges[2:]) / 2).tolist()
         if self.matches == 1:
             self._first = np.array([x, y])
         time = self.age
         self._drive += (1, time, time**2, x, y, time * x, time * y, x * x + y * y)
 
-    def drive(self) -> tuple[float, float]:
-        """Tell how much its detections look like a straight drive at constant speed.
+    def drive(self) -> float:
+        """Evidence that its detections are a straight drive at constant speed.
 
-        Returns
-        -------
-        straightness, evidence : float
-            Share of their scatter that the drive explains; and the logarithm of how rarely
-            detections that shake independently in one place are as straight.
+        The logarithm of how rarely detections that shake independently in one place are as
+        straight.
         """
         count, time, squared, x, y, time_x, time_y, places = self._drive.tolist()
         if not count:
-            return 0.0, 0.0
+            return 0.0
         scatter = places - (x * x + y * y) / count
         duration = squared - time * time / count
         if scatter <= 0 or duration <= 0:
-            return 0.0, 0.0
+            return 0.0
         along_x, along_y = time_x - time * x / count, time_y - time * y / count
-        straightness = min((along_x**2 + along_y**2) / duration / scatter, 1.0)
+        # Share of their scatter that the drive explains.
+        straightness = float((along_x**2 + along_y**2) / duration / scatter)
+        if straightness < _STRAIGHT:
+            return 0.0
         # The share is distributed as Beta(1, count - 2): two slopes, of twice as many coordinates.
-        return straightness, -(count - 2) * math.log(max(1 - straightness, _STRAIGHTEST))
+        return float(2 - count) * math.log(max(1 - straightness, _STRAIGHTEST))
 
     def prove(self, doubted: float, sample: Sample) -> None:
         """Take the evidence by the score of a detection, of which it is not known what it shows."""
@@ -280,6 +284,12 @@ class Track:
     def judge(self, has_driven: bool) -> None:
         """Take whether its way shows that it is no part of the scene."""
         self.has_driven = has_driven
+
+    def take_samples(self, kept: int = 0) -> list[Sample]:
+        """Hand out its earliest detections, of which nothing is known yet, but the latest ones."""
+        count = max(len(self.samples) - kept, 0)
+        taken, self.samples = self.samples[:count], self.samples[count:]
+        return taken
 
     def miss(self, log_odds: float) -> None:
         """Take evidence against it: it was not detected."""

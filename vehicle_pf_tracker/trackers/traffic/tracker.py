@@ -32,18 +32,16 @@ from vehicle_pf_tracker.trackers.traffic.association import (
     GATE,
     FrameDetections,
     assign,
+    birth_odds,
     cut_edges,
-    fits,
     former,
     pair_costs,
 )
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import (
     INSIDE,
-    SHIPPED,
     DetectionEvidence,
     Detections,
-    TrafficNumbers,
     areas,
 )
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -77,8 +75,6 @@ class TrafficTracker:
     road : RoadPlane, optional
         Calibrated road, which tells the horizon and which vehicle is nearer; None: both are taken
         from the boxes.
-    numbers : TrafficNumbers
-        Weights and thresholds.
 
     Attributes
     ----------
@@ -93,10 +89,7 @@ class TrafficTracker:
     """
 
     def __init__(
-        self,
-        parameters: TrafficParameters | None = None,
-        road: RoadPlane | None = None,
-        numbers: TrafficNumbers = SHIPPED,
+        self, parameters: TrafficParameters | None = None, road: RoadPlane | None = None
     ) -> None:
         self.parameters = parameters or TrafficParameters()
         self.road = road
@@ -104,7 +97,6 @@ class TrafficTracker:
         self.bad_states = 0
         self.last_identity = 0
         self._serial = 0
-        self._numbers = numbers
         self._seed = drawn_seed(self.parameters.seed)
         self._frame: Frame | None = None
         self._tracks: list[Track] = []
@@ -191,9 +183,9 @@ class TrafficTracker:
     def _clear(self) -> None:
         self._rng = np.random.default_rng(self._seed)
         self._tracks = []
-        self._pixels = PixelHold(self._numbers)
+        self._pixels = PixelHold()
         self._evidence = DetectionEvidence()
-        self._existence = Existence(self.parameters, self._evidence, self._numbers)
+        self._existence = Existence(self.parameters, self._evidence)
         self._horizon = Horizon()
 
     def reconfigure(self, parameters: TrafficParameters) -> None:
@@ -237,52 +229,61 @@ class TrafficTracker:
         for index in found.free:
             self._begin_from(found, index)
 
-    def _match(self, tracks: Sequence[Track], found: FrameDetections, least: float) -> None:
+    def _match(
+        self, tracks: Sequence[Track], found: FrameDetections, least: float = -math.inf
+    ) -> None:
         """Pair confirmed tracks with free detections of log odds from `least`."""
         indices = [index for index in found.free if found.log_odds[index] >= least]
         if tracks and indices:
             settings = self.parameters.detections
-            pairs = assign(pair_costs(tracks, found, indices, settings, self._numbers))
-            self._correct([(tracks[row], indices[column], 0.0) for row, column in pairs], found)
+            costs, odds = pair_costs(tracks, found, indices, settings)
+            self._correct(tracks, indices, costs, odds, found)
 
     def _outgrow(self, tracks: Sequence[Track], found: FrameDetections) -> None:
         """Give detections of whole vehicles to tracks that know only a part of theirs."""
         boxes, edges = edges_of(tracks), found.edges[found.free, np.newaxis]
-        common, grown = intersections(edges, boxes), []
-        alone = (common > 0).sum(axis=1) == 1
-        for row, column in np.argwhere(common > INSIDE * areas(boxes)).tolist():
-            track, index = tracks[column], found.free[row]
-            if alone[row] and track.outgrown_by(found.edges[index]):
-                grown.append((track, index, 0.0))
-        self._correct(grown, found)
+        common = intersections(edges, boxes)
+        alone = (common > 0).sum(axis=1, keepdims=True) == 1
+        around = np.argwhere(alone & (common > INSIDE * areas(boxes))).tolist()
+        free = found.edges[found.free]
+        self._match(
+            [tracks[one] for row, one in around if tracks[one].outgrown_by(free[row])], found
+        )
 
     def _match_tentative(self, tracks: Sequence[Track], found: FrameDetections) -> None:
         """Pair new tracks with free detections that are rather theirs than false alarms."""
         if not tracks or not found.free:
             return
         indices = found.free.copy()
-        odds = fits(tracks, found, indices, self.parameters.detections.edge_noise)
-        pairs = assign(GATE - odds)
-        fitting = [(tracks[row], indices[one], float(odds[row, one])) for row, one in pairs]
-        self._correct(fitting, found)
+        odds = birth_odds(tracks, found, indices, self.parameters.detections.edge_noise)
+        self._correct(tracks, indices, GATE - odds, odds, found)
 
-    def _correct(self, pairs: Sequence[tuple[Track, int, float]], found: FrameDetections) -> None:
-        """Correct tracks by their detections; the log odds by their places are of new tracks."""
+    def _correct(
+        self,
+        tracks: Sequence[Track],
+        indices: Sequence[int],
+        costs: Array,
+        odds: Array,
+        found: FrameDetections,
+    ) -> None:
+        """Correct tracks (rows) by the detections (columns) that cost least."""
+        pairs = assign(costs)
         if not pairs:
             return
-        tracks, indices = [track for track, _, _ in pairs], [index for _, index, _ in pairs]
-        taken = set(indices)
-        found.free = [index for index in found.free if index not in taken]
+        fits = [float(odds[pair]) for pair in pairs]
+        tracks, indices = [tracks[row] for row, _ in pairs], [indices[one] for _, one in pairs]
+        found.free = sorted(set(found.free).difference(indices))
         edges = found.edges[indices]
-        settings = self.parameters.detections
-        whole = measure(tracks, edges, settings, self._size, found.edges)
+        whole = measure(tracks, edges, self.parameters.detections, self._size, found.edges)
         cut = np.asarray(cut_edges(edges, self._size).any(axis=1))
-        for (track, index, fit), is_whole, is_cut in zip(pairs, whole, cut, strict=True):
+        for track, index, fit, is_whole, is_cut in zip(
+            tracks, indices, fits, whole, cut, strict=True
+        ):
             track.name(found.labels[index], float(found.scores[index]))
             if is_whole:
                 track.learn_colours(found.histogram(index))
                 if not is_cut:
-                    track.growth.add(found.edges[index])
+                    track.grow(found.edges[index])
             if self._existence.detected(track, found, index, fit):
                 self._confirm(track)
 

@@ -36,6 +36,16 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 
+FAR = 3.0
+"""Standard deviations beyond which two values do not belong together: one in 400 is as far."""
+PIXEL_NOISE = 0.7
+"""Standard deviation in px of an edge however small its box, and of a point's flow: the grid of
+pixels, on both sides."""
+
+SETTLED_AFTER = 30
+"""Detections or nominal periods, one second of 30 Hz, by which what is seen is no passing state: a
+covered edge, a part of another vehicle, standing still."""
+
 X, V, W, H, ACROSS, ALONG = range(6)
 """Components of the state: centre and distance from the horizon, size (px), road velocities."""
 
@@ -44,9 +54,6 @@ _NEAREST_HORIZON = 3.0
 _FASTEST_APPROACH = 1.3
 """Largest growth of a box in a nominal frame period. Beyond it the distance is down to the
 camera's own height, where the plane no longer describes what is seen."""
-_LONGEST_APPROACH = 35.0
-"""Nominal periods that this bound is raised to at most: by then a box has grown ten thousandfold,
-from a px to more than an image's side, and after a longer gap the power itself would overflow."""
 _LEAST = 1e-2
 """Least distance from the horizon, and least side, that is predicted, px: a hundredth of a pixel is
 nothing in sight, and any two boxes still have a finite ratio."""
@@ -189,12 +196,6 @@ class VehicleState:
         return x * growth + across * v, (v - h / 2) * growth
 
     @property
-    def road_size(self) -> float:
-        """Side of a box over the distance from the horizon: the same all along the road."""
-        _, v, w, h, _, _ = self.mean.tolist()
-        return math.sqrt(w * h) / float(v)
-
-    @property
     def speed_ratio(self) -> float:
         """Distance of a velocity on the road from zero, in standard deviations."""
         across, along = self.mean[ACROSS:].tolist()
@@ -205,7 +206,7 @@ class VehicleState:
     def predict(self, elapsed: float, drive: Drive) -> None:
         """Drive on for `elapsed` nominal periods."""
         x, v, w, h, across, along = np.moveaxis(self.mean, -1, 0)
-        bound = _FASTEST_APPROACH ** min(elapsed, _LONGEST_APPROACH)
+        bound = _FASTEST_APPROACH ** min(elapsed, SETTLED_AFTER)  # then from a px to an image
         divisor = 1 + v * along * elapsed
         growth = 1 / np.clip(divisor, 1 / bound, bound)
         free = (divisor >= 1 / bound) & (divisor <= bound)  # else the growth depends on nothing

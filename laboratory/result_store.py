@@ -12,28 +12,19 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Results on disk, added one by one, so that interrupted work continues.
-
-The cache key of a result is a digest of everything that determines it, its code included.
-"""
+"""Results on disk, added one by one, so that interrupted work continues."""
 
 from __future__ import annotations
 
 import contextlib
-import functools
-import hashlib
-import importlib.util
 import json
 import os
-import platform
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.offline.output_files import make_folder
-from vehicle_pf_tracker.offline.run_folder import versions
-from vehicle_pf_tracker.trackers.registry import Variant
 
 Result: TypeAlias = dict[str, Any]
 """Plain values that JSON knows."""
@@ -89,47 +80,3 @@ def _read(path: Path) -> Iterator[tuple[str, Result]]:
         with contextlib.suppress(ValueError, KeyError, TypeError, RecursionError):
             entry = json.loads(line)
             yield entry["key"], entry["result"]
-
-
-def result_key(facts: Mapping[str, Any], modules: Iterable[str]) -> str:
-    """Digest facts, the code of `modules`, and the versions of what it runs on."""
-    code = source_digest(frozenset(modules))
-    made_by = {**versions(), "platform": platform.machine(), "code": code}
-    text = json.dumps({**facts, "made by": made_by}, sort_keys=True, allow_nan=False)
-    return hashlib.sha256(text.encode()).hexdigest()[:32]
-
-
-def variant_modules(variant: Variant) -> set[str]:
-    """Name the modules that a variant begins in."""
-    return {variant.tracker.__module__, variant.parameters.__module__}
-
-
-_PACKAGE = Path(__file__).parents[1]
-_SHARED = (
-    "core", "road", "parameters", "filtering", "image", "image/kernels", "trackers", "recordings",
-    "scenes", "offline", "evaluation", "evaluation/grid",
-)  # fmt: skip
-"""Folders whose code counts for every result."""
-
-
-@functools.cache
-def source_digest(modules: frozenset[str]) -> str:
-    """Digest the sources of the `_SHARED` folders and of those that `modules` are in.
-
-    Parameters
-    ----------
-    modules : frozenset of str
-        Full names, such as ``vehicle_pf_tracker.trackers.papers.apf``: of the trackers, only those
-        beside the modules count. Of a module without a package only its own file counts.
-    """
-    paths = {path for name in _SHARED for path in (_PACKAGE / name).glob("*.py")}
-    for name in modules:
-        found = importlib.util.find_spec(name)
-        if found is None or found.origin is None:
-            raise ModuleNotFoundError(f"{name} is to count for a cache key, and is not there")
-        own = Path(found.origin)
-        paths |= set(own.parent.glob("*.py")) if "." in name else {own}
-    digest = hashlib.sha256()
-    for path in sorted(paths):
-        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
-    return digest.hexdigest()

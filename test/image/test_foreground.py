@@ -14,17 +14,18 @@
 
 """Outlines of what moves before a still background: rectangles on noise, to the pixel."""
 
+import cv2
 import numpy as np
 import pytest
-from fusion_samples import grey_road
 
 from vehicle_pf_tracker.image.camera_motion import SmallGrey
-from vehicle_pf_tracker.trackers.fusion.turning import Foreground, median
+from vehicle_pf_tracker.image.foreground import Foreground, median
 
 SIZE = np.array([24.0, 14.0])
 
 
-ROAD = grey_road(200, 120)
+NOISE = np.random.default_rng(0).integers(60, 140, (120, 200)).astype(np.uint8)
+ROAD = cv2.GaussianBlur(NOISE, (0, 0), 2.0)
 
 
 def scene(*boxes, zoom=1.0, level=230):
@@ -92,3 +93,16 @@ def test_the_median_is_that_of_each_pixel(count):
     images = list(np.random.default_rng(count).integers(0, 256, (count, 9, 7)).astype(np.uint8))
     expected = np.sort(images, axis=0)[count // 2]
     assert np.array_equal(median(images), expected)
+
+
+def test_all_that_moves_has_a_box_now_and_in_the_frames_before():
+    foreground, _ = watched()
+    foreground.keep(scene((100, 50, 124, 64), (20, 90, 50, 110)), still=True)
+    history = dict(foreground.history())
+    assert list(history) == [0.0, 16.0, 32.0]
+    assert history[16.0].shape == (1, 2, 2)
+    assert history[16.0].mean(axis=1)[0] == pytest.approx([20 + 2 * 24 + 12, 57], abs=1)
+    boxes = sorted(foreground.boxes().reshape(-1, 4).tolist())
+    assert boxes[0] == pytest.approx([20, 90, 50, 110], abs=2)
+    assert boxes[1] == pytest.approx([100, 50, 124, 64], abs=2)
+    assert foreground.extent.tolist() == [200, 120]

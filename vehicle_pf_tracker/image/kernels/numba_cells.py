@@ -12,10 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Cells of oriented gradients and the correlation of their spectra, compiled.
-
-`image.gradient_cells` and `image.spectra` say what they are.
-"""
+"""Cells of oriented gradients, compiled; `image.gradient_cells` says what they are."""
 
 from __future__ import annotations
 
@@ -35,13 +32,11 @@ from vehicle_pf_tracker.image.gradient_cells import (
     Grey,
 )
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
-from vehicle_pf_tracker.image.spectra import Spectrum
 
 _HALF = DIRECTIONS // 2
 _IMAGE = numba.types.Array(numba.uint8, 2, "C")
 _BYTES = numba.types.Array(numba.uint8, 1, "C", readonly=True)
 _CELLS = numba.types.Array(numba.float32, 3, "C")
-_SPECTRUM = numba.types.Array(numba.float32, 4, "C")
 
 _DIRECTION_OF = DIRECTION_OF.ravel()
 _DIRECTION_OF.flags.writeable = False
@@ -177,38 +172,3 @@ def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
     """See `gradient_cells.gradient_cells`; `grey` is contiguous."""
     features = _features(grey, _DIRECTION_OF, GRADIENT_CHANNELS + spare)
     return np.asarray(features.transpose(1, 0, 2))
-
-
-@compiled(_SPECTRUM(_SPECTRUM, _SPECTRUM))
-def correlated(spectrum: Spectrum, weights: Spectrum) -> Spectrum:
-    """See `spectra.correlated`.
-
-    A frequency k along y and its negative are made of the same cosines and sines: cosine - i sine
-    is the one, cosine + i sine the other. Loops run over such pairs of rows, and along x, where
-    they are vectorised. Frequencies 0 and n / 2 have no sine.
-    """
-    cells, channels, _, width = spectrum.shape
-    half = cells // 2
-    product = np.zeros((cells, 1, 2, width), np.float32)
-    for k in range(half + 1):
-        real, imaginary = product[k, 0, 0], product[k, 0, 1]
-        for c in range(channels):
-            for x in range(width):
-                a, b = spectrum[k, c, 0, x], spectrum[k, c, 1, x]
-                u, v = weights[k, c, 0, x], weights[k, c, 1, x]
-                real[x] += a * u + b * v
-                imaginary[x] += b * u - a * v
-    for k in range(1, half):
-        even, odd = product[k, 0], product[k + half, 0]
-        for c in range(channels):
-            for x in range(width):
-                # (C - i S) (U - i V)* for k, and (C + i S) (U + i V)* for its negative.
-                a, b = spectrum[k, c, 0, x], spectrum[k, c, 1, x]
-                p, q = spectrum[k + half, c, 0, x], spectrum[k + half, c, 1, x]
-                u, v = weights[k, c, 0, x], weights[k, c, 1, x]
-                s, t = weights[k + half, c, 0, x], weights[k + half, c, 1, x]
-                even[0, x] += p * s + q * t
-                even[1, x] += q * s - p * t
-                odd[0, x] += p * u + q * v - a * s - b * t
-                odd[1, x] += q * u - p * v - b * s + a * t
-    return product

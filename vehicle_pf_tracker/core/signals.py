@@ -1,0 +1,48 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Signals that end a program, taken for a while."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import TypeAlias
+
+Handle: TypeAlias = Callable[[int, FrameType | None], None]
+"""Takes the number of a signal, and where it came."""
+
+
+def ending_signals() -> list[signal.Signals]:
+    """Return SIGINT, and SIGTERM and SIGHUP unless they are ignored, as SIGHUP is under nohup."""
+    others = (signal.SIGTERM, signal.SIGHUP)
+    heard = [one for one in others if signal.getsignal(one) is not signal.SIG_IGN]
+    return [signal.SIGINT, *heard]
+
+
+@contextmanager
+def handled(numbers: Iterable[signal.Signals], handle: Handle) -> Iterator[None]:
+    """Handle signals meanwhile; outside of the main thread, where none can be, they stay."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, handle) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
