@@ -203,7 +203,7 @@ class Existence:
                 continue
             # What went straight may have been a vehicle: its detections, taken for false alarms,
             # would keep those after it from being confirmed.
-            if track.drive() <= CERTAIN:
+            if track.matches < FEW or track.drive() <= CERTAIN:
                 for sample in track.samples:
                     self._evidence.learn(sample, False)
         return kept

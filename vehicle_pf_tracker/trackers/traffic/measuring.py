@@ -28,7 +28,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import INWARD, cut_edges, deviations
-from vehicle_pf_tracker.trackers.traffic.detections import INSIDE, LITTLE, areas
+from vehicle_pf_tracker.trackers.traffic.detections import HALF, INSIDE, LITTLE, areas
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
 from vehicle_pf_tracker.trackers.traffic.track import FEW, RATE, Track, edges_of
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
@@ -202,4 +202,34 @@ def _divide(tracks: Sequence[Track], edges: Array, others: Array) -> None:
     known = intersections(predicted, edges) > INSIDE * areas(edges)
     for track, box, crowded in zip(tracks, edges, (known & beside).tolist(), strict=True):
         if track.crowd(crowded=crowded) >= FEW:
-            track.shrink_to(box)
+            track.fill(box)
+
+
+def outgrown(tracks: Sequence[Track], edges: Array) -> list[Track]:
+    """Find those that were known by a part only, and make each as large as the box around it.
+
+    Where something hides a vehicle at first, or the background has its colour, it is followed by
+    what is seen; a box of all of it then is too large to be its own.
+
+    Parameters
+    ----------
+    tracks : sequence of N Track
+        All vehicles.
+    edges : (M, 4) array
+        Edges of the detections that are no vehicle's.
+    """
+    boxes = edges_of(tracks)
+    common = intersections(edges[:, np.newaxis], boxes)
+    alone = (common > 0).sum(axis=1, keepdims=True) == 1
+    found = []
+    for row, column in np.argwhere(alone & (common > INSIDE * areas(boxes))).tolist():
+        track = tracks[column]
+        # Two that drive side by side are one for a while, too: boxes of it alone have to be few.
+        if (
+            track.undetected
+            and track.in_sight
+            and track.crowd(crowded=True) >= max(FEW, HALF * track.matches)
+        ):
+            track.fill(edges[row])
+            found.append(track)
+    return found

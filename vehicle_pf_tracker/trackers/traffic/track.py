@@ -27,7 +27,7 @@ from vehicle_pf_tracker.trackers.traffic.colours import BINS
 from vehicle_pf_tracker.trackers.traffic.detections import HALF, NOTHING, Sample
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import SETTLED_AFTER, Drive, VehicleState
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
 
 CERTAIN = 7.0
 """Log odds, one in a thousand, beyond which nothing is surer: however long a vehicle was seen, some
@@ -201,16 +201,8 @@ class Track:
         self.crowded = self.crowded + 1 if crowded else 0
         return self.crowded
 
-    def outgrown_by(self, edges: Array) -> bool:
-        """Take a detection (4,) around its box; True where that was too small all along."""
-        young = self.undetected > 0 and self.in_sight and self.matches < SETTLED_AFTER
-        if not young or self.crowd(crowded=True) < FEW:
-            return False
-        self.shrink_to(edges)
-        return True
-
-    def shrink_to(self, edges: Array) -> None:
-        """Be no more than what is in a box (4,)."""
+    def fill(self, edges: Array) -> None:
+        """Be as large as a box (4,), and there."""
         self.crowded = 0
         self.sides = edges[2:] - edges[:2]
         self.state.resize(edges)

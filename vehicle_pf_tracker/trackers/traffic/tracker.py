@@ -47,7 +47,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
-from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure
+from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure, outgrown
 from vehicle_pf_tracker.trackers.traffic.occlusion import cover, nearest_first
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.pixel_hold import PixelHold
@@ -207,9 +207,8 @@ class TrafficTracker:
     def _look_for_horizon(self) -> None:
         """Estimate the horizon, and move that of the vehicles which are followed."""
         growths = (track.growth for track in self._tracks if track.confirmed)
-        self._row = self._horizon.look(
-            self.parameters.motion.horizon, growths, self._size, self.road
-        )
+        assumed = self.parameters.motion.horizon
+        self._row = self._horizon.look(assumed, growths, self._size, self.road)
 
     def _take(self, detections: Detections, elapsed: float) -> None:
         """Give the detections to the tracks; what is left over may be new vehicles."""
@@ -219,36 +218,23 @@ class TrafficTracker:
         for least in (_STRONG, -math.inf):
             self._match([one for one in confirmed if one.undetected], found, least)
             self._drop_inside([one for one in confirmed if not one.undetected], found)
-        self._outgrow(confirmed, found)
         self._match_tentative([one for one in self._tracks if not one.confirmed], found)
         self._merge_twins()
+        confirmed = [one for one in self._tracks if one.confirmed]
+        self._match(outgrown(confirmed, found.edges[found.free]), found, -math.inf)
         self._existence.fade(self._tracks, elapsed)
-        # A prediction may be wrong, and a new vehicle in its place be another one.
+        # In the place of one that is predicted only there may be another one.
         seen = [one for one in self._tracks if one.mode is TrackMode.TRACKING]
         self._drop_inside(seen, found, either=True)
         for index in found.free:
             self._begin_from(found, index)
 
-    def _match(
-        self, tracks: Sequence[Track], found: FrameDetections, least: float = -math.inf
-    ) -> None:
+    def _match(self, tracks: Sequence[Track], found: FrameDetections, least: float) -> None:
         """Pair confirmed tracks with free detections of log odds from `least`."""
         indices = [index for index in found.free if found.log_odds[index] >= least]
         if tracks and indices:
-            settings = self.parameters.detections
-            costs, odds = pair_costs(tracks, found, indices, settings)
+            costs, odds = pair_costs(tracks, found, indices, self.parameters.detections)
             self._correct(tracks, indices, costs, odds, found)
-
-    def _outgrow(self, tracks: Sequence[Track], found: FrameDetections) -> None:
-        """Give detections of whole vehicles to tracks that know only a part of theirs."""
-        boxes, edges = edges_of(tracks), found.edges[found.free, np.newaxis]
-        common = intersections(edges, boxes)
-        alone = (common > 0).sum(axis=1, keepdims=True) == 1
-        around = np.argwhere(alone & (common > INSIDE * areas(boxes))).tolist()
-        free = found.edges[found.free]
-        self._match(
-            [tracks[one] for row, one in around if tracks[one].outgrown_by(free[row])], found
-        )
 
     def _match_tentative(self, tracks: Sequence[Track], found: FrameDetections) -> None:
         """Pair new tracks with free detections that are rather theirs than false alarms."""
@@ -276,9 +262,8 @@ class TrafficTracker:
         edges = found.edges[indices]
         whole = measure(tracks, edges, self.parameters.detections, self._size, found.edges)
         cut = np.asarray(cut_edges(edges, self._size).any(axis=1))
-        for track, index, fit, is_whole, is_cut in zip(
-            tracks, indices, fits, whole, cut, strict=True
-        ):
+        rows = zip(tracks, indices, fits, whole, cut, strict=True)
+        for track, index, fit, is_whole, is_cut in rows:
             track.name(found.labels[index], float(found.scores[index]))
             if is_whole:
                 track.learn_colours(found.histogram(index))
@@ -334,11 +319,9 @@ class TrafficTracker:
     @property
     def _drive(self) -> Drive:
         motion, period = self.parameters.motion, self.frame_period
-        return Drive(
-            acceleration=motion.acceleration * period**2 / _VEHICLE_WIDTH,
-            top_speed=motion.top_speed * period / _VEHICLE_WIDTH,
-            focal=_FOCAL * self._size[0],
-        )
+        acceleration = motion.acceleration * period**2 / _VEHICLE_WIDTH
+        top_speed = motion.top_speed * period / _VEHICLE_WIDTH
+        return Drive(acceleration, top_speed, _FOCAL * self._size[0])
 
     def _begin(self, edges: Array) -> Track:
         """Begin a track in a box."""
