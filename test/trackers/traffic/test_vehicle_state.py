@@ -201,14 +201,3 @@ def test_states_that_are_stacked_go_on_as_each_alone_would():
         assert other.box == one.box
         assert (other.velocity, other.horizon) == (pytest.approx(one.velocity), 20.0)
     assert VehicleState.stacked([]).is_sound.all()
-
-
-def test_a_new_box_shrinks_faster_than_a_wrong_horizon_says():
-    sides = 100 * 0.93 ** np.arange(10)  # by its lower edge it would shrink by 2 % per frame
-    state = VehicleState(np.array([0.0, 300, 100, 400]), np.full(4, 5.0), -250.0, STILL)
-    for side in sides[1:]:
-        state.predict(1.0, STILL)
-        bottom = 300 + 100 * side / 100
-        edges = np.array([50 - side / 2, bottom - side, 50 + side / 2, bottom])
-        state.measure(edges, np.full(4, np.hypot(0.05 * side, 0.7)))
-    assert state.box.width < 1.15 * sides[-1]
