@@ -25,7 +25,7 @@ from laboratory.stress.footage import StressSource, open_footage
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.grid.starts import TRUE_START, Start
+from vehicle_pf_tracker.evaluation.grid.cells import TRUE_START, Start
 from vehicle_pf_tracker.recordings.footage import stamp_of
 from vehicle_pf_tracker.scenes.compositing import stream
 

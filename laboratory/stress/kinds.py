@@ -28,7 +28,7 @@ from laboratory.stress.changes import Change
 from laboratory.stress.footage import StressSource, open_footage
 from laboratory.stress.occlusion_cases import lorries, poles, walls
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
+from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts
 
 LATER_STARTS = 20
 """As in OTB's temporal robustness evaluation."""

@@ -45,10 +45,9 @@ from vehicle_pf_tracker.cli.requests import (
 )
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, SEEDS, EvaluationRequest, chosen
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.grid.cells import Plan
+from vehicle_pf_tracker.evaluation.grid.cells import Plan, shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
-from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:

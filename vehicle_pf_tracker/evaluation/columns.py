@@ -119,6 +119,8 @@ SUCCESS, PRECISION, RMSE, RECOVERED, STEP = (
 
 COMPARED = (SUCCESS, PRECISION, RMSE)
 """Metrics that systems are compared by; the first one orders the tables."""
+PAPER = (SUCCESS, PRECISION, RMSE, RECOVERED, STEP)
+"""Metrics of the LaTeX table."""
 
 
 NO_VALUE = "–"

@@ -122,8 +122,9 @@ FEWEST_POINTS = 12
 """Fewest tracked points that tell a change of size."""
 APART = 0.25
 """Least distance of two points that tell a change of size, of the size."""
-LARGEST_STRETCH = 0.05
-"""Bound of the change of log size per frame."""
+LARGEST_STRETCH = 0.15
+"""Bound of the change of log size per frame: vehicles that pass a camera at 10 images a second
+change by 0.12."""
 LEAST_RATIO = 0.2
 """Bound of the ratio of two distances, whose logarithm is taken."""
 
@@ -181,9 +182,15 @@ def _robust_similarity(before: Array, after: Array) -> Array:
         turn = np.array([[along, -across], [across, along]])
         found[:, :2], found[:, 2] = turn, target - turn @ middle
         residual = np.linalg.norm(after - (before @ turn.T + found[:, 2]), axis=1)
-        scale = max(1.5 * float(np.median(residual)), AGREEING_PX / 2)
+        scale = max(1.5 * median(residual), AGREEING_PX / 2)
         weights = 1 / (1 + (residual / scale) ** 2) ** 2
     return found
+
+
+def median(values: Array) -> float:
+    """Median of up to some hundred finite values, in a fraction of the time of `np.median`."""
+    ordered, half = np.sort(values), len(values) // 2
+    return float((ordered[(len(values) - 1) // 2] + ordered[half]) / 2)
 
 
 def shared_turn(before: Array, after: Array, strayed: float) -> Array:
@@ -232,7 +239,7 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
         far = old > APART * size[axis]
         if far.sum() >= FEWEST_POINTS // 2:
             ratio = np.maximum(new[far] / old[far], LEAST_RATIO)
-            change[axis] = float(np.median(np.log(ratio)))
+            change[axis] = median(np.log(ratio))
     return np.clip(change, -LARGEST_STRETCH, LARGEST_STRETCH)
 
 

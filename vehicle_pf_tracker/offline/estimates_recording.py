@@ -35,14 +35,6 @@ from vehicle_pf_tracker.offline.drawing import (
 )
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.messages import (
-    DIAGNOSTIC_ARRAY,
-    IMAGE_ANNOTATIONS,
-    POINT_STAMPED,
-    POLYGON_STAMPED,
-    as_token,
-    message_class,
-)
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.estimate import Mode
@@ -74,13 +66,14 @@ def image_annotations(name: str, row: EstimateRow, size: tuple[int, int]) -> Any
         Width and height of the images in px, which lines and letters grow with.
     """
     box = None if row.mode == Mode.LOST else row.box
+    annotations = messages.message_class(messages.IMAGE_ANNOTATIONS)
     if box is None:
-        return message_class(IMAGE_ANNOTATIONS)(circles=[], points=[], texts=[])
+        return annotations(circles=[], points=[], texts=[])
     width, stamp = line_width_of(size), messages.header(row.stamp_ns).stamp
     height, colour = float(_LETTERS * width), _colour(COLOURS[row.mode])
     is_dashed = row.mode == Mode.OCCLUDED
     ends = np.concatenate(list(dashes(box.corners, _DASH * width))) if is_dashed else box.corners
-    outline = message_class("foxglove_msgs/msg/PointsAnnotation")(
+    outline = messages.message_class("foxglove_msgs/msg/PointsAnnotation")(
         timestamp=stamp,
         type=LINE_LIST if is_dashed else LINE_LOOP,
         points=[_point(*point) for point in ends],
@@ -89,7 +82,7 @@ def image_annotations(name: str, row: EstimateRow, size: tuple[int, int]) -> Any
         fill_color=_colour((0, 0, 0), 0.0),
         thickness=width,
     )
-    words = message_class("foxglove_msgs/msg/TextAnnotation")(
+    words = messages.message_class("foxglove_msgs/msg/TextAnnotation")(
         timestamp=stamp,
         position=_point(max(box.x, 0.0), max(box.y - 2.0 * width, height)),
         text=estimate_words(name, row),
@@ -97,16 +90,16 @@ def image_annotations(name: str, row: EstimateRow, size: tuple[int, int]) -> Any
         text_color=colour,
         background_color=_colour((0, 0, 0), _GROUND_OPACITY),
     )
-    return message_class(IMAGE_ANNOTATIONS)(circles=[], points=[outline], texts=[words])
+    return annotations(circles=[], points=[outline], texts=[words])
 
 
 def _point(x: float, y: float) -> Any:
-    return message_class("foxglove_msgs/msg/Point2")(x=float(x), y=float(y))
+    return messages.message_class("foxglove_msgs/msg/Point2")(x=float(x), y=float(y))
 
 
 def _colour(colour: Colour, opacity: float = 1.0) -> Any:
     red, green, blue = (value / 255 for value in colour)
-    return message_class("foxglove_msgs/msg/Color")(r=red, g=green, b=blue, a=opacity)
+    return messages.message_class("foxglove_msgs/msg/Color")(r=red, g=green, b=blue, a=opacity)
 
 
 _LEVELS = {Mode.OCCLUDED.value: messages.WARN, Mode.LOST.value: messages.ERROR}
@@ -120,13 +113,13 @@ def _write_estimate(writer: RecordingWriter, topic: str, row: EstimateRow, drawn
     values = {key: repr(value) for key, value in numbers.items() if value is not None}
     level = _LEVELS.get(row.mode, messages.OK)
     mode = messages.diagnostic_array(stamp, topic, level, row.mode, values)
-    writer.write(f"/{topic}/mode", DIAGNOSTIC_ARRAY, stamp, mode)
-    writer.write(f"/{topic}/annotations", IMAGE_ANNOTATIONS, stamp, drawn)
+    writer.write(f"/{topic}/mode", messages.DIAGNOSTIC_ARRAY, stamp, mode)
+    writer.write(f"/{topic}/annotations", messages.IMAGE_ANNOTATIONS, stamp, drawn)
     if row.position is not None and row.box is not None:
         point = messages.point_stamped(stamp, *row.position)
-        writer.write(f"/{topic}/position", POINT_STAMPED, stamp, point)
+        writer.write(f"/{topic}/position", messages.POINT_STAMPED, stamp, point)
         polygon = messages.polygon_stamped(stamp, row.box.corners)
-        writer.write(f"/{topic}/box", POLYGON_STAMPED, stamp, polygon)
+        writer.write(f"/{topic}/box", messages.POLYGON_STAMPED, stamp, polygon)
 
 
 OnFrame: TypeAlias = Callable[[StampedFrame, Mapping[str, EstimateRow]], None]
@@ -158,7 +151,7 @@ def run_recording(
         If it cannot be written.
     """
     is_single = len(targets) == 1
-    topics = {name: node if is_single else f"{node}/{as_token(name)}" for name in targets}
+    topics = {name: node if is_single else f"{node}/{messages.as_token(name)}" for name in targets}
     is_first, waiting = True, list(reversed(truths))
     with RecordingWriter(folder, overwrite=True) as writer:
 

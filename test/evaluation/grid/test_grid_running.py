@@ -31,8 +31,8 @@ from evaluation_samples import (
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.grid import sources
+from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
-from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
 from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.recordings.reader import Recording
 

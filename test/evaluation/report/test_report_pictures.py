@@ -25,8 +25,8 @@ from vehicle_pf_tracker.evaluation.report.figures import (
     LEAST_ERROR,
     Drawn,
     draw_errors,
+    svg_element,
 )
-from vehicle_pf_tracker.evaluation.report.page import svg_element
 
 BOX = Box(100, 60, 20, 10)
 

@@ -30,8 +30,8 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     cell_folder,
     read_document,
 )
+from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete
-from vehicle_pf_tracker.evaluation.grid.starts import shifted_starts
 from vehicle_pf_tracker.evaluation.report import writing
 from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
 from vehicle_pf_tracker.evaluation.report.page import make_page

@@ -25,11 +25,11 @@ from laboratory.scenes import make_scene
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
-from vehicle_pf_tracker.trackers.fusion.perspective import Sighting
+from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion, Sighting
 
 SIZE = np.array([20.0, 12.0])
 LAST = np.array([100.0, 120.0])
-VELOCITY = np.array([3.0, 0.0])
+MOTION = PerspectiveMotion(LAST, np.array([3.0, 0.0]), 0.0)
 IMAGE = np.array([320.0, 200.0])
 OUT = np.array([140.0, 80.0])
 """Where it comes out, 20 frames later, on its way up."""
@@ -51,7 +51,7 @@ def coming_out(time, speed=3.0, size=(12, 14)):
 def run(others=lambda time: [], earlier=(), out=coming_out):
     """Frame in which the vehicle is proven, and what was given; None if it never is."""
     before = [(ago, sides(*boxes)) for ago, boxes in earlier]
-    emergence = Emergence(Sighting(0.0, LAST, SIZE), VELOCITY, IMAGE, before)
+    emergence = Emergence(Sighting(0.0, LAST, SIZE), MOTION, IMAGE, before)
     for time in range(1, 60):
         found = emergence.step(sides(*out(time), *others(time)), 1.0)
         if found is not None:
@@ -85,6 +85,13 @@ def test_a_single_vehicle_that_comes_out_beside_the_path_is_found():
 )  # fmt: skip
 def test_what_may_be_another_vehicle_is_not_taken(options):
     assert run(**options) is None
+
+
+def test_paint_is_judged_over_all_frames():
+    emergence = Emergence(Sighting(0.0, LAST, SIZE), MOTION, IMAGE, [])
+    assert [emergence.has_paint(unlike) for unlike in (1.5, 0.9, 0.5, 0.2)] == [
+        False, False, True, True,
+    ]  # fmt: skip
 
 
 @pytest.fixture(scope="module")

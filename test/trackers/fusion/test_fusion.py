@@ -117,6 +117,17 @@ def test_follows_the_size_of_a_vehicle_that_drives_away():
         assert estimate.box.width == pytest.approx(truth.box.width, rel=0.1)
 
 
+@pytest.mark.parametrize("way", ["away", "towards"])
+def test_follows_a_size_that_changes_by_a_twentieth_in_a_frame(way):
+    """The response alone is tried at sizes that are 3 % apart; on the way there the box lags."""
+    scene = make_scene("scale", seed=0, settings={"speed": 12.0, "factor": 3.0, "way": way})
+    first, *later = scene.frames()
+    tracker = fusion()
+    tracker.start(first.frame, first.truth.box)
+    pairs = [(tracker.step(one.frame).box, one.truth.box) for one in later]
+    assert np.mean([box.iou(true) for box, true in pairs]) > 0.88
+
+
 @pytest.mark.slow
 def test_follows_a_turn_by_the_outline_before_a_standing_camera():
     for seed in (3, 4):

@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.trackers.fusion.appearance import searched_size
+from vehicle_pf_tracker.trackers.fusion.follow import told_by_points
 from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
 
 STEP = np.log(1.03)
@@ -68,6 +69,28 @@ def test_a_valley_is_left_towards_the_higher_side():
 
 def test_where_nothing_differs_the_size_stays():
     assert searched_size(SIZE, 0, lambda size: 0.8, parameters()) == pytest.approx(SIZE)
+
+
+@pytest.mark.parametrize(
+    ("stretch", "share", "told"),
+    [
+        ([0.02, 0.03], 0.9, [0.02, 0.025]),  # spread along both: nothing that hides does that
+        ([-0.1, -0.06], 0.9, [-0.08, -0.06]),  # faster than 0.7 steps of 3 %
+        ([-0.1, -0.02], 0.9, [-0.05, -0.01]),  # as an occluder drags points along
+        ([0.1, -0.1], 0.9, [0.05, -0.05]),
+        ([-0.1, -0.06], 0.7, [-0.06, -0.06]),  # a part of the surface tells no aspect
+        ([-0.1, -0.02], 0.7, [0.0, 0.0]),
+        ([0.1, 0.1], 0.4, [0.0, 0.0]),  # more is hidden than seen
+    ],
+)
+def test_points_tell_wholly_what_no_occluder_does(stretch, share, told):
+    found = told_by_points(np.array(stretch), share, SIZE, parameters())
+    assert found == pytest.approx(told)
+
+
+def test_points_on_a_vehicle_of_a_few_px_tell_half():
+    found = told_by_points(np.array([0.1, 0.1]), 0.9, SIZE / 2, parameters())
+    assert found == pytest.approx([0.05, 0.05])
 
 
 def test_repeated_it_converges_on_the_right_aspect():

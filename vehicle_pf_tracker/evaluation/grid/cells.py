@@ -22,6 +22,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
@@ -35,11 +36,45 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     safe_name,
     write_truth,
 )
-from vehicle_pf_tracker.evaluation.grid.starts import TRUE_START, Start
 from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.run_folder import versions
 from vehicle_pf_tracker.trackers.registry import find_variant
+
+_SHIFT = 0.1
+"""Shift of OTB's spatial robustness (Wu, Lim and Yang 2013), in widths and heights of the box."""
+_SCALES = (0.8, 0.9, 1.1, 1.2)
+_SIDES = {
+    "left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1),
+    "left_up": (-1, -1), "right_up": (1, -1), "left_down": (-1, 1), "right_down": (1, 1),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Displacement of the first box, in its widths and heights, and the factor of its sides."""
+
+    name: str = ""
+    shift: tuple[float, float] = (0.0, 0.0)
+    scale: float = 1.0
+
+    def box(self, true: Box) -> Box:
+        """Return the box to start on."""
+        if self == TRUE_START:
+            return true
+        x, y = true.centre
+        centre = x + self.shift[0] * true.width, y + self.shift[1] * true.height
+        return Box.around(centre, true.width * self.scale, true.height * self.scale)
+
+
+TRUE_START = Start()
+"""The true box."""
+
+
+def shifted_starts() -> list[Start]:
+    """Return the twelve starts of OTB: eight shifts by a tenth of the box, and four scales."""
+    shifts = [Start(name, (_SHIFT * x, _SHIFT * y)) for name, (x, y) in _SIDES.items()]
+    return shifts + [Start(f"scale_{scale:g}", scale=scale) for scale in _SCALES]
 
 
 @dataclass(frozen=True, slots=True)

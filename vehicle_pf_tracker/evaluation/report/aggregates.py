@@ -21,36 +21,9 @@ import statistics
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, Column, number_text
+from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, Column
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.statistics import Summary, summarise
-
-
-def mean_text(summary: Summary | None, column: Column) -> str:
-    """Return the mean alone."""
-    return number_text(summary.mean if summary else None, column.decimals)
-
-
-def mean_and_spread_text(summary: Summary | None, column: Column) -> str:
-    """Return the mean, and the standard deviation where there is one that shows."""
-    text = mean_text(summary, column)
-    if summary is None or not summary.spread:
-        return text
-    return f"{text} ± {number_text(summary.spread, column.decimals)}"
-
-
-def interval_text(summary: Summary | None, column: Column) -> str:
-    """Return the interval as ``low to high``; empty where there is none."""
-    if summary is None or summary.low is None or summary.high is None:
-        return ""
-    low, high = (number_text(end, column.decimals) for end in (summary.low, summary.high))
-    return f"{low} to {high}"
-
-
-def counted(count: int, noun: str) -> str:
-    """Return ``1 frame``, ``2 frames``."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
-
 
 Summaries = Mapping[str, Summary | None]
 """Summaries by the key of a column."""

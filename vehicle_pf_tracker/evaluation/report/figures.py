@@ -16,6 +16,9 @@
 
 from __future__ import annotations
 
+import html
+import io
+import re
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -254,3 +257,22 @@ def _errors(runs: Mapping[str, Sequence[ScoredRun]], truths: Mapping[int, Truth]
     figure.supylabel("error, px", fontsize=_LETTERS, color=MUTED)
     medians = (f"{label} {np.nanmedian(table):.1f} px" for label, table in tables.items())
     return Drawn(figure, "Error over time", f"Error over time; medians: {', '.join(medians)}")
+
+
+def svg_element(drawn: Drawn, number: int) -> str:
+    """Return a figure as an SVG element that is read out; its ids begin with its number."""
+    text = io.StringIO()
+    nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+    with rc_context(SETTINGS):
+        drawn.figure.savefig(text, format="svg", transparent=True, metadata=nothing)
+    element = text.getvalue()
+    element = element[element.index("<svg") :]
+    element = re.sub(r"(<metadata>.*?</metadata>|<!--.*?-->)\s*", "", element, flags=re.DOTALL)
+    element = re.sub(r' id="|href="#|url\(#', rf"\g<0>f{number}-", element)
+    for name, colour in COLOURS.items():
+        element = element.replace(colour, f"var(--{name})")
+    size = re.search(r'viewBox="[^"]*"', element)
+    assert size is not None
+    head = f'<svg {size[0]} role="img" aria-label="{html.escape(drawn.spoken)}"'
+    head += ' xmlns:xlink="http://www.w3.org/1999/xlink"'
+    return re.sub(r"^<svg[^>]*", head, element).replace("\n", " ").replace("  ", " ")

@@ -16,31 +16,20 @@
 
 from __future__ import annotations
 
-import html
-import io
-import re
 import shlex
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from matplotlib import rc_context
 
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation import tables
 from vehicle_pf_tracker.evaluation.columns import COLUMNS
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
 from vehicle_pf_tracker.evaluation.plots import STYLES
-from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, counted
-from vehicle_pf_tracker.evaluation.report.figures import (
-    COLOURS,
-    CURVES,
-    ERRORS,
-    SETTINGS,
-    Drawn,
-    draw_all,
-)
+from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
+from vehicle_pf_tracker.evaluation.report.figures import CURVES, ERRORS, draw_all, svg_element
 from vehicle_pf_tracker.evaluation.report.scored_runs import FailedCell, ScoredEvaluation
 
 
@@ -54,25 +43,6 @@ def render(template: str, **values: Any) -> str:
         lstrip_blocks=True,
     )
     return environment.get_template(template).render(values)
-
-
-def svg_element(drawn: Drawn, number: int) -> str:
-    """Return a figure as an SVG element that is read out; its ids begin with its number."""
-    text = io.StringIO()
-    nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-    with rc_context(SETTINGS):
-        drawn.figure.savefig(text, format="svg", transparent=True, metadata=nothing)
-    element = text.getvalue()
-    element = element[element.index("<svg") :]
-    element = re.sub(r"(<metadata>.*?</metadata>|<!--.*?-->)\s*", "", element, flags=re.DOTALL)
-    element = re.sub(r' id="|href="#|url\(#', rf"\g<0>f{number}-", element)
-    for name, colour in COLOURS.items():
-        element = element.replace(colour, f"var(--{name})")
-    size = re.search(r'viewBox="[^"]*"', element)
-    assert size is not None
-    head = f'<svg {size[0]} role="img" aria-label="{html.escape(drawn.spoken)}"'
-    head += ' xmlns:xlink="http://www.w3.org/1999/xlink"'
-    return re.sub(r"^<svg[^>]*", head, element).replace("\n", " ").replace("  ", " ")
 
 
 def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
@@ -122,7 +92,7 @@ def _facts(evaluation: ScoredEvaluation) -> str:
         "system": evaluation.systems,
         "seed": evaluation.folder.seeds,
     }
-    return " × ".join(counted(len(some), noun) for noun, some in counts.items())
+    return " × ".join(tables.counted(len(some), noun) for noun, some in counts.items())
 
 
 def _section(evaluation: ScoredEvaluation, aggregates: Aggregates, entry: Source) -> dict[str, Any]:
@@ -141,7 +111,7 @@ def _section(evaluation: ScoredEvaluation, aggregates: Aggregates, entry: Source
 
 def _recording_facts(entry: Source, truths: Mapping[int, Truth]) -> str:
     kinds = Counter(truth.occlusion.name.lower() for truth in truths.values())
-    parts = [counted(entry.frames, "frame"), f"{entry.width} × {entry.height} px"]
+    parts = [tables.counted(entry.frames, "frame"), f"{entry.width} × {entry.height} px"]
     parts += [f"{len(truths)} with truth"] if len(truths) != entry.frames else []
     parts += [f"{kinds['partial']} partly occluded"] if kinds["partial"] else []
     parts += [f"{kinds['total']} totally occluded"] if kinds["total"] else []

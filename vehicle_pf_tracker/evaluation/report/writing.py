@@ -22,15 +22,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.evaluation.columns import (
-    COLUMNS,
-    NO_VALUE,
-    PRECISION,
-    RECOVERED,
-    RMSE,
-    STEP,
-    SUCCESS,
-)
+from vehicle_pf_tracker.evaluation.columns import COLUMNS, NO_VALUE, PAPER
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, safe_name
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, aggregate
 from vehicle_pf_tracker.evaluation.report.figures import write_figures
@@ -52,7 +44,6 @@ from vehicle_pf_tracker.trackers.estimate import Mode
 
 ALL_RECORDINGS = "(all)"
 """Stands for the name of a recording where values are means over all of them."""
-_PAPER = (SUCCESS, PRECISION, RMSE, RECOVERED, STEP)
 _LATEX = str.maketrans(
     {c: f"\\{c}" for c in "&%$#_{}"}
     | {"\u00a0": "~", "~": r"\textasciitilde{}", "\\": r"\textbackslash{}"}
@@ -100,7 +91,7 @@ def summary_csv(aggregates: Aggregates) -> str:
 
 def summary_tex(aggregates: Aggregates) -> str:
     """Return the main means as a LaTeX table; the best are bold."""
-    table = overall_table(aggregates, [column.key for column in _PAPER])
+    table = overall_table(aggregates, [column.key for column in PAPER])
     header, _ = table.texts()
     rows = [
         [_tex(label), *(rf"\textbf{{{_tex(c.text)}}}" if c.best else _tex(c.text) for c in cells)]

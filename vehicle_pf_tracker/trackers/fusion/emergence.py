@@ -26,7 +26,11 @@ from collections.abc import Iterable
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.fusion.perspective import KEPT_FRAMES, Sighting
+from vehicle_pf_tracker.trackers.fusion.perspective import (
+    KEPT_FRAMES,
+    PerspectiveMotion,
+    Sighting,
+)
 
 _FRAMES, _MOVED = 8, 0.5
 """Frames in a row that prove it, and its way in them, of the size: as for a return."""
@@ -45,8 +49,8 @@ class Emergence:
     ----------
     last : Sighting
         Where the vehicle was last seen clearly.
-    velocity : (2,) array
-        Its velocity then, px per frame.
+    motion : PerspectiveMotion
+        Its motion then.
     image_size : (2,) array
         Width and height of the frame, px.
     earlier : iterable of (float, (N, 2, 2) array)
@@ -56,18 +60,25 @@ class Emergence:
     ----------
     is_alone : bool
         True as long as nothing else has moved around; nothing is found any more once it is False.
+    motion : PerspectiveMotion
+        As given.
     """
 
     def __init__(
-        self, last: Sighting, velocity: Array, image_size: Array,
+        self, last: Sighting, motion: PerspectiveMotion, image_size: Array,
         earlier: Iterable[tuple[float, Array]],
     ) -> None:  # fmt: skip
         self._centre, self._size, self._image_size = last.position, last.size, image_size
-        self._extent, self._speed = float(np.sqrt(last.size.prod())), float(np.hypot(*velocity))
-        self._age = 0.0
+        self._extent, self._speed = (
+            float(np.sqrt(last.size.prod())),
+            float(np.hypot(*motion.velocity)),
+        )
+        self.motion, self._age = motion, 0.0
         self._sides: list[Array] = []
+        self._unlike: list[float] = []
         self.is_alone = all(
-            not len(self._near(boxes, last.position - velocity * ago)) for ago, boxes in earlier
+            not len(self._near(boxes, last.position - motion.velocity * ago))
+            for ago, boxes in earlier
         )
 
     def _near(self, boxes: Array, own: Array | None) -> Array:
@@ -99,6 +110,14 @@ class Emergence:
             self._sides = []
         self._sides.append(sides)
         return self._proven(elapsed) if areas[0] > _LEAST_AREA else None
+
+    def has_paint(self, unlike: float) -> bool:
+        """Take how far its paint is from the vehicle's, from 1 another's; judge all frames so far.
+
+        In a single one the windows of a stranger may look like the vehicle.
+        """
+        self._unlike.append(unlike)
+        return bool(np.mean(self._unlike) < 1)
 
     def _can_begin(self, sides: Array) -> bool:
         """Test whether the vehicle can be there already, and nothing enters by the border."""

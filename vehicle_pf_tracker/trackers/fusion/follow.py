@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.fusion.appearance import View, searched_size
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, hidden_hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
+from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
@@ -36,6 +38,9 @@ _WEAK_RESPONSE = 0.6
 _WHOLE = 0.8
 """Share of the surface from which the spread of points tells the size: what an occluder covers,
 shrinks."""
+_LEAST_SURE = 20.0
+"""Geometric mean of the sides, px, below which points are not believed wholly: they are magnified
+twofold and more, as are their errors (truck4_2, white_van)."""
 _TURNING_STIFFNESS = 0.5
 """Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
 turn by 90 degrees nothing that was learnt before stays right (scene `turn`, seed 100)."""
@@ -112,13 +117,26 @@ def _sized(state: State, step: Step, *, again: bool) -> State:
     """Follow the size by the spread of points on the vehicle, and by the filter's response."""
     options, memory, size = step.parameters.size, step.memory, state.size
 
-    def peak(size: Array) -> float:
-        return memory.appearance.response_at(step.frame, state.position, size)
-
-    if not again and options.step and memory.surface.share > _WHOLE:
-        size = size * np.exp(memory.points.stretch / 2)
+    peak = partial(memory.appearance.response_at, step.frame, state.position)
+    if not again and options.step:
+        told = told_by_points(memory.points.stretch, memory.surface.share, size, options)
+        size = size * np.exp(told)
     size = searched_size(size, state.frames // 2, peak, options)
     return replace(state, size=step.bounded(size))
+
+
+def told_by_points(stretch: Array, share: float, size: Array, options: SizeParameters) -> Array:
+    """Change of the logarithm of width and height that the points on the vehicle tell.
+
+    What an occluder drags along draws together, along one axis. So points that spread along both,
+    or that draw together along both faster than the response follows, are believed wholly.
+    """
+    reach = options.gain * np.log1p(options.step)
+    both = stretch.min() if stretch.min() > 0 else min(stretch.max(), 0.0)
+    sure = both if (both > 0 or both < -reach) and size.prod() > _LEAST_SURE**2 else 0.0
+    if share <= _WHOLE:
+        return np.full(2, sure if share > EVEN else 0.0)
+    return np.asarray(stretch + sure) / 2
 
 
 def _follow_outline(state: State, turned: Turned, step: Step) -> State:

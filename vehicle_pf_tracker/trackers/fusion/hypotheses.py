@@ -143,8 +143,7 @@ class Hypotheses:
         across : float
             Share of the velocity's noise across the heading.
         """
-        root = np.sqrt(elapsed)
-        shape = self.positions.shape
+        root, shape = np.sqrt(elapsed), self.positions.shape
         faster = np.exp(2 * self.growths * elapsed)[:, np.newaxis]
         noise = along_heading(rng.normal(size=shape), self.mean_velocity, across)
         velocities = self.velocities * faster + noise * (sigmas[1] * root)

@@ -67,9 +67,7 @@ def made_whole(
     judged = np.flatnonzero(responses >= _LEAST_RESPONSE)[-_JUDGED:]
     if len(judged) < _JUDGED or len(ages) < 2 * _JUDGED:
         return None
-    positions, sizes = positions.copy(), sizes.copy()
-    seen = sizes.copy()
-    restored = False
+    seen, positions, sizes, restored = sizes, positions.copy(), sizes.copy(), False
     for axis in (0, 1):
         ratio = seen[:, axis] / seen[:, 1 - axis]
         whole = float(np.quantile(ratio, _WHOLE_QUANTILE))
@@ -222,9 +220,7 @@ class Sightings:
         believed = responses[clear] >= _SIZE_RESPONSE
         if believed.sum() < _RATE_NEEDS:
             believed[:] = True
-        weights = believed.astype(float)
-        if not self.are_steady:
-            weights *= np.exp(times / _MEMORY)
+        weights = np.asarray(believed * (1.0 if self.are_steady else np.exp(times / _MEMORY)))
         extents = np.sqrt(sizes.prod(axis=1))
         return fit_motion(times, positions, extents, weights), last
 

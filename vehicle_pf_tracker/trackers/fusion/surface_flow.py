@@ -141,8 +141,7 @@ class SurfaceFlow:
     def _earlier(self, position: Array, zoom: Array) -> tuple[_Kept, float]:
         """Choose a patch to compare with, and tell how far vehicle and background came apart."""
         for kept in reversed(self._kept):
-            across, down = ((position - kept.moved) * zoom).tolist()
-            apart = math.hypot(across, down)
+            apart = math.hypot(*((position - kept.moved) * zoom))
             if apart >= _APART_PX:
                 break
         return kept, apart

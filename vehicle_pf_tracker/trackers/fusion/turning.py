@@ -101,7 +101,6 @@ class TurningBranch:
         self._foreground = Foreground()
         self._branch: _Branch | None = None
         self._emergence: Emergence | None = None
-        self._unlike: list[float] = []
 
     @property
     def can_begin(self) -> bool:
@@ -117,11 +116,9 @@ class TurningBranch:
     def begin(self, motion: PerspectiveMotion, last: Sighting) -> None:
         """Begin where the vehicle was last seen clearly, of which `last.age` frames passed."""
         self._branch = self._emergence = None
-        self._unlike = []
         if self.can_begin:
             earlier, image_size = self._foreground.history(), self._foreground.extent
-            self._emergence = Emergence(last, motion.velocity, image_size, earlier)
-            self._motion = motion
+            self._emergence = Emergence(last, motion, image_size, earlier)
         ago = round(last.age)
         first = self._foreground.outline(last.position, last.size, ago)
         if first is None:
@@ -173,11 +170,9 @@ class TurningBranch:
         if found is None:
             return None
         outline, velocity, margins = Outline(*found[0]), found[1], (np.zeros(2), np.zeros(2))
-        # Over all frames: a stranger's windows may look like the vehicle's in one of them.
-        self._unlike.append(unlike(outline.size, outline.centre))
-        if np.mean(self._unlike) > 1:
+        if not emergence.has_paint(unlike(outline.size, outline.centre)):
             return None
-        return _Branch(self._motion, outline.size, margins, outline, velocity, 0.0, proven=True)
+        return _Branch(emergence.motion, outline.size, margins, outline, velocity, 0.0, proven=True)
 
     def end(self) -> None:
         """End the branch: the vehicle was found another way."""
