@@ -153,7 +153,8 @@ def _recede(tracks: Sequence[Track], edges: Array, noise: float) -> npt.NDArray[
     drawn_in = ((edges - predicted) * INWARD > 0)[:, _ENDS]
     lately = np.array([track.drift for track in tracks])[:, _ENDS] <= 0
     in_sight = np.array([len(track.covers) == 0 for track in tracks])
-    return in_sight & alike & (shares < 0).all(axis=1) & (drawn_in & lately).all(axis=1)
+    smaller = (shares < 0).all(axis=1) & (drawn_in & lately).all(axis=1)
+    return np.asarray(in_sight & alike & smaller)
 
 
 def _doubt_drives(
