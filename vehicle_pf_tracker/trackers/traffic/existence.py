@@ -50,7 +50,8 @@ it, so that only 50 take off all that it can have."""
 _NEW_VEHICLES = 0.1
 """Vehicles that come into view per image: one in a third of a second at 30 Hz."""
 _SURELY_DRIVES = 50.0
-"""Evidence for a drive above which scores are ignored: false alarms side by side reach 35."""
+"""Evidence for a drive above which scores are ignored, and the way is only to be longer than boxes
+shake: false alarms side by side reach 35."""
 _STANDING = 0.2
 """Way, of the size, below which it stands: boxes shake by less."""
 _STILL = 0.05
@@ -140,9 +141,10 @@ class Existence:
 
     def _drives(self, track: Track) -> bool:
         evidence = track.drive()
-        doubt = track.doubt if evidence < _SURELY_DRIVES else 0.0
         # False alarms side by side look like a short drive.
-        needed = self.parameters.birth.displacement * (1 + HALF * doubt)
+        needed = self.parameters.birth.displacement * (1 + HALF * track.doubt)
+        if evidence > _SURELY_DRIVES:
+            needed = _STANDING
         return track.way > needed and evidence > CERTAIN
 
     def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
@@ -194,8 +196,9 @@ class Existence:
                 continue
             if track.confirmed:
                 continue
-            # What drove may have been a vehicle, and tells nothing about its detections.
-            if track.matches < FEW or not self._drives(track):
+            # What went straight may have been a vehicle: its detections, taken for false alarms,
+            # would keep those after it from being confirmed.
+            if track.matches < FEW or track.drive() <= CERTAIN:
                 for sample in track.samples:
                     self._evidence.learn(sample, False)
         return kept

@@ -187,13 +187,13 @@ class Track:
         self.sides, self.drift = sides, drift
         self.partial = 0 if is_whole else self.partial + 1
 
-    def crowd(self, crowded: bool) -> int:
+    def crowd(self, *, crowded: bool) -> int:
         """Count the detections in a row that had another one beside them in the box."""
         self.crowded = self.crowded + 1 if crowded else 0
         return self.crowded
 
-    def shrink_to(self, edges: Array) -> None:
-        """Be no more than what is in a box (4,)."""
+    def fill(self, edges: Array) -> None:
+        """Be as large as a box (4,), and there."""
         self.crowded = 0
         self.sides = edges[2:] - edges[:2]
         self.state.resize(edges)
