@@ -68,18 +68,6 @@ def test_what_was_seen_a_few_times_speaks_against_its_scores():
     assert ended_unconfirmed([(20 + 4 * frame, 100) for frame in range(3)]) < -1
 
 
-def test_a_slow_drive_beyond_doubt_is_confirmed_before_it_is_far():
-    existence, evidence = Existence(TrafficParameters(), DetectionEvidence()), DetectionEvidence()
-    one = track(1, 100.0, 100.0)
-    for frame in range(60):
-        predict([one], -1000.0, 1.0 if frame else 0.0, DRIVE)
-        detections = found(evidence, (100 + 0.5 * frame, 100, 40, 30))
-        one.state.measure(detections.edges[0], np.ones(4))
-        if existence.detected(one, detections, 0, 1.0):
-            break
-    assert 0.2 < one.way < 0.3
-
-
 def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_alarm():
     evidence = DetectionEvidence()
     one = track(1, 100.0)

@@ -50,8 +50,7 @@ it, so that only 50 take off all that it can have."""
 _NEW_VEHICLES = 0.1
 """Vehicles that come into view per image: one in a third of a second at 30 Hz."""
 _SURELY_DRIVES = 50.0
-"""Evidence for a drive above which scores are ignored, and the way is only to be longer than boxes
-shake: false alarms side by side reach 35."""
+"""Evidence for a drive above which scores are ignored: false alarms side by side reach 35."""
 _STANDING = 0.2
 """Way, of the size, below which it stands: boxes shake by less."""
 _STILL = 0.05
@@ -142,9 +141,8 @@ class Existence:
     def _drives(self, track: Track) -> bool:
         evidence = track.drive()
         # False alarms side by side look like a short drive.
-        needed = self.parameters.birth.displacement * (1 + HALF * track.doubt)
-        if evidence > _SURELY_DRIVES:
-            needed = _STANDING
+        doubt = track.doubt if evidence < _SURELY_DRIVES else 0.0
+        needed = self.parameters.birth.displacement * (1 + HALF * doubt)
         return track.way > needed and evidence > CERTAIN
 
     def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
