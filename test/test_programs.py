@@ -93,7 +93,7 @@ PROGRAMS = {
     ),
     "laboratory.traffic_occluders": Program("{toy}/traffic", printed="traffic: "),
     "laboratory.traffic_perturbed": Program(
-        "{toy}/traffic -o {out}", ("traffic.html",), "the report is", ("baselines",)
+        "{toy}/traffic -o {out}", ("traffic.md",), "the report is", ("baselines",)
     ),
     "laboratory.traffic_score": Program(
         "{toy}/traffic --baselines", printed="bytetrack", needs=("baselines",)
@@ -104,7 +104,7 @@ PROGRAMS = {
 }
 LIBRARIES = {
     "laboratory.__init__", "laboratory.__main__", "laboratory.covariance_coverage",
-    "laboratory.coverage_picture",
+    "laboratory.coverage_picture", "laboratory.figure_files", "laboratory.result_store",
 }  # fmt: skip
 """Modules beside the programs that these import."""
 

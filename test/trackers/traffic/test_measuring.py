@@ -17,13 +17,14 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure
+from vehicle_pf_tracker.trackers.traffic.detections import overlaps
+from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure, outgrown
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import FEW, Track
+from vehicle_pf_tracker.trackers.traffic.track import FEW, Track, predict
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
 SIZE = (320, 240)
-DRIVE = Drive(0.001, 0.5, 400.0)
+DRIVE, ROAD = Drive(0.001, 0.5, 400.0), Drive(0.002, 0.5, 768.0)
 BOX = np.array([100.0, 100, 140, 130])
 
 
@@ -118,3 +119,44 @@ def test_a_part_without_another_detection_is_not_taken_for_several(track):
     for _ in range(3):
         measured(track, own)
     assert track.state.edges[Edge.RIGHT] == pytest.approx(140, abs=1)
+
+
+WHOLE = np.array([[90.0, 96, 150, 134]])
+
+
+def missed(left=100.0, *, matches=6):
+    """A confirmed vehicle that no detection was given to."""
+    box = BOX + np.array([left - 100, 0, left - 100, 0])
+    return Track(
+        1, VehicleState(box, np.full(4, 0.3), -1e4, DRIVE), 1, matches=matches, undetected=1.0
+    )
+
+
+def test_boxes_of_the_whole_vehicle_replace_a_part_that_was_seen_first():
+    track = missed()
+    found = [outgrown([track], WHOLE) for _ in range(FEW)]
+    assert found == [[]] * (FEW - 1) + [[track]]
+    assert track.state.edges == pytest.approx(WHOLE[0])
+
+
+def test_two_vehicles_in_one_box_stay_two():
+    tracks = [missed(), missed(125.0)]
+    assert not any(outgrown(tracks, WHOLE) for _ in range(20))
+
+
+def test_a_vehicle_that_was_often_seen_alone_does_not_soon_become_a_box_of_two():
+    track = missed(matches=40)
+    assert not any(outgrown([track], WHOLE) for _ in range(15))
+
+
+@pytest.mark.parametrize("rate", [0.94, 0.97])
+def test_a_vehicle_that_drives_away_fast_before_a_wrong_horizon_is_followed(rate):
+    sides = 100 * rate ** np.arange(25)
+    # By the horizon, far above, it would shrink by a ninth of this.
+    boxes = np.array([(300 - a / 2, 250 - 0.3 * a, 300 + a / 2, 250 + 0.5 * a) for a in sides])
+    track = Track(1, first_state(boxes[0], 0.05, -72.0, ROAD, (640, 640)), 1, matches=1)
+    for box in boxes[1:]:
+        predict([track], -72.0, 1.0, ROAD)
+        measure([track], box[None], DetectionParameters(), (640, 640), box[None])
+        track.add_evidence(box, 0.0, 0.0)
+        assert overlaps(track.state.edges, box) > 0.6

@@ -16,27 +16,25 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
-import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 
-BINS = 64
-"""Four levels of each channel: enough to tell colours, few enough for a box of 100 px."""
+_LEVELS = 4
+"""Levels of each channel: enough to tell colours, few enough for a box of 100 px."""
+BINS = _LEVELS**3
+"""Joint bins of the three channels."""
 _INNER = 0.1
 """Margin on each side, of the size, that is left out: background."""
-_WIDE = 48
-"""Width in px above which every other row and column is enough."""
 
 
 class ColourBins:
-    """Frame as numbers of joint colour bins."""
+    """Joint colour bins of a frame, which are counted where they are asked for."""
 
     def __init__(self, frame: Frame) -> None:
-        level = frame >> 6
-        bins = (level[..., 0] << 4) | (level[..., 1] << 2) | level[..., 2]
-        self._bins: npt.NDArray[np.uint8] = np.asarray(bins, np.uint8)
+        self._frame = frame
 
     def histogram(self, edges: Array, covers: Array) -> Array:
         """Count the colours of a box's inner part.
@@ -57,16 +55,15 @@ class ColourBins:
         dx, dy = _INNER * (right - left), _INNER * (bottom - top)
         x0, x1 = max(int(left + dx), 0), max(int(right - dx) + 1, 0)
         y0, y1 = max(int(top + dy), 0), max(int(bottom - dy) + 1, 0)
-        part = self._bins[y0:y1, x0:x1]
+        part, seen = self._frame[y0:y1, x0:x1], None
+        if not part.size:
+            return np.zeros(BINS)
         if len(covers):
-            seen = np.ones(part.shape, dtype=bool)
+            seen = np.ones(part.shape[:2], np.uint8)
             for cover in np.maximum(covers - (x0, y0, x0, y0), 0.0).astype(int).tolist():
-                seen[cover[1] : cover[3], cover[0] : cover[2]] = False
-            part = part[seen]
-        elif x1 - x0 > _WIDE:
-            part = part[::2, ::2]
-        counts = np.bincount(part.ravel(), minlength=BINS)
-        return np.asarray(counts / max(int(counts.sum()), 1))
+                seen[cover[1] : cover[3], cover[0] : cover[2]] = 0
+        counts = cv2.calcHist([part], [0, 1, 2], seen, [_LEVELS] * 3, [0.0, 256.0] * 3).ravel()
+        return np.asarray(counts / max(float(counts.sum()), 1.0), np.float64)
 
 
 def similarity(one: Array, other: Array) -> float:

@@ -23,7 +23,6 @@ well.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
@@ -35,6 +34,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.parameters.counting_plan import Region
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import SETTLED_AFTER
 
 IntArray: TypeAlias = npt.NDArray[np.intp]
 
@@ -129,9 +129,12 @@ class Detections:
         kept = np.flatnonzero(good)
         # Stable: equal scores stay in the detector's order, so that runs repeat.
         kept = kept[np.argsort(-scores[kept], kind="stable")]
-        _, first = np.unique(boxes[kept], axis=0, return_index=True)
-        kept = kept[np.sort(first)][:MOST_DETECTIONS]
-        return self.take(np.sort(kept))
+        single: dict[tuple[float, ...], int] = {}
+        for index in kept.tolist():
+            single.setdefault(tuple(boxes[index].tolist()), index)
+            if len(single) == MOST_DETECTIONS:
+                break
+        return self.take(np.array(sorted(single.values()), np.intp))
 
 
 def areas(edges: Array) -> Array:
@@ -158,20 +161,21 @@ def clipped(edges: Array, size: tuple[int, int]) -> Array:
     return np.hstack([low, np.maximum(np.clip(edges[:, 2:], 0.0, limits[2:]), low + 1)])
 
 
-_REMEMBERED = 2000
-"""Detections that are remembered: some minutes of a few vehicles."""
+_MEMORY = 2000
+"""Detections that are remembered, some minutes of a few vehicles; and images after which what is
+known of places is halved: light and wind change in a minute."""
 _NEIGHBOURS = 40
 """Detections of about the same score, by rank, that a probability is taken from."""
 _PRIOR = 2.0
 """Weight of the prior on each side, in detections."""
 _GRID = 16
 """Places along each side of the image."""
-_MEMORY = 1500.0
-"""Images after which what is known of places is halved: light and wind change in a minute."""
-_FALSE_ALARMS, _IMAGES = 1.0, 50.0
-"""False alarms per image that are expected before any is seen, and the images that this, and the
-mean of all places for the number of one, are worth."""
-_LARGEST_LOG_ODDS = 7.0
+_FALSE_ALARMS = 1.0
+"""False alarms per image that are expected before any is seen; this, and the mean of all places for
+the number of one, is worth `SETTLED_AFTER` images."""
+CERTAIN = 7.0
+"""Log odds, one in a thousand, beyond which nothing is surer: however long a vehicle was seen, some
+missed detections in plain sight speak against it."""
 
 
 class Sample(NamedTuple):
@@ -185,8 +189,8 @@ class DetectionEvidence:
     """Outcomes of detections by score, and false alarms by place."""
 
     def __init__(self) -> None:
-        self._outcomes: deque[tuple[float, bool]] = deque(maxlen=_REMEMBERED)
-        self._fresh = 0
+        self._outcomes = np.zeros((_MEMORY, 2))  # score, and 1 of a vehicle's
+        self._learnt = self._fresh = 0
         self._sorted = np.empty(0)
         self._sums = np.zeros(1)
         self._images = 0.0
@@ -200,8 +204,8 @@ class DetectionEvidence:
             self._images /= 2
             self._false /= 2
             self._places = (self._places + _PRIOR) / 2
-        if self._fresh >= min(_NEIGHBOURS // 2, len(self._outcomes)) > 0:
-            scores, genuine = np.array(self._outcomes).T
+        if self._fresh >= min(_NEIGHBOURS // 2, self._learnt) > 0:
+            scores, genuine = self._outcomes[: self._learnt].T
             order = np.argsort(scores, kind="stable")
             self._sorted = scores[order]
             self._sums = np.concatenate([[0.0], np.cumsum(genuine[order])])
@@ -223,7 +227,8 @@ class DetectionEvidence:
 
     def learn(self, sample: Sample, genuine: bool, *, alone: bool = True) -> None:
         """Add the outcome of a detection; one beside a vehicle is no false alarm of its place."""
-        self._outcomes.append((sample.score, genuine))
+        self._outcomes[self._learnt % _MEMORY] = sample.score, genuine
+        self._learnt += 1
         self._fresh += 1
         row, column = sample.place
         self._false[row, column] += alone and not genuine
@@ -240,7 +245,7 @@ class DetectionEvidence:
         here = self._places[:, rows, columns]
         by_place = np.log(here[1] / here[0]) - np.log(totals[1] / totals[0])
         both = self._by_score(scores) + np.minimum(by_place, 0.0)
-        return np.asarray(np.clip(both, -_LARGEST_LOG_ODDS, _LARGEST_LOG_ODDS))
+        return np.asarray(np.clip(both, -CERTAIN, CERTAIN))
 
     def gains(self, scores: Array) -> Array:
         """Logarithm of how much more often vehicles have scores (N,) than false alarms have."""
@@ -259,9 +264,9 @@ class DetectionEvidence:
         The number in one place is that of a Poisson process, its prior the mean of all places.
         """
         _, rows, columns = _columns(samples)
-        images = self._images + _IMAGES
-        usual = (self._false.sum() + _FALSE_ALARMS * _IMAGES) / images
-        seen = self._false[rows, columns] * _GRID**2 + _IMAGES * usual
+        images = self._images + SETTLED_AFTER
+        usual = (self._false.sum() + _FALSE_ALARMS * SETTLED_AFTER) / images
+        seen = self._false[rows, columns] * _GRID**2 + SETTLED_AFTER * usual
         return np.asarray(np.log(seen / images))
 
     def _by_score(self, scores: Array) -> Array:

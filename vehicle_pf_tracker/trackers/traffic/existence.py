@@ -21,6 +21,7 @@ from collections.abc import Sequence
 
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections
 from vehicle_pf_tracker.trackers.traffic.detections import (
+    CERTAIN,
     HALF,
     LITTLE,
     DetectionEvidence,
@@ -28,7 +29,6 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.track import (
-    CERTAIN,
     FEW,
     SEEN_WITHIN,
     Track,
@@ -36,21 +36,19 @@ from vehicle_pf_tracker.trackers.traffic.track import (
 )
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR, SETTLED_AFTER
 
-_LEAST, _MOST = -0.6, 2.0
-"""Bounds of the log odds that the score of one detection adds: a few good scores are no proof, and
-a detector that knows little about a vehicle must not hide it for ever."""
+_MOST = 3.0
+"""Log odds, one in twenty, that one detection adds at most by its score, and by where it is: no
+single one proves a vehicle. As much against it refutes one."""
 _SCORE_DOUBT = 0.5
-"""Log odds per detection that are taken off, in confirming by scores alone."""
+"""Log odds that one score takes off at most, so that a detector which knows little about a vehicle
+does not hide it for ever; and that are taken off each, in confirming by scores alone."""
 _PROVEN = 4.0
 """Sum of the log odds of scores above which no drive is asked for."""
-_MISSED_HELD, _MISSED_HIDDEN = 0.3, 0.12
-"""Log odds that a detection missed in plain sight takes off a vehicle that its pixels hold, and off
-one that may be hidden by something unknown."""
-_NEW_VEHICLES = 0.05
-"""Vehicles that come into view per image: one in two thirds of a second at 30 Hz."""
-_DOUBTED = 2.0
-"""Log odds against a track, by the scores of its detections, for which it has to drive twice as
-far: false alarms side by side look like a short drive."""
+_MISSED = 0.15
+"""Log odds that a detection missed in plain sight takes off a vehicle: something unknown may hide
+it, so that only 50 take off all that it can have."""
+_NEW_VEHICLES = 0.1
+"""Vehicles that come into view per image: one in a third of a second at 30 Hz."""
 _SURELY_DRIVES = 50.0
 """Evidence for a drive above which scores are ignored: false alarms side by side reach 35."""
 _STANDING = 0.2
@@ -108,18 +106,17 @@ class Existence:
         fit : float
             Log odds by where it is.
         """
-        most = self.parameters.birth.evidence  # no single one proves or refutes a vehicle
-        fit = min(max(fit, -most), most)
+        fit = min(max(fit, -_MOST), _MOST)
         stands = track.has_driven and track.state.speed_ratio < FAR
         return self._add(track, found, index, 0.0 if track.confirmed and stands else fit)
 
     def _add(self, track: Track, found: FrameDetections, index: int, fit: float) -> bool:
         sample, log_odds = found.samples[index], float(found.log_odds[index])
         gain = log_odds if track.confirmed else float(found.gains[index])
-        track.add_evidence(found.edges[index], min(max(gain, _LEAST), _MOST), fit)
-        doubted = min(max(log_odds - _SCORE_DOUBT, _LEAST), _MOST)
+        track.add_evidence(found.edges[index], min(max(gain, -_SCORE_DOUBT), _MOST), fit)
+        doubted = min(max(log_odds - _SCORE_DOUBT, -_SCORE_DOUBT), _MOST)
         if track.way < _STILL and found.ranks[index] < HALF:
-            doubted = _LEAST
+            doubted = -_SCORE_DOUBT
         track.prove(doubted, sample)
         if track.has_driven or track.given:
             if track.given or track.state.speed_ratio > FAR:
@@ -143,8 +140,9 @@ class Existence:
 
     def _drives(self, track: Track) -> bool:
         evidence = track.drive()
+        # False alarms side by side look like a short drive.
         doubt = track.doubt if evidence < _SURELY_DRIVES else 0.0
-        needed = self.parameters.birth.displacement * (1 + doubt / _DOUBTED)
+        needed = self.parameters.birth.displacement * (1 + HALF * doubt)
         return track.way > needed and evidence > CERTAIN
 
     def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
@@ -170,10 +168,7 @@ class Existence:
                 track.miss(elapsed * self._missed(track))
 
     def _missed(self, track: Track) -> float:
-        if not track.confirmed:
-            return -math.log(1 - self.detection_rate)
-        # Pixels are asked later in the frame: they held it if they did in the frame before.
-        return _MISSED_HELD if track.unseen < SEEN_WITHIN else _MISSED_HIDDEN
+        return _MISSED if track.confirmed else -math.log(1 - self.detection_rate)
 
     def survivors(
         self, tracks: Sequence[Track], size: tuple[int, int], period: float
@@ -199,8 +194,9 @@ class Existence:
                 continue
             if track.confirmed:
                 continue
-            # What drove may have been a vehicle, and tells nothing about its detections.
-            if track.matches < FEW or not self._drives(track):
+            # What went straight may have been a vehicle: its detections, taken for false alarms,
+            # would keep those after it from being confirmed.
+            if track.matches < FEW or track.drive() <= CERTAIN:
                 for sample in track.samples:
                     self._evidence.learn(sample, False)
         return kept
@@ -212,7 +208,7 @@ class Existence:
         if inside < LITTLE:
             return False
         longest = self.parameters.lost_after + self.parameters.forgotten_after
-        return track.log_odds >= -self.parameters.birth.evidence and unseen <= longest
+        return track.log_odds >= -_MOST and unseen <= longest
 
 
 def _in_sight(tracks: Sequence[Track]) -> int:

@@ -28,7 +28,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import INWARD, cut_edges, deviations
-from vehicle_pf_tracker.trackers.traffic.detections import INSIDE, LITTLE, areas
+from vehicle_pf_tracker.trackers.traffic.detections import HALF, INSIDE, LITTLE, areas
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
 from vehicle_pf_tracker.trackers.traffic.track import FEW, RATE, Track, edges_of
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
@@ -54,6 +54,7 @@ _CONTRADICTED = 4.0
 wrong. At 2.5 the errors that detectors repeat are followed, too: HOTA of CenterNet on the exam's
 clip falls by one; at 9 more boxes stay behind vehicles that come near."""
 _OPPOSITE = [Edge.RIGHT, Edge.BOTTOM, Edge.LEFT, Edge.TOP]
+_ENDS = [Edge.LEFT, Edge.RIGHT]
 
 
 def first_state(
@@ -127,11 +128,12 @@ def measure(
     shrunk = sides < _WHOLE * np.minimum(predicted[:, 2:] - predicted[:, :2], latest)
     jumped = (normal > FAR) & (opposite > 0)  # a vehicle that brakes pushes it out
     crept = np.tile(shrunk, 2) & (normal > np.maximum(opposite, 0.0))
-    covered = (jumped | crept) & ~unknown
+    recede = _recede(tracks, edges, settings.edge_noise) & ~unknown.any(axis=1)
+    covered = (jumped | crept) & ~unknown & ~recede[:, np.newaxis]
     patient = np.array([one.matches >= FEW and one.partial < SETTLED_AFTER for one in tracks])
     left_out = unknown | (covered & patient[:, np.newaxis])
     residuals = np.where(left_out, 0.0, (predicted - edges) * INWARD)
-    drifts = _doubt_drives(tracks, states, residuals, spread)
+    drifts = _doubt_drives(tracks, states, residuals, spread, recede)
     states.measure(edges, np.where(left_out, np.inf, spread))
     states.give_back([track.state for track in tracks])
     whole = ~covered.any(axis=1)
@@ -140,17 +142,36 @@ def measure(
     return np.asarray(whole)
 
 
+def _recede(tracks: Sequence[Track], edges: Array, noise: float) -> npt.NDArray[np.bool_]:
+    """Find vehicles (N,) that became smaller as a whole, and go on so: they drive away.
+
+    What covers one draws an edge in, and changes its shape; `edges` and `noise` are of detections.
+    """
+    predicted = edges_of(tracks)
+    shares = np.log((edges[:, 2:] - edges[:, :2]) / (predicted[:, 2:] - predicted[:, :2]))
+    alike = np.abs(shares[:, 0] - shares[:, 1]) < 2 * noise  # that of four edges
+    drawn_in = ((edges - predicted) * INWARD > 0)[:, _ENDS]
+    lately = np.array([track.drift for track in tracks])[:, _ENDS] <= 0
+    in_sight = np.array([len(track.covers) == 0 for track in tracks])
+    smaller = (shares < 0).all(axis=1) & (drawn_in & lately).all(axis=1)
+    return np.asarray(in_sight & alike & smaller)
+
+
 def _doubt_drives(
-    tracks: Sequence[Track], states: VehicleState, residuals: Array, spread: Array
+    tracks: Sequence[Track],
+    states: VehicleState,
+    residuals: Array,
+    spread: Array,
+    recede: npt.NDArray[np.bool_],
 ) -> Array:
     """Be less sure of drives that detections keep contradicting; the drifts (N, 4) from now on.
 
     Where the horizon is wrong or the road bends, a drive is wrong in every frame by a little, on
     the same side, and a state that is sure of it would stay behind until no detection fits. The
     covariance is then that by which the residuals were expected, as in the strong tracking filter
-    of Zhou and Frank (1996). Only an edge outside the prediction counts, and as far as the opposite
-    edge has moved, too: what covers a vehicle draws an edge in, and a box of two vehicles pushes
-    one out.
+    of Zhou and Frank (1996). Only an edge outside the prediction counts, unless the vehicle
+    recedes, and as far as the opposite edge has moved, too: what covers a vehicle draws an edge in,
+    and a box of two vehicles pushes one out.
 
     Parameters
     ----------
@@ -161,13 +182,16 @@ def _doubt_drives(
     residuals, spread : (N, 4) arrays
         Detection less prediction, outward, zero of edges that tell nothing; and the standard
         deviations of the measurement, px.
+    recede : (N,) array
+        True where the vehicle drives away.
     """
     variances = states.edge_covariance.diagonal(axis1=1, axis2=2)
     alone = (intersections(states.edges[:, np.newaxis], states.edges) > 0).sum(axis=1) == 1
     drift = np.array([track.drift for track in tracks])
     drift += RATE * (residuals / np.sqrt(variances + spread**2) - drift)
-    outward = np.clip(drift, 0.0, np.abs(drift[:, _OPPOSITE]))
-    seen = (residuals > 0) & (outward > 0)
+    away = recede[:, np.newaxis]
+    outward = np.clip(np.where(away, -drift, drift), 0.0, np.abs(drift[:, _OPPOSITE]))
+    seen = ((residuals > 0) | away) & (outward > 0)
     expected = np.where(seen, variances, 0.0).sum(axis=1)
     lacking = np.where(seen, residuals**2 - spread**2, 0.0).sum(axis=1)
     wrong = ((outward**2).sum(axis=1) > _CONTRADICTED) & (lacking > expected) & alone
@@ -201,5 +225,35 @@ def _divide(tracks: Sequence[Track], edges: Array, others: Array) -> None:
     ).any(axis=1)
     known = intersections(predicted, edges) > INSIDE * areas(edges)
     for track, box, crowded in zip(tracks, edges, (known & beside).tolist(), strict=True):
-        if track.crowd(crowded) >= FEW:
-            track.shrink_to(box)
+        if track.crowd(crowded=crowded) >= FEW:
+            track.fill(box)
+
+
+def outgrown(tracks: Sequence[Track], edges: Array) -> list[Track]:
+    """Find those that were known by a part only, and make each as large as the box around it.
+
+    Where something hides a vehicle at first, or the background has its colour, it is followed by
+    what is seen; a box of all of it then is too large to be its own.
+
+    Parameters
+    ----------
+    tracks : sequence of N Track
+        All vehicles.
+    edges : (M, 4) array
+        Edges of the detections that are no vehicle's.
+    """
+    boxes = edges_of(tracks)
+    common = intersections(edges[:, np.newaxis], boxes)
+    alone = (common > 0).sum(axis=1, keepdims=True) == 1
+    found = []
+    for row, column in np.argwhere(alone & (common > INSIDE * areas(boxes))).tolist():
+        track = tracks[column]
+        # Two that drive side by side are one for a while, too: boxes of it alone have to be few.
+        if (
+            track.undetected
+            and track.in_sight
+            and track.crowd(crowded=True) >= max(FEW, HALF * track.matches)
+        ):
+            track.fill(edges[row])
+            found.append(track)
+    return found

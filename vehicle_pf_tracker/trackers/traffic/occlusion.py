@@ -23,7 +23,7 @@ import numpy as np
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.detections import HALF, NOTHING, areas, inside_image
-from vehicle_pf_tracker.trackers.traffic.track import SEEN_WITHIN, Track, edges_of
+from vehicle_pf_tracker.trackers.traffic.track import FEW, Track, edges_of
 
 
 def nearest_first(tracks: Sequence[Track], road: RoadPlane | None) -> list[Track]:
@@ -61,7 +61,7 @@ def cover(tracks: Sequence[Track], size: tuple[int, int], occlusions: bool) -> N
     hiding = [
         rank
         for rank, one in enumerate(tracks)
-        if occlusions and one.confirmed and one.unseen <= SEEN_WITHIN and not one.lost
+        if occlusions and one.confirmed and one.unseen < FEW and not one.lost
     ]
     common = intersections(edges[:, np.newaxis], edges[hiding]) / areas(edges)[:, np.newaxis]
     common[np.arange(len(tracks))[:, np.newaxis] <= np.array(hiding, dtype=np.intp)] = 0.0

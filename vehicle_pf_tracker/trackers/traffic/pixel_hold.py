@@ -31,22 +31,34 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.shared_motion import PointFlow
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import HALF, areas
-from vehicle_pf_tracker.trackers.traffic.track import FALL, FEW, Track
+from vehicle_pf_tracker.trackers.traffic.track import FEW, Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR, PIXEL_NOISE, V, X
 
 Grey: TypeAlias = npt.NDArray[np.uint8]
 
 _GRID = 5
-"""Points along each side of a box, the fewest that a motion is taken from, and as many as count as
-independent: neighbours err together."""
+"""Points along each side of a box, and the fewest that a motion is taken from."""
 _REACH = 0.8
 """Part of the box that points are placed in; its rim is background."""
+_POINT_NOISE = 0.5
+"""Standard deviation of a point's flow, px."""
+_INDEPENDENT = 6
+"""Number of points that count as independent: neighbours err together."""
 _OUTLIER = 0.02
 """Likelihood of a point that went elsewhere."""
 _SLIP = 0.02
 """Standard deviation, of its size, by which a box grows or slips on its vehicle in a frame."""
+_SLIP_PX = 0.3
+"""The same in px."""
+_CAUTION = 1.5
+"""Factor on these deviations: errors of successive frames go the same way and add up."""
 _STANDS = 0.4
 """Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
+_HELD_SHARE = 0.3
+"""Least visible share of a vehicle, and share in the image, for pixels to hold it. At a half, and
+without the caution, IDF1 by motion falls by three."""
+_HELD_FALL = 0.15
+"""Fall of the colours' similarity below its usual value above which pixels do not hold it."""
 _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 
 
@@ -77,7 +89,7 @@ class PixelHold:
             if track.confirmed
             and track.undetected > 0
             and track.unseen < FEW  # later the points lie on what hides it
-            and track.in_sight
+            and min(track.visible, track.inside) > _HELD_SHARE
         ]
         for track, hold in zip(held, self.measure(held, colours, normals), strict=True):
             if hold is not None:
@@ -129,9 +141,9 @@ def _hold(
     particles = _particles(track, observed - relative, normals)
     expected = (1 + particles[:, 2])[:, np.newaxis, np.newaxis] * relative
     expected += particles[:, np.newaxis, :2]
-    squared = ((observed - expected) ** 2).sum(axis=2) / PIXEL_NOISE**2
+    squared = ((observed - expected) ** 2).sum(axis=2) / _POINT_NOISE**2
     logs = np.log(np.exp(-squared / 2) + _OUTLIER).mean(axis=1)
-    logs *= min(_GRID, len(relative))
+    logs *= min(_INDEPENDENT, len(relative))
     middles = centre + particles[:, :2]
     halves = size * (1 + particles[:, 2:]) / 2
     boxes = np.hstack([middles - halves, middles + halves])
@@ -143,11 +155,11 @@ def _hold(
     fall = track.usual_similarity - similarity(
         track.colours, colours.histogram(edges, track.covers)
     )
-    if fall > FALL:
+    if fall > _HELD_FALL:
         return None
     spread = np.sqrt(weights @ (boxes - edges) ** 2)
     sides = np.tile(edges[2:] - edges[:2], 2)
-    return Hold(edges, (np.hypot(spread, _SLIP * sides) + PIXEL_NOISE))
+    return Hold(edges, _CAUTION * (np.hypot(spread, _SLIP * sides) + _SLIP_PX))
 
 
 def _standing(old: Array, new: Array, before: Array, predicted: Array) -> npt.NDArray[np.bool_]:

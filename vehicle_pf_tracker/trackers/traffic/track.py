@@ -24,14 +24,11 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.colours import BINS
-from vehicle_pf_tracker.trackers.traffic.detections import HALF, NOTHING, Sample
+from vehicle_pf_tracker.trackers.traffic.detections import CERTAIN, HALF, NOTHING, Sample
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
 
-CERTAIN = 7.0
-"""Log odds, one in a thousand, beyond which nothing is surer: however long a vehicle was seen, some
-missed detections in plain sight speak against it."""
 SEEN_WITHIN = 2.0
 """Nominal periods within which a vehicle counts as seen: one frame may fail."""
 FEW = 4
@@ -41,14 +38,8 @@ RATE = 0.25
 the latest four count for two thirds."""
 FALL = 0.2
 """Fall of the colours' similarity below its usual value above which it is not the vehicle."""
-_FIRST_SIMILARITY = 0.9
-"""Similarity of a vehicle's colours from frame to frame before it is known."""
 _STRAIGHT = 0.8
 """Straightness of a drive, which a leap between two places that flicker cannot reach (0.75)."""
-_STRAIGHTEST = 1e-4
-"""Share of the scatter that is left of the straightest drive: boxes have whole pixels."""
-_HIDDEN_CONFIDENCE = 0.5
-"""Share of the confidence that is left while a vehicle is predicted only."""
 
 
 @dataclass(eq=False, slots=True)
@@ -134,7 +125,7 @@ class Track:
     before: Array = field(default_factory=lambda: np.zeros(4))
     samples: list[Sample] = field(default_factory=list)
     drift: Array = field(default_factory=lambda: np.zeros(4))
-    usual_similarity: float = _FIRST_SIMILARITY
+    usual_similarity: float = 1.0
     growth: Growth = field(default_factory=Growth)
     _first: Array = field(default_factory=lambda: np.zeros(2))
     _drive: Array = field(default_factory=lambda: np.zeros(8))
@@ -196,13 +187,13 @@ class Track:
         self.sides, self.drift = sides, drift
         self.partial = 0 if is_whole else self.partial + 1
 
-    def crowd(self, crowded: bool) -> int:
+    def crowd(self, *, crowded: bool) -> int:
         """Count the detections in a row that had another one beside them in the box."""
         self.crowded = self.crowded + 1 if crowded else 0
         return self.crowded
 
-    def shrink_to(self, edges: Array) -> None:
-        """Be no more than what is in a box (4,)."""
+    def fill(self, edges: Array) -> None:
+        """Be as large as a box (4,), and there."""
         self.crowded = 0
         self.sides = edges[2:] - edges[:2]
         self.state.resize(edges)
@@ -265,7 +256,7 @@ class Track:
         if straightness < _STRAIGHT:
             return 0.0
         # The share is distributed as Beta(1, count - 2): two slopes, of twice as many coordinates.
-        return float(2 - count) * math.log(max(1 - straightness, _STRAIGHTEST))
+        return float(2 - count) * math.log(max(1 - straightness, math.ulp(1.0)))
 
     def prove(self, doubted: float, sample: Sample) -> None:
         """Take the evidence by the score of a detection, of which it is not known what it shows."""
@@ -322,7 +313,7 @@ class Track:
             box=state.box,
             velocity=state.velocity,
             mode=mode,
-            confidence=confidence * (_HIDDEN_CONFIDENCE if hidden else 1.0),
+            confidence=confidence * (HALF if hidden else 1.0),
             label=self.label,
             score=self.score,
             age=self.age,

@@ -44,10 +44,10 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     Detections,
     areas,
 )
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
-from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure
+from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure, outgrown
 from vehicle_pf_tracker.trackers.traffic.occlusion import cover, nearest_first
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.pixel_hold import PixelHold
@@ -207,9 +207,8 @@ class TrafficTracker:
     def _look_for_horizon(self) -> None:
         """Estimate the horizon, and move that of the vehicles which are followed."""
         growths = (track.growth for track in self._tracks if track.confirmed)
-        self._row = self._horizon.look(
-            self.parameters.motion.horizon, growths, self._size, self.road
-        )
+        assumed = self.parameters.motion.horizon
+        self._row = self._horizon.look(assumed, growths, self._size, self.road)
 
     def _take(self, detections: Detections, elapsed: float) -> None:
         """Give the detections to the tracks; what is left over may be new vehicles."""
@@ -221,8 +220,12 @@ class TrafficTracker:
             self._drop_inside([one for one in confirmed if not one.undetected], found)
         self._match_tentative([one for one in self._tracks if not one.confirmed], found)
         self._merge_twins()
+        confirmed = [one for one in self._tracks if one.confirmed]
+        self._match(outgrown(confirmed, found.edges[found.free]), found, -math.inf)
         self._existence.fade(self._tracks, elapsed)
-        self._drop_inside([one for one in self._tracks if one.confirmed], found, either=True)
+        # In the place of one that is predicted only there may be another one.
+        seen = [one for one in self._tracks if one.mode is TrackMode.TRACKING]
+        self._drop_inside(seen, found, either=True)
         for index in found.free:
             self._begin_from(found, index)
 
@@ -230,9 +233,8 @@ class TrafficTracker:
         """Pair confirmed tracks with free detections of log odds from `least`."""
         indices = [index for index in found.free if found.log_odds[index] >= least]
         if tracks and indices:
-            settings = self.parameters.detections
-            costs, odds = pair_costs(tracks, found, indices, settings)
-            self._correct(tracks, indices, costs, odds, found)
+            costs = pair_costs(tracks, found, indices, self.parameters.detections)
+            self._correct(tracks, indices, *costs, found)
 
     def _match_tentative(self, tracks: Sequence[Track], found: FrameDetections) -> None:
         """Pair new tracks with free detections that are rather theirs than false alarms."""
@@ -260,9 +262,8 @@ class TrafficTracker:
         edges = found.edges[indices]
         whole = measure(tracks, edges, self.parameters.detections, self._size, found.edges)
         cut = np.asarray(cut_edges(edges, self._size).any(axis=1))
-        for track, index, fit, is_whole, is_cut in zip(
-            tracks, indices, fits, whole, cut, strict=True
-        ):
+        rows = zip(tracks, indices, fits, whole, cut, strict=True)
+        for track, index, fit, is_whole, is_cut in rows:
             track.name(found.labels[index], float(found.scores[index]))
             if is_whole:
                 track.learn_colours(found.histogram(index))
@@ -318,11 +319,9 @@ class TrafficTracker:
     @property
     def _drive(self) -> Drive:
         motion, period = self.parameters.motion, self.frame_period
-        return Drive(
-            acceleration=motion.acceleration * period**2 / _VEHICLE_WIDTH,
-            top_speed=motion.top_speed * period / _VEHICLE_WIDTH,
-            focal=_FOCAL * self._size[0],
-        )
+        acceleration = motion.acceleration * period**2 / _VEHICLE_WIDTH
+        top_speed = motion.top_speed * period / _VEHICLE_WIDTH
+        return Drive(acceleration, top_speed, _FOCAL * self._size[0])
 
     def _begin(self, edges: Array) -> Track:
         """Begin a track in a box."""
