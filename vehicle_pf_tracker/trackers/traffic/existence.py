@@ -194,9 +194,8 @@ class Existence:
                 continue
             if track.confirmed:
                 continue
-            # What went straight may have been a vehicle: its detections, taken for false alarms,
-            # would keep those after it from being confirmed.
-            if track.matches < FEW or track.drive() <= CERTAIN:
+            # What drove may have been a vehicle, and tells nothing about its detections.
+            if track.matches < FEW or not self._drives(track):
                 for sample in track.samples:
                     self._evidence.learn(sample, False)
         return kept

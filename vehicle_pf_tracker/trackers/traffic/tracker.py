@@ -44,7 +44,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     Detections,
     areas,
 )
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
 from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure, outgrown
@@ -223,9 +223,7 @@ class TrafficTracker:
         confirmed = [one for one in self._tracks if one.confirmed]
         self._match(outgrown(confirmed, found.edges[found.free]), found, -math.inf)
         self._existence.fade(self._tracks, elapsed)
-        # In the place of one that is predicted only there may be another one.
-        seen = [one for one in self._tracks if one.mode is TrackMode.TRACKING]
-        self._drop_inside(seen, found, either=True)
+        self._drop_inside([one for one in self._tracks if one.confirmed], found, either=True)
         for index in found.free:
             self._begin_from(found, index)
 

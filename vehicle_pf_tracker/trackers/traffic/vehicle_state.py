@@ -228,10 +228,8 @@ class VehicleState:
         self._transform(step)
         self.covariance[..., ACROSS, ACROSS] += push**2 * elapsed
         self.covariance[..., ALONG, ALONG] += (push / drive.focal) ** 2 * elapsed
-        # By a wrong horizon a box grows otherwise than its lower edge drives, while unknown.
-        walk = (_SIZE_WALK**2 + v**2 * self.covariance[..., ALONG, ALONG]) * elapsed
-        self.covariance[..., W, W] += w**2 * walk
-        self.covariance[..., H, H] += h**2 * walk
+        self.covariance[..., W, W] += (_SIZE_WALK * w) ** 2 * elapsed
+        self.covariance[..., H, H] += (_SIZE_WALK * h) ** 2 * elapsed
         self._bound()
         self._settle()
 
