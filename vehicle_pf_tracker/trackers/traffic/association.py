@@ -50,7 +50,8 @@ from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
 )
 
 GATE = 30.0
-"""Largest cost of a pair."""
+"""Largest cost of a pair: more than 23.5, the 0.9999 quantile of chi-squared with four degrees of
+freedom, since the noise of edges is an estimate."""
 INWARD = np.array([1.0, 1.0, -1.0, -1.0])
 """Sign of a residual (detection less prediction) of left, top, right, bottom that points inward."""
 _SIZES = 2.0
