@@ -12,10 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What moves before a camera that stands.
+"""Foreground of a standing camera: what differs from the median of earlier frames.
 
-Nothing is computed before it is asked for: frames are kept as they are, and their median is the
-background.
+Nothing is computed before it is asked for; frames are kept as they are.
 """
 
 from __future__ import annotations
@@ -77,12 +76,13 @@ class Outline(NamedTuple):
 
 
 class Foreground:
-    """Keeps frames of a camera that stands."""
+    """Keeps frames of a standing camera."""
 
     def __init__(self) -> None:
         self._background: deque[SmallGrey] = deque(maxlen=_KEPT)
         self._latest: deque[SmallGrey] = deque(maxlen=_LATEST)
         self._frames = 0
+        self._whole = np.empty((0, 0), np.uint8)
 
     def keep(self, small: SmallGrey, *, still: bool) -> None:
         """Keep a frame; discard earlier ones of another size, or if the camera has moved."""
@@ -106,11 +106,13 @@ class Foreground:
         return np.array(self._latest[-1].image.shape[::-1]) / self._latest[-1].zoom
 
     def history(self) -> Iterator[tuple[float, Array]]:
-        """Learn the whole background; yield the ages of kept frames, and the boxes in them."""
+        """Learn the whole background; give the ages of kept frames, and the boxes in them."""
         self._whole = median([each.image for each in self._background])
         kept, since = list(self._background)[::-1], (self._frames - 1) % _KEPT_EVERY
-        for back in range(0, len(kept), _LOOKED_AT):
-            yield float(since + _KEPT_EVERY * back), self._boxes(kept[back])
+        return (
+            (float(since + _KEPT_EVERY * back), self._boxes(kept[back]))
+            for back in range(0, len(kept), _LOOKED_AT)
+        )
 
     def boxes(self) -> Array:
         """Find all that moves now, against the background that `history` has learnt.

@@ -162,6 +162,7 @@ class Appearance:
         self._filter = CorrelationFilter(_CELLS, target / CELL, options.penalty)
         self.usual_response = 0.0
         self._least_usual = 0.0
+        self._paint = np.zeros(3)
 
     def use_kernels(self, kernels: Kernels) -> None:
         """Measure gradients and multiply spectra by another implementation from now on."""

@@ -167,7 +167,8 @@ def _learn_sighting(state: State, seen: Observation, step: Step) -> None:
         memory.points.restart()
     if _is_sure(state) and seen.response > CLEAR_RESPONSE:
         memory.surface.learn_usual()
-        memory.appearance.learn_paint(step.frame, state.position, state.size)
+        if memory.turning.can_begin:  # only then is it asked for
+            memory.appearance.learn_paint(step.frame, state.position, state.size)
     if Work.SIZE in state.work:
         memory.points.renew(state.position, state.size, whole=state.is_whole)
     _learn_appearance(state, seen, step)
