@@ -67,8 +67,8 @@ _COLOURS = 3
 _HUE_GAIN = 4.0
 """Weight of Lab's a and b. Paint spans some 20 of their 100 units: unweighted, a grey car answers
 to the filter of a beige one of the same shape (scenes `bus` and `braking`, seeds 100 to 104)."""
-_COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32) / 100
-_COLOUR_MIDDLE = np.array([0.5, 0, 0], np.float32)
+_COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32)[:, np.newaxis, np.newaxis] / 100
+_COLOUR_MIDDLE = np.array([0.5, 0, 0], np.float32)[:, np.newaxis, np.newaxis]
 _PAINTED = 0.6
 """Middle of a box that paint is measured in, of each side."""
 _PAINT_SIDE = 8
@@ -86,7 +86,7 @@ class View:
     ----------
     patch : Patch
         The surroundings.
-    spectrum : (n, channels, 2, n // 2 + 1) array or None
+    spectrum : (channels, n, n // 2 + 1) array or None
         Spectrum of their cells; None for a wide view.
     response : (m, m) array
         Response by [y, x], relative to the usual one of visible frames.
@@ -238,7 +238,7 @@ class Appearance:
         small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
         lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
         # Lightness is 0 to 100, a and b about as much to either side: all within about one.
-        features[GRADIENT_CHANNELS:] = (lab * _COLOUR_GAINS - _COLOUR_MIDDLE).transpose(2, 0, 1)
+        features[GRADIENT_CHANNELS:] = lab.transpose(2, 0, 1) * _COLOUR_GAINS - _COLOUR_MIDDLE
         return features
 
 

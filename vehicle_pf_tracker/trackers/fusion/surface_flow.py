@@ -31,7 +31,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, Flow, carried_share
+from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, carried_share
 
 _KEPT = 8
 """Patches kept; by less than half a canonical px per frame a vehicle is taken to stand."""
@@ -78,6 +78,9 @@ class _Kept:
 class SurfaceFlow:
     """Compares the present patch with an earlier one, point by point.
 
+    Flow is found by dense inverse search (Kroeger et al. 2016), whose stripes, and so its results,
+    do not depend on the number of threads.
+
     Attributes
     ----------
     share : float
@@ -90,6 +93,8 @@ class SurfaceFlow:
     def __init__(self) -> None:
         self._usual = 0.0
         self._latest = 1.0
+        self._flow = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
+        self._flow.setVariationalRefinementIterations(_REFINED)
         self.restart()
 
     def restart(self) -> None:
@@ -165,27 +170,15 @@ class SurfaceFlow:
             background = np.vstack(
                 [to_px[0][:, np.newaxis] * back, (to_px[1] - kept.shift) @ back + shift]
             )
+        flow = self._flow.calc(patch.grey, before.grey, None)  # type: ignore[call-overload]
         cells = _cells(patch, position, size)
-        flow = _flow(patch, before)
-        return carried_share(flow, cells, places, vehicle, background)
+        return carried_share(np.asarray(flow), cells, places, vehicle, background)
 
 
 def _middle(patch: Patch) -> Patch:
     """Cut out what flow is measured in."""
     middle = patch.middle(_SIDE)
     return replace(middle, grey=np.ascontiguousarray(middle.grey))
-
-
-def _flow(present: Patch, before: Patch) -> Flow:
-    """Flow from the present patch to an earlier one, canonical px.
-
-    By dense inverse search (Kroeger et al. 2016), whose stripes, and so its results, do not depend
-    on the number of threads.
-    """
-    method = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
-    method.setVariationalRefinementIterations(_REFINED)
-    flow = method.calc(present.grey, before.grey, None)  # type: ignore[call-overload]
-    return np.asarray(flow, np.float32)
 
 
 def _cells(patch: Patch, position: Array, size: Array) -> CellBlock:
