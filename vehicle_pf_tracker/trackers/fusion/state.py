@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from enum import Enum, Flag
+from typing import NamedTuple
 
 import numpy as np
 
@@ -63,8 +64,7 @@ class Work(Flag):
     BOTH = SIZE | TRAINING
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class State:
+class State(NamedTuple):
     """Belief about the vehicle after a frame.
 
     Attributes
