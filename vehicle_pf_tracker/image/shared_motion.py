@@ -201,13 +201,19 @@ def shared_turn(before: Array, after: Array, strayed: float) -> Array:
     It has no shift, so that points which stay behind with an occluder do not fit into it. Those
     that are `strayed` off count half.
     """
-    turn = np.eye(2)
+    turn, kept = np.eye(2), TURN_INERTIA * np.eye(2)
     for _ in range(TURN_FITS):
         off = after - before @ turn
-        weighted = before / (1 + (off**2).sum(axis=1) / strayed**2)[:, np.newaxis]
-        kept = TURN_INERTIA * np.eye(2)
-        turn = np.linalg.solve(weighted.T @ before + kept, weighted.T @ after + kept)
+        far = (off[:, 0] ** 2 + off[:, 1] ** 2) / strayed**2
+        weighted = before.T / (1 + far)
+        turn = solved(weighted @ before + kept, weighted @ after + kept)
     return turn
+
+
+def solved(matrix: Array, right: Array) -> Array:
+    """Solve a (2, 2) system, in a fraction of the time of `np.linalg.solve`."""
+    (a, b), (c, d) = matrix.tolist()
+    return np.asarray(np.array([[d, -b], [-c, a]]) @ right / (a * d - b * c))
 
 
 def staying(before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
@@ -279,7 +285,7 @@ def carried_share(
     near = np.hypot(off[:, 0], off[:, 1]) < NEARLY * limits
     if near.sum() >= FEWEST_CARRIED:
         gram = place[near].T @ place[near] + np.eye(2) * TURN_INERTIA
-        off = off - place @ np.linalg.solve(gram, place[near].T @ off[near])
+        off = off - place @ solved(gram, place[near].T @ off[near])
     return float((np.hypot(off[:, 0], off[:, 1]) < limits).mean())
 
 

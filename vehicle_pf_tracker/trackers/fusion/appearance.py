@@ -246,7 +246,9 @@ def _paint(frame: Frame, position: Array, size: Array) -> Array:
     """Median of the colours in the middle of a box, as L, a and b."""
     small = cut_image(frame, position, _PAINT_SIDE / (_PAINTED * size), (_PAINT_SIDE, _PAINT_SIDE))
     lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
-    return np.asarray(np.median(lab.reshape(-1, 3), axis=0), float)
+    middle = _PAINT_SIDE**2 // 2
+    ordered = np.sort(lab.reshape(-1, 3), axis=0)
+    return np.asarray(ordered[middle - 1 : middle + 1].mean(axis=0), float)
 
 
 _DIRECTIONS = ((1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
