@@ -111,6 +111,7 @@ class CorrelationFilter:
         self._fading = fading[:, np.newaxis].astype(np.float32)
         self._cells = cells
         self.weights: FilterWeights | None = None
+        self._wide_weights: Spectrum | None = None
 
     def spectrum(self, features: CellFeatures) -> Spectrum:
         """Half spectrum of cells (channels, n, n), faded out towards the border."""
@@ -146,6 +147,7 @@ class CorrelationFilter:
             multiplier = multiplier + (right - spectrum * share) * np.float32(1 / total)
             cells = self._target.cells_of(multiplier)
             confined = self._target.spectrum_of(cells)
+        self._wide_weights = None
         self.weights = FilterWeights(cells, cells.transpose(1, 0, 2) * self._fading, confined)
 
     def respond(self, spectrum: Spectrum) -> Response:
@@ -175,8 +177,10 @@ class CorrelationFilter:
 
     def respond_wide(self, spectrum: Spectrum) -> Response:
         """Respond to the cells of a larger patch."""
-        target = self._wide(spectrum.shape[1])[1]
-        return self._response(spectrum, target.spectrum_of(self._trained.target))
+        if self._wide_weights is None:
+            target = self._wide(spectrum.shape[1])[1]
+            self._wide_weights = target.spectrum_of(self._trained.target)
+        return self._response(spectrum, self._wide_weights)
 
     @property
     def _trained(self) -> FilterWeights:
