@@ -144,7 +144,9 @@ class CorrelationFilter:
             # Solve (x x^H / places + total) f = right at each frequency (Sherman and Morrison).
             total = penalty + stiffness
             share = (conjugate * right).sum(axis=0) / (power + np.float32(self._cells**2 * total))
-            multiplier = multiplier + (right - spectrum * share) * np.float32(1 / total)
+            right -= spectrum * share
+            right *= np.float32(1 / total)
+            multiplier = multiplier + right
             cells = self._target.cells_of(multiplier)
             confined = self._target.spectrum_of(cells)
         self._wide_weights = None

@@ -248,7 +248,7 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
         if far.sum() >= FEWEST_POINTS // 2:
             ratio = np.maximum(new[far] / old[far], LEAST_RATIO)
             change[axis] = median(np.log(ratio))
-    return np.clip(change, -LARGEST_STRETCH, LARGEST_STRETCH)
+    return np.minimum(np.maximum(change, -LARGEST_STRETCH), LARGEST_STRETCH)
 
 
 def carried_share(

@@ -103,9 +103,11 @@ def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
 
 def _coefficients(spectrum: Spectrum) -> _Matrix:
     """Coefficients of cosines and sines along y, real and imaginary parts by turns along x."""
-    half = spectrum.shape[-1] - 1
-    alone, low, high = np.split(spectrum, [2, half + 1], axis=-2)
-    return np.concatenate([alone, low + high, 1j * (low - high)], axis=-2).view(np.float32)
+    half, found = spectrum.shape[-1] - 1, spectrum.copy()
+    low, high = spectrum[..., 2 : half + 1, :], spectrum[..., half + 1 :, :]
+    found[..., 2 : half + 1, :] += high
+    np.multiply(low - high, np.complex64(1j), out=found[..., half + 1 :, :])
+    return np.asarray(found.view(np.float32))
 
 
 @functools.cache

@@ -125,8 +125,8 @@ class View:
             min(max(place, reach + 1), inner) for place in self.places(position).tolist()
         )
         near = self.response[row - reach : row + reach + 1, column - reach : column + reach + 1]
-        dy, dx = np.unravel_index(int(near.argmax()), near.shape)
-        y, x = row - reach + int(dy), column - reach + int(dx)
+        dy, dx = divmod(int(near.argmax()), 2 * reach + 1)
+        y, x = row - reach + dy, column - reach + dx
         top = self.response[y - 1 : y + 2, x - 1 : x + 2].astype(np.float64)
         exact = x + _vertex(*top[1].tolist()), y + _vertex(*top[:, 1].tolist())
         return self.position(*exact), float(self.response[y, x])

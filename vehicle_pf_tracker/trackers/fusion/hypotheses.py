@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -148,7 +149,7 @@ class Hypotheses(NamedTuple):
         positions = self.positions + velocities * elapsed
         positions += rng.normal(size=shape) * (sigmas[0] * root)
         growths = self.growths * (1 + self.growths * elapsed)
-        growths = np.clip(growths, -FASTEST_GROWTH, FASTEST_GROWTH)
+        growths = np.minimum(np.maximum(growths, -FASTEST_GROWTH), FASTEST_GROWTH)
         return self._replace(positions=positions, velocities=velocities, growths=growths)
 
     def passed(self, elapsed: float) -> Hypotheses:
@@ -190,7 +191,7 @@ class Hypotheses(NamedTuple):
 
 def along_heading(noise: Array, heading: Array, across: float) -> Array:
     """Shrink the part of `noise` (N, 2) that is across the heading (2,) to the share `across`."""
-    speed = float(np.hypot(*heading))
+    speed = math.hypot(*heading.tolist())
     if across == 1.0 or not speed:
         return noise
     unit = heading / speed

@@ -210,9 +210,8 @@ def response_evidence(
     seen = np.minimum(np.maximum(view.response, 0), np.float32(_HIGHEST_RESPONSE))
     ratios = parameters.response_slope * (seen.astype(np.float64) - EVEN)
     moves, log_ratios = climbed(ratios, view.places(positions), _costs(*climb))
-    return positions + moves / view.steps, np.clip(
-        log_ratios, -_LARGEST_LOG_RATIO, _LARGEST_LOG_RATIO
-    )
+    bounded = np.minimum(np.maximum(log_ratios, -_LARGEST_LOG_RATIO), _LARGEST_LOG_RATIO)
+    return positions + moves / view.steps, bounded
 
 
 def likeliest_peak(view: View, particles: Hypotheses, extent: float) -> tuple[Array, float]:
@@ -225,6 +224,6 @@ def likeliest_peak(view: View, particles: Hypotheses, extent: float) -> tuple[Ar
     """
     votes = particles.weights * particles.visible
     best = particles.positions[int(votes.argmax())]
-    apart = np.linalg.norm(particles.positions - best, axis=1)
-    votes = np.where(apart < _SAME_VEHICLE * extent, votes, 0.0)
+    x, y = (particles.positions - best).T
+    votes = votes * (np.hypot(x, y) < _SAME_VEHICLE * extent)
     return view.peak_near(votes @ particles.positions / votes.sum(), _PEAK_REACH)
