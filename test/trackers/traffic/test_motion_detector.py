@@ -84,9 +84,9 @@ def mask(*boxes):
     return image
 
 
-def test_a_vehicle_that_is_followed_as_two_halves_stays_one_blob():
-    halves = np.array([[20.0, 40, 60, 55], [20, 55, 60, 70]])
-    edges, _ = BlobReader().read(mask((20, 40, 60, 70)), halves)
+def test_a_vehicle_that_is_followed_as_two_parts_stays_one_blob():
+    parts = np.array([[20.0, 40, 46, 60], [34, 50, 60, 70]])
+    edges, _ = BlobReader().read(mask((20, 40, 60, 70)), parts)
     assert edges.tolist() == [[20, 40, 60, 70]]
 
 
