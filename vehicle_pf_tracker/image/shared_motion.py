@@ -234,8 +234,6 @@ def shared_stretch(before: Array, after: Array, size: Array) -> tuple[Array, Arr
     Also gives the standard errors of both medians.
     """
     change, error = np.zeros((2, 2))
-    if len(before) < FEWEST_POINTS:
-        return change, error
     half = len(before) // 2
     for axis in (0, 1):
         # Each of the lower half with one of the upper half: far apart for most, and no N² pairs.

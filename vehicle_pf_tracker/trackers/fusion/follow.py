@@ -117,8 +117,7 @@ def _sized(state: State, step: Step, *, again: bool) -> State:
 
     peak = partial(memory.appearance.response_at, step.frame, state.position)
     if not again and options.step:
-        told = told_by_points(memory.points, memory.surface.share, options)
-        size = size * np.exp(told)
+        size = size * np.exp(told_by_points(memory.points, memory.surface.share, options))
     size = searched_size(size, state.frames // 2, peak, options)
     return replace(state, size=step.bounded(size))
 

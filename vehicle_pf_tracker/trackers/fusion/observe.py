@@ -100,8 +100,7 @@ def _driven(state: State, step: Step) -> State:
             np.minimum(size * np.exp(growth * elapsed), LARGEST_GROWTH * state.measured)
         )
     across = 1.0 if seen else ACROSS_LANES
-    driven = particles.driven(step.rng, elapsed, sigmas, across=across)
-    driven = driven.passed(elapsed)
+    driven = particles.driven(step.rng, elapsed, sigmas, across=across).passed(elapsed)
     return replace(
         state,
         particles=replace(driven, positions=step.inside(driven.positions)),
