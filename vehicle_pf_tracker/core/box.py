@@ -32,7 +32,7 @@ from vehicle_pf_tracker.core.errors import InputError
 Position: TypeAlias = tuple[float, float]
 """Coordinates (x, y) in px."""
 
-_LARGEST_SHARE = 4
+LARGEST_SHARE = 4
 """Largest side of a target, in sides of the image. A vehicle close to the camera extends beyond the
 image; a box of more than four images is a mistake in its units or its order of numbers."""
 
@@ -105,7 +105,7 @@ def check_target(box: Box, width: int, height: int) -> Box:
         raise InputError(f"the target {box} has a number that is not finite; give x,y,w,h in px")
     if box.width < 1 or box.height < 1:
         raise InputError(f"the target {box} is smaller than one pixel; give x,y,w,h in px")
-    if box.width > _LARGEST_SHARE * width or box.height > _LARGEST_SHARE * height:
+    if box.width > LARGEST_SHARE * width or box.height > LARGEST_SHARE * height:
         raise InputError(
             f"the target {box} is far larger than the image of {width}x{height} px; "
             "give the top-left corner and the size of the vehicle in this image"

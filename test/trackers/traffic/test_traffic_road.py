@@ -48,7 +48,7 @@ def test_the_horizon_is_where_the_camera_sees_it():
 
 
 def test_the_horizon_of_a_camera_that_looks_down_is_far_above():
-    assert calibrated_row(road(ahead=0.5), SIZE) == -2
+    assert calibrated_row(road(ahead=0.5), SIZE) < -2
 
 
 def standing(number, left, bottom):
@@ -65,7 +65,7 @@ def test_the_order_in_depth_is_that_on_the_road():
     assert nearest_first([higher, lower], road(roll=-0.1)) == [higher, lower]
 
 
-def predicted_error(is_calibrated, identity=2, seen=45, hidden=20):
+def predicted_error(is_calibrated, identity=2, seen=30, hidden=20):
     """Distance from the truth, in widths, of a box that was predicted through hidden frames."""
     scene = make_traffic_scene("traffic-overtaking")
     tracker = TrafficTracker(TrafficParameters(pixels=False), scene.road if is_calibrated else None)

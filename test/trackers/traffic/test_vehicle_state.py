@@ -129,10 +129,10 @@ def test_no_speed_makes_a_box_infinite(state, along):
 
 @pytest.mark.parametrize("along", [-1.0, 1.0])
 def test_where_the_growth_is_bounded_it_depends_on_nothing(state, along):
-    state.mean[ALONG] = along  # far beyond a growth of 1.3 in a period
+    state.mean[ALONG] = along  # far beyond a growth of 2
     before = state.covariance.copy()
     state.predict(1.0, STILL)
-    growth = 1.3 ** -np.sign(along)
+    growth = 2.0 ** -np.sign(along)
     assert state.mean[V] == pytest.approx(100 * growth)
     assert state.covariance[V, V] == pytest.approx(before[V, V] * growth**2)
 
@@ -177,7 +177,7 @@ def assert_sound(state):
     """Symmetric; positive and bounded to the rounding that a measurement after a gap leaves."""
     assert state.is_sound
     deviations = np.sqrt(np.diag(state.covariance))
-    assert deviations.max() <= 1e4 * (1 + 1e-9)
+    assert deviations.max() <= 1e5 * (1 + 1e-9)
     correlations = state.covariance / np.outer(deviations, deviations)
     assert (state.covariance == state.covariance.T).all()
     assert np.linalg.eigvalsh(correlations).min() > -1e-6

@@ -32,7 +32,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import intersections
+from vehicle_pf_tracker.core.box import LARGEST_SHARE, intersections
 from vehicle_pf_tracker.parameters.counting_plan import Region
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import SETTLED_AFTER
 
@@ -48,8 +48,6 @@ HALF, LITTLE = 0.5, 0.1
 """Shares of a box, or of what is counted, above which it is most of it, and below which none."""
 NOTHING = np.empty((0, 4))
 """No boxes."""
-_LARGEST_SHARE = 4
-"""Largest side of a detection, in sides of the image; a larger one is no vehicle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,8 +121,8 @@ class Detections:
             right, bottom = boxes[:, 0] + boxes[:, 2], boxes[:, 1] + boxes[:, 3]
             good = np.isfinite(boxes).all(axis=1) & np.isfinite(scores)
             good &= (boxes[:, 2] >= 1) & (boxes[:, 3] >= 1)
-            good &= boxes[:, 2] <= _LARGEST_SHARE * width
-            good &= boxes[:, 3] <= _LARGEST_SHARE * height
+            good &= boxes[:, 2] <= LARGEST_SHARE * width
+            good &= boxes[:, 3] <= LARGEST_SHARE * height
             good &= (boxes[:, 0] < width) & (boxes[:, 1] < height) & (right > 0) & (bottom > 0)
         kept = np.flatnonzero(good)
         # Stable: equal scores stay in the detector's order, so that runs repeat.

@@ -33,9 +33,6 @@ from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR
 _LEAST_BOXES = 20
 """Boxes below which a vehicle does not tell how it grows. At 30, HOTA of `traffic-overtaking` falls
 by 13: the horizon has to be known soon."""
-_EVERY = 10
-"""Images between two estimates: one takes half a millisecond. At 30, HOTA of `traffic-overtaking`
-falls by seven: vehicles are predicted wrong for a second."""
 _REMEMBERED = 50
 """Vehicles that are remembered."""
 _WIDTH_NOISE = 0.1
@@ -47,14 +44,11 @@ longer."""
 _ASSUMED_SPREAD = 0.8
 """Standard deviation of the assumed growth per image height: from the side there is none, and from
 a bridge a vehicle in the middle doubles its size on a third of the height."""
-_HIGHEST, _LOWEST = -2.0, 0.7
-"""Bounds of a row, of the image's height: above, perspective is none; below is no road."""
-_ROWS = np.concatenate([np.arange(_HIGHEST, -0.5, 0.1), np.arange(-0.5, _LOWEST, 0.02)])
-"""Rows that are tried; a high one makes little difference."""
-_NEAREST = 0.01
-"""Least distance of a lower edge from a horizon, of the image's height."""
-_MIDDLE = 0.6
-"""Row at which the assumed growth is taken, of the image's height: roads are in the lower part."""
+_GROWTHS = np.geomspace(0.3, 30.0, 100)
+"""Growths per image height that are tried, of a vehicle in the middle of all: by less perspective
+is none, and where it is more the vehicle is a point."""
+_HIGHEST = -1 / float(_GROWTHS[0])
+"""Highest row of a calibrated horizon, of the image's height; it makes as little difference."""
 
 
 class Growth:
@@ -101,8 +95,7 @@ def calibrated_row(road: RoadPlane, size: tuple[int, int]) -> float:
     across, down, level = road.homography.matrix[2].tolist()
     if down <= 0:  # it looks straight down, or stands on its head
         return _HIGHEST
-    row = -(across * width / 2 + level) / down / height
-    return float(min(max(row, _HIGHEST), _LOWEST))
+    return max(-(across * width / 2 + level) / down / height, _HIGHEST)
 
 
 class Horizon:
@@ -110,8 +103,6 @@ class Horizon:
 
     def __init__(self) -> None:
         self._ended: deque[tuple[float, float, float]] = deque(maxlen=_REMEMBERED)
-        self._looks = 0
-        self._latest = 0.0
 
     def learn(self, growth: Growth, height: int) -> None:
         """Add a vehicle whose way has ended."""
@@ -141,10 +132,7 @@ class Horizon:
         """
         if road is not None:
             return calibrated_row(road, size) * size[1]
-        if self._looks % _EVERY == 0:
-            self._latest = self.row(assumed, followed, size[1])
-        self._looks += 1
-        return self._latest * size[1]
+        return self.row(assumed, followed, size[1]) * size[1]
 
     def row(self, assumed: float, followed: Iterable[Growth], height: int) -> float:
         """Row of the horizon, of the image's height.
@@ -161,12 +149,12 @@ class Horizon:
         told = [*self._ended, *(one for each in followed if (one := each.told(height)))]
         if not told:
             return assumed
-        rows = np.append(_ROWS, assumed)
-        middle, growth, scatter = (
-            np.array(column)[:, np.newaxis] for column in zip(*told, strict=True)
-        )
-        expected = 1 / np.maximum(middle - rows, _NEAREST)
+        middle, growth, scatter = np.array(told).T[..., np.newaxis]
+        centre = float(middle.mean())
+        usual = 1 / (centre - min(assumed, centre - 1 / _GROWTHS[-1]))
+        growths = np.append(_GROWTHS, usual)
+        rows = centre - 1 / growths
+        expected = np.where(middle > rows, 1 / (middle - rows), np.inf)
         variance = _WIDTH_NOISE**2 / scatter + _TURN**2
         costs = np.minimum((growth - expected) ** 2 / variance, FAR**2).sum(axis=0)
-        prior = 1 / np.maximum(_MIDDLE - rows, _NEAREST) - 1 / max(_MIDDLE - assumed, _NEAREST)
-        return float(rows[int(np.argmin(costs + (prior / _ASSUMED_SPREAD) ** 2))])
+        return float(rows[int(np.argmin(costs + ((growths - usual) / _ASSUMED_SPREAD) ** 2))])

@@ -49,21 +49,13 @@ covered edge, a part of another vehicle, standing still."""
 X, V, W, H, ACROSS, ALONG = range(6)
 """Components of the state: centre and distance from the horizon, size (px), road velocities."""
 
-_NEAREST_HORIZON = 3.0
-"""Least distance of a lower edge from the horizon in px; at zero the road is infinitely far."""
-_FASTEST_APPROACH = 1.3
-"""Largest growth of a box in a nominal frame period. Beyond it the distance is down to the
-camera's own height, where the plane no longer describes what is seen."""
-_LEAST = 1e-2
-"""Least distance from the horizon, and least side, that is predicted, px: a hundredth of a pixel is
-nothing in sight, and any two boxes still have a finite ratio."""
-_LARGEST = 1e5
-"""Largest place and side, px; in their units it bounds velocities too. No image has a third of it
+_MOST_GROWTH = 2.0
+"""Largest growth of a box from image to image, and largest fall. Beyond it the distance is down to
+the camera's own height, where the plane no longer describes what is seen."""
+_LEAST, _LARGEST = 1.0, 1e5
+"""Least distance from the horizon and least side, px; and largest of these, of places and of
+standard deviations, which bounds velocities in their units, too. No image has a third of it
 (`image.encodings.MAX_SIDE`), so that a vehicle there has left."""
-_VAGUEST = 1e4
-"""Largest standard deviation, px; in their units it bounds those of velocities too. Of a place in
-an image nothing is known then, and the measurement of half a px after it still leaves seven of a
-variance's 16 digits."""
 _SIZE_WALK = 0.004
 """Change of a vehicle's shape as the camera sees it, of its size per nominal period: a vehicle that
 drives past is seen from behind and then from the side within some 5 s."""
@@ -88,12 +80,9 @@ OBSERVATION = np.array(
 )
 """Edges of the box as linear functions of the state (relative to the horizon)."""
 
-_HIGHEST_MEAN = np.full(6, _LARGEST)
 _LOWEST_MEAN = np.array([-_LARGEST, _LEAST, _LEAST, _LEAST, -_LARGEST, -_LARGEST])
-"""Bounds of the mean, by component."""
+"""Lower bounds of the mean, by component."""
 _TINY = float(np.finfo(float).tiny)
-_LEAST_SEEN = np.array([_NEAREST_HORIZON, 1.0, 1.0])
-"""Least distance from the horizon, width and height of what is measured, px."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +132,7 @@ class VehicleState:
 
     def __init__(self, edges: Array, deviations: Array, horizon: float, drive: Drive) -> None:
         left, top, right, bottom = edges.tolist()
-        v = max(bottom - horizon, _NEAREST_HORIZON)
+        v = max(bottom - horizon, _LEAST)
         self.horizon = np.array(horizon)
         self.mean = np.array([(left + right) / 2, v, right - left, bottom - top, 0.0, 0.0])
         by_left, by_top, by_right, by_bottom = (deviations**2).tolist()
@@ -206,10 +195,9 @@ class VehicleState:
     def predict(self, elapsed: float, drive: Drive) -> None:
         """Drive on for `elapsed` nominal periods."""
         x, v, w, h, across, along = np.moveaxis(self.mean, -1, 0)
-        bound = _FASTEST_APPROACH ** min(elapsed, SETTLED_AFTER)  # then from a px to an image
         divisor = 1 + v * along * elapsed
-        growth = 1 / np.clip(divisor, 1 / bound, bound)
-        free = (divisor >= 1 / bound) & (divisor <= bound)  # else the growth depends on nothing
+        bounded = np.clip(divisor, 1 / _MOST_GROWTH, _MOST_GROWTH)
+        growth, free = 1 / bounded, bounded == divisor  # else the growth depends on nothing
         by_v, by_along = free * -along * elapsed * growth**2, free * -v * elapsed * growth**2
         driven = x + v * across * elapsed
         step = np.zeros_like(self.covariance)
@@ -236,7 +224,7 @@ class VehicleState:
     def resize(self, edges: Array) -> None:
         """Take a box (4,) for the vehicle's without doubt; it drives as before."""
         left, top, right, bottom = edges.tolist()
-        v = max(bottom - float(self.horizon), _NEAREST_HORIZON)
+        v = max(bottom - float(self.horizon), _LEAST)
         self.mean[:ACROSS] = (left + right) / 2, v, right - left, bottom - top
         self._settle()
 
@@ -245,7 +233,7 @@ class VehicleState:
         if np.all(self.horizon == horizon):
             return
         x, v = self.mean[..., X], self.mean[..., V].copy()
-        new = np.maximum(v + self.horizon - horizon, _NEAREST_HORIZON)
+        new = np.maximum(v + self.horizon - horizon, _LEAST)
         ratio, self.horizon = v / new, v + self.horizon - new
         step = np.zeros_like(self.covariance)
         step[..., range(6), range(6)] = 1.0
@@ -267,7 +255,7 @@ class VehicleState:
             residual = edges[..., edge] - offset - self.mean @ row
             variance = spread @ row + deviations[..., edge] ** 2
             self.mean = self.mean + spread * (residual / variance)[..., np.newaxis]
-            self.mean[..., V:ACROSS] = np.maximum(self.mean[..., V:ACROSS], _LEAST_SEEN)
+            self.mean[..., V:ACROSS] = np.maximum(self.mean[..., V:ACROSS], _LEAST)
             # Products of the spread with itself are symmetric to the last bit, as no gain's are.
             known = spread[..., np.newaxis] * spread[..., np.newaxis, :]
             self.covariance = self.covariance - known / variance[..., np.newaxis, np.newaxis]
@@ -279,13 +267,13 @@ class VehicleState:
 
     def _bound(self) -> None:
         """Keep a prediction within bounds; a vehicle that is in sight is far inside them."""
-        self.mean = np.clip(self.mean, _LOWEST_MEAN, _HIGHEST_MEAN)
+        self.mean = np.clip(self.mean, _LOWEST_MEAN, _LARGEST)
         variances = self.covariance.diagonal(axis1=-2, axis2=-1)
-        if variances.max(initial=0.0) <= _VAGUEST**2:
+        if variances.max(initial=0.0) <= _LARGEST**2:
             return
         # Scaled from both sides a covariance stays one, and correlations stay what they are.
         with np.errstate(invalid="ignore"):  # of an unsound one, which is dropped
-            shares = np.minimum(_VAGUEST / np.sqrt(variances), 1.0)
+            shares = np.minimum(_LARGEST / np.sqrt(variances), 1.0)
         self.covariance = self.covariance * (shares[..., np.newaxis] * shares[..., np.newaxis, :])
 
     def _settle(self) -> None:

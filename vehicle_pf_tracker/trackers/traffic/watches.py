@@ -181,8 +181,6 @@ _WINDOW_NS = 500_000_000
 positions leaves 2 px/s, and no car changes its speed by more than 15 km/h meanwhile."""
 _FEWEST = 3
 """Positions that a speed needs; of two, all the error is the speed's."""
-_MOST = 120
-"""Positions kept; those of a camera with 240 frames/s."""
 
 
 class PassageSpeed:
@@ -196,7 +194,7 @@ class PassageSpeed:
 
     def __init__(self, plane: RoadPlane | None) -> None:
         self._plane = plane
-        self._path: deque[tuple[int, Position]] = deque(maxlen=_MOST)
+        self._path: deque[tuple[int, Position]] = deque()
 
     def add(self, point: Position, stamp_ns: int) -> None:
         """Take the next position in px."""
