@@ -95,7 +95,7 @@ def calibrated_row(road: RoadPlane, size: tuple[int, int]) -> float:
     across, down, level = road.homography.matrix[2].tolist()
     if down <= 0:  # it looks straight down, or stands on its head
         return _HIGHEST
-    return max(-(across * width / 2 + level) / down / height, _HIGHEST)
+    return float(max(-(across * width / 2 + level) / down / height, _HIGHEST))
 
 
 class Horizon:
