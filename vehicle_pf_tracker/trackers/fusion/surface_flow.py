@@ -31,7 +31,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, carried_share, solved
+from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, Flow, carried_share, solved
 
 _KEPT = 8
 """Patches kept; by less than half a canonical px per frame a vehicle is taken to stand."""
@@ -68,9 +68,6 @@ class _Kept:
 class SurfaceFlow:
     """Compares the present patch with an earlier one, point by point.
 
-    Flow is found by dense inverse search (Kroeger et al. 2016), whose stripes, and so its results,
-    do not depend on the number of threads.
-
     Attributes
     ----------
     share : float
@@ -83,8 +80,6 @@ class SurfaceFlow:
     def __init__(self) -> None:
         self._usual = 0.0
         self._latest = 1.0
-        self._flow = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
-        self._flow.setVariationalRefinementIterations(_REFINED)
         self.restart()
 
     def restart(self) -> None:
@@ -164,15 +159,26 @@ class SurfaceFlow:
             back = solved(camera.turn, np.eye(2)).T * from_px
             shift = (to_px[1] - camera.shift) @ back + half - before.centre * from_px
             background = np.array([*(to_px[0][:, np.newaxis] * back), shift])
-        flow = self._flow.calc(patch.grey, before.grey, None)  # type: ignore[call-overload]
         cells = _cells(patch, position, size)
-        return carried_share(np.asarray(flow), cells, places, vehicle, background)
+        return carried_share(_flow(patch, before), cells, places, vehicle, background)
 
 
 def _middle(patch: Patch) -> Patch:
     """Cut out what flow is measured in."""
     middle = patch.middle(_SIDE)
     return Patch(middle.image, np.ascontiguousarray(middle.grey), patch.centre, patch.zoom)
+
+
+def _flow(present: Patch, before: Patch) -> Flow:
+    """Flow from the present patch to an earlier one, canonical px.
+
+    By dense inverse search (Kroeger et al. 2016), whose stripes, and so its results, do not depend
+    on the number of threads. Trackers are copied, which this object cannot be: it is made anew.
+    """
+    method = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
+    method.setVariationalRefinementIterations(_REFINED)
+    flow = method.calc(present.grey, before.grey, None)  # type: ignore[call-overload]
+    return np.asarray(flow, np.float32)
 
 
 def _cells(patch: Patch, position: Array, size: Array) -> CellBlock:
