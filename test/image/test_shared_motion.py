@@ -88,19 +88,7 @@ def test_the_median_is_numpys_to_the_bit(count):
 def test_stretch_is_the_growth_within_its_bound_of_points_that_are_enough(count, growth, found):
     before = places(3, 0)[0][:count]
     after = before * np.exp([growth, -growth]) + [0.3, 0.1]
-    stretch, error = shared_stretch(before, after, np.ones(2))
-    assert stretch == pytest.approx([found, -found])
-    assert error == pytest.approx([0, 0], abs=1e-12)
-
-
-def test_the_stated_error_of_stretch_is_that_over_many_draws():
-    rng, before = np.random.default_rng(0), places(3, 0)[0]
-    found = [
-        shared_stretch(before, before + rng.normal(scale=0.005, size=before.shape), np.ones(2))
-        for _ in range(300)
-    ]
-    stretches, errors = (np.array(each) for each in zip(*found, strict=True))
-    assert errors.mean(axis=0) == pytest.approx(stretches.std(axis=0), rel=0.25)
+    assert shared_stretch(before, after, np.ones(2)) == pytest.approx([found, -found])
 
 
 STILL_BOX = np.array([[0.1, 0.1], [-1.6, -1.6]])

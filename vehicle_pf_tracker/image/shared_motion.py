@@ -21,7 +21,6 @@ vehicle that turns or grows.
 from __future__ import annotations
 
 import functools
-import math
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -130,8 +129,6 @@ LARGEST_STRETCH = 0.15
 change by 0.12."""
 LEAST_RATIO = 0.2
 """Bound of the ratio of two distances, whose logarithm is taken."""
-ERROR = 1.86
-"""Standard error of a median of normal values: 1.253 deviations, each 1.483 median deviations."""
 
 CELL = 4
 """Px between points of a surface: dense flow is no finer."""
@@ -236,12 +233,9 @@ def staying(before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
     return np.asarray(alive & (np.hypot(off[:, 0], off[:, 1]) < strayed))
 
 
-def shared_stretch(before: Array, after: Array, size: Array) -> tuple[Array, Array]:
-    """Median change of the log distance of points (N, 2) along x and y, of a box of a size.
-
-    Also gives the standard errors of both medians.
-    """
-    change, error = np.zeros((2, 2))
+def shared_stretch(before: Array, after: Array, size: Array) -> Array:
+    """Median change of the log distance of points (N, 2) along x and y, of a box of a size."""
+    change = np.zeros(2)
     half = len(before) // 2
     for axis in (0, 1):
         # Each of the lower half with one of the upper half: far apart for most, and no N² pairs.
@@ -250,10 +244,9 @@ def shared_stretch(before: Array, after: Array, size: Array) -> tuple[Array, Arr
         old, new = before[high, axis] - before[low, axis], after[high, axis] - after[low, axis]
         far = old > APART * size[axis]
         if far.sum() >= FEWEST_POINTS // 2:
-            logs = np.log(np.maximum(new[far] / old[far], LEAST_RATIO))
-            change[axis] = median(logs)
-            error[axis] = ERROR * median(np.abs(logs - change[axis])) / math.sqrt(len(logs))
-    return np.minimum(np.maximum(change, -LARGEST_STRETCH), LARGEST_STRETCH), error
+            ratio = np.maximum(new[far] / old[far], LEAST_RATIO)
+            change[axis] = median(np.log(ratio))
+    return np.minimum(np.maximum(change, -LARGEST_STRETCH), LARGEST_STRETCH)
 
 
 def carried_share(

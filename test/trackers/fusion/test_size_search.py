@@ -20,7 +20,6 @@ import pytest
 from vehicle_pf_tracker.trackers.fusion.appearance import searched_size
 from vehicle_pf_tracker.trackers.fusion.follow import told_by_points
 from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
-from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 
 STEP = np.log(1.03)
 SIZE = np.array([40.0, 20.0])
@@ -28,12 +27,6 @@ SIZE = np.array([40.0, 20.0])
 
 def parameters(**values):
     return SizeParameters(**{"step": 0.03, "gain": 0.7, **values})
-
-
-def tracked(stretch, error=(0.0, 0.0)):
-    points = SurfacePoints()
-    points.stretch, points.error = np.array(stretch), np.array(error)
-    return points
 
 
 def response(best):
@@ -91,15 +84,13 @@ def test_where_nothing_differs_the_size_stays():
     ],
 )
 def test_points_tell_wholly_what_no_occluder_does(stretch, share, told):
-    assert told_by_points(tracked(stretch), share, parameters()) == pytest.approx(told)
+    found = told_by_points(np.array(stretch), share, SIZE, parameters())
+    assert found == pytest.approx(told)
 
 
-@pytest.mark.parametrize(("error", "told"), [(0.05, 0.0875), (0.1, 0.05), (0.3, 0.05)])
-@pytest.mark.parametrize("sign", [1, -1])
-def test_what_may_be_noise_of_the_points_is_believed_by_half(error, told, sign):
-    """The positive part of 1 - (error / change)², of either axis' larger error."""
-    found = told_by_points(tracked([sign * 0.1] * 2, [0.0, error]), 0.9, parameters())
-    assert found == pytest.approx([sign * told] * 2)
+def test_points_on_a_vehicle_of_a_few_px_tell_half():
+    found = told_by_points(np.array([0.1, 0.1]), 0.9, SIZE / 2, parameters())
+    assert found == pytest.approx([0.05, 0.05])
 
 
 def test_repeated_it_converges_on_the_right_aspect():

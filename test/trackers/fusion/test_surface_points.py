@@ -19,7 +19,6 @@ import numpy as np
 import pytest
 from fusion_samples import texture
 
-from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.canonical_patch import cut_patch
 from vehicle_pf_tracker.image.shared_motion import shared_turn
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
@@ -183,17 +182,7 @@ def test_a_flat_vehicle_tells_nothing():
         points.track(patch_of(noise, START), START, SIZE)
         points.keep(patch_of(noise, START), START)
     assert share_living(points) < 0.3
-    assert points.stretch.tolist() == points.error.tolist() == [0.0, 0.0]
-
-
-@pytest.mark.parametrize(("side", "times"), [(20.0, 2), (10.0, 4), (80.0, 1)])
-def test_errors_of_a_magnified_vehicle_are_as_many_times_larger(monkeypatch, side, times):
-    monkeypatch.setattr(shared_motion, "shared_stretch", lambda *_: (np.zeros(2), np.ones(2)))
-    points, size = SurfacePoints(), np.full(2, side)
-    points.keep(patch_of(ROAD, START, size), START)
-    points.renew(START, size)
-    points.track(patch_of(ROAD, START, size), START, size)
-    assert points.error.tolist() == [times, times]
+    assert points.stretch.tolist() == [0.0, 0.0]
 
 
 def test_points_are_replaced_every_five_frames_but_not_on_an_occluder():

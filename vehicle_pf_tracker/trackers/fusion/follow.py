@@ -29,7 +29,6 @@ from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
-from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 from vehicle_pf_tracker.trackers.fusion.turning import Turned
 
 _STRONG = 0.8
@@ -39,6 +38,10 @@ _WEAK_RESPONSE = 0.6
 _WHOLE = 0.8
 """Share of the surface from which the spread of points tells the size: what an occluder covers,
 shrinks."""
+_LEAST_SURE = 20.0
+"""Geometric mean of the sides, px, below which points are not believed wholly: they are magnified
+twofold and more, as are their errors. Without it white_van is claimed in .67 of its hidden frames
+instead of .20; laws without a number lose more (laboratory/notes/fusion_tried.md)."""
 _TURNING_STIFFNESS = 0.5
 """Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
 turn by 90 degrees nothing that was learnt before stays right (scene `turn`, seed 100)."""
@@ -117,22 +120,21 @@ def _sized(state: State, step: Step, *, again: bool) -> State:
 
     peak = partial(memory.appearance.response_at, step.frame, state.position)
     if not again and options.step:
-        size = size * np.exp(told_by_points(memory.points, memory.surface.share, options))
+        told = told_by_points(memory.points.stretch, memory.surface.share, size, options)
+        size = size * np.exp(told)
     size = searched_size(size, state.frames // 2, peak, options)
     return state._replace(size=step.bounded(size))
 
 
-def told_by_points(points: SurfacePoints, share: float, options: SizeParameters) -> Array:
+def told_by_points(stretch: Array, share: float, size: Array, options: SizeParameters) -> Array:
     """Change of the logarithm of width and height that the points on the vehicle tell.
 
     What an occluder drags along draws together, along one axis. So points that spread along both,
-    or that draw together along both faster than the response follows, are believed wholly, less
-    their noise (the positive part of James and Stein's estimate).
+    or that draw together along both faster than the response follows, are believed wholly.
     """
-    stretch, reach, sure = points.stretch, options.gain * np.log1p(options.step), 0.0
+    reach = options.gain * np.log1p(options.step)
     both = stretch.min() if stretch.min() > 0 else min(stretch.max(), 0.0)
-    if both > 0 or both < -reach:
-        sure = both * max(1 - (points.error.max() / both) ** 2, 0.0)
+    sure = both if (both > 0 or both < -reach) and size.prod() > _LEAST_SURE**2 else 0.0
     if share <= _WHOLE:
         return np.full(2, sure if share > EVEN else 0.0)
     return np.asarray(stretch + sure) / 2

@@ -74,9 +74,6 @@ class SurfacePoints:
     ----------
     stretch : (2,) array
         Change of the logarithm of width and height in the last frame by the points' spread.
-    error : (2,) array
-        Standard errors of it. Points of a magnified vehicle are as many times closer in the frame,
-        so that the square of that number err alike.
     """
 
     def __init__(self) -> None:
@@ -86,7 +83,7 @@ class SurfacePoints:
     def restart(self) -> None:
         """Discard all points."""
         self.points: _Points | None = None
-        self.stretch, self.error = np.zeros((2, 2))
+        self.stretch = np.zeros(2)
 
     def keep(self, patch: Patch, position: Array) -> None:
         """Keep the patch that the next motion starts from, and the vehicle's position in it, px."""
@@ -124,7 +121,7 @@ class SurfacePoints:
             Estimated centre, and width and height, px; the search starts from the displacement
             since the patch that was kept.
         """
-        (self.stretch, self.error), points = np.zeros((2, 2)), self.points
+        self.stretch, points = np.zeros(2), self.points
         if self._previous is None or points is None:
             return
         points.age += 1
@@ -136,8 +133,7 @@ class SurfacePoints:
         guess = np.asarray(patch.to_patch(before + position - started) - 0.5, np.float32)
         end, found = _flow(previous, patch, start, guess, _FLOW)
         after = patch.to_frame(end.astype(np.float64) + 0.5)
-        self.stretch, error = shared_motion.shared_stretch(before[found], after[found], size)
-        self.error = error * max(float(patch.zoom.max()), 1.0)
+        self.stretch = shared_motion.shared_stretch(before[found], after[found], size)
         points.positions[points.alive] = after
         points.alive[points.alive] = found
         present = (points.positions - position) / size
