@@ -29,11 +29,12 @@ def test_product_of_small_matrices_by_hand():
 @settings(max_examples=50)
 @given(
     rows=st.integers(1, 90), inner=st.integers(0, 40), columns=st.integers(1, 90),
-    serial=st.integers(1, 5000),
+    serial=st.integers(1, 5000), stacks=st.sampled_from([((), ()), ((3,), ()), ((), (3,))]),
 )  # fmt: skip
-def test_pieces_make_the_whole(rows, inner, columns, serial):
+def test_pieces_make_the_whole(rows, inner, columns, serial, stacks):
     rng = np.random.default_rng(rows * 91 + columns)
-    left, right = rng.normal(size=(rows, inner)), rng.normal(size=(inner, columns))
+    left = rng.normal(size=(*stacks[0], rows, inner))
+    right = rng.normal(size=(*stacks[1], inner, columns))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(array, "SERIAL", serial)
         assert product(left, right) == pytest.approx(left @ right, abs=1e-12)
@@ -43,9 +44,9 @@ def test_pieces_make_the_whole(rows, inner, columns, serial):
 def test_no_piece_is_large_enough_for_a_second_thread(rows, columns, monkeypatch):
     pieces = []
 
-    def noted(left, right, out):
+    def noted(left, right):
         pieces.append(left.shape[0] * left.shape[1] * right.shape[1])
-        out[:] = left @ right
+        return left @ right
 
     monkeypatch.setattr(np, "matmul", noted)
     left, right = np.ones((rows, 30), np.float32), np.ones((30, columns), np.float32)

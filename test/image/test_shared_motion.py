@@ -76,7 +76,14 @@ def test_the_median_is_numpys_to_the_bit(count):
 
 @pytest.mark.parametrize(
     ("count", "growth", "found"),
-    [(36, 0.02, 0.02), (12, -0.03, -0.03), (36, 0.2, 0.15), (11, 0.02, 0)],
+    [
+        (36, 0.02, 0.02),
+        (12, -0.03, -0.03),
+        (36, 0.2, 0.15),
+        (11, 0.02, 0),
+        (1, 0.02, 0),
+        (0, 0.02, 0),
+    ],
 )
 def test_stretch_is_the_growth_within_its_bound_of_points_that_are_enough(count, growth, found):
     before = places(3, 0)[0][:count]

@@ -39,20 +39,16 @@ SMP_THRESHOLD_MIN times GEMM_MULTITHREAD_THRESHOLD)."""
 
 
 def product(left: npt.NDArray[_FloatT], right: npt.NDArray[_FloatT]) -> npt.NDArray[_FloatT]:
-    """Matrix product (m, n) of an (m, k) and a (k, n) array, in pieces that one thread computes.
+    """Matrix products (..., m, n) of (..., m, k) and (..., k, n) arrays, in pieces of one thread.
 
-    The longer side of the product is cut.
+    The longer side of a product is cut.
     """
-    (rows, inner), columns = left.shape, right.shape[1]
+    (rows, inner), columns = left.shape[-2:], right.shape[-1]
     longer = max(rows, columns)
     piece = max(SERIAL * longer // max(rows * inner * columns, 1), 1)
     if piece >= longer:
         return np.asarray(left @ right)
-    whole = np.empty((rows, columns), np.result_type(left, right))
-    for first in range(0, longer, piece):
-        part = slice(first, first + piece)
-        if rows > columns:
-            np.matmul(left[part], right, out=whole[part])
-        else:
-            np.matmul(left, right[:, part], out=whole[:, part])
-    return whole
+    parts = [slice(first, first + piece) for first in range(0, longer, piece)]
+    if rows > columns:
+        return np.concatenate([np.matmul(left[..., part, :], right) for part in parts], axis=-2)
+    return np.concatenate([np.matmul(left, right[..., part]) for part in parts], axis=-1)

@@ -121,6 +121,10 @@ class CameraMotion:
         """Turn and scale velocities (..., 2) with the background."""
         return np.asarray(velocities @ self.turn.T)
 
+    def after(self, earlier: CameraMotion) -> CameraMotion:
+        """Motion of two frames, of which `earlier` is the first."""
+        return CameraMotion(self.turn @ earlier.turn, self.apply(earlier.shift))
+
     @property
     def still(self) -> bool:
         """True if the background does not move."""

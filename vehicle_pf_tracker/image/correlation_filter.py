@@ -33,6 +33,7 @@ import functools
 from dataclasses import dataclass
 from typing import TypeAlias
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -41,8 +42,7 @@ from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.spectra import (
     PartialFourier,
     Spectrum,
-    correlated,
-    solved,
+    frequencies,
     upsampled,
 )
 
@@ -69,7 +69,7 @@ class FilterWeights:
         The weights of the target's cells; outside they are zero.
     faded : (rows, channels, columns) array of float32
         The same times the window that the image's cells are faded out by.
-    spectrum : (n, channels, 2, n // 2 + 1) array of float32
+    spectrum : (channels, n, n // 2 + 1) array of complex64
         Their half spectrum.
     """
 
@@ -98,9 +98,7 @@ class CorrelationFilter:
         label = np.exp(-0.5 * (offsets[:, np.newaxis] ** 2 + offsets**2) / sigma**2)
         spectrum = np.fft.rfft2(np.fft.ifftshift(label)).real / cells**2
         # Of the ideal response, which is even and therefore real, over the places.
-        half = np.ascontiguousarray(spectrum[: cells // 2 + 1], np.float32)
-        label = np.concatenate([half, half[1 : cells // 2]])
-        self._label = label[:, np.newaxis, np.newaxis]
+        self._label = spectrum[frequencies(cells)].astype(np.float32)
         from_middle = np.abs(np.arange(cells) - (cells - 1) / 2)
         inside = (from_middle[:, np.newaxis] <= target[1] / 2) & (from_middle <= target[0] / 2)
         rows, columns = np.flatnonzero(inside.any(axis=1)), np.flatnonzero(inside.any(axis=0))
@@ -113,6 +111,7 @@ class CorrelationFilter:
         self._fading = fading[:, np.newaxis].astype(np.float32)
         self._cells = cells
         self.weights: FilterWeights | None = None
+        self._wide_weights: Spectrum | None = None
 
     def spectrum(self, features: CellFeatures) -> Spectrum:
         """Half spectrum of cells (channels, n, n), faded out towards the border."""
@@ -123,7 +122,7 @@ class CorrelationFilter:
 
         Parameters
         ----------
-        spectrum : (n, channels, 2, n // 2 + 1) array
+        spectrum : (channels, n, n // 2 + 1) array
             Spectrum of the image's cells.
         stiffness : float
             Resistance against change; the first image is learnt without any.
@@ -134,16 +133,23 @@ class CorrelationFilter:
         else:
             before = self.weights.spectrum * np.float32(stiffness)
             wanted, steps, growth = spectrum * self._label + before, _STEPS, _GROWTH
+        conjugate = spectrum.conj()
+        power = (spectrum * conjugate).sum(axis=0).real
         # ADMM in its scaled form: the multiplier, with the solution added, is confined.
-        multiplier, confined = np.zeros_like(spectrum), np.zeros_like(spectrum)
+        multiplier = confined = np.zeros(1, np.complex64)
         for step in range(steps):
             penalty = self.penalty * growth**step
-            multiplier -= confined
-            multiplier *= np.float32(1 / growth)
+            multiplier = (multiplier - confined) * np.float32(1 / growth)
             right = wanted + (confined - multiplier) * np.float32(penalty)
-            multiplier += solved(spectrum, right, penalty + stiffness)
+            # Solve (x x^H / places + total) f = right at each frequency (Sherman and Morrison).
+            total = penalty + stiffness
+            share = (conjugate * right).sum(axis=0) / (power + np.float32(self._cells**2 * total))
+            right -= spectrum * share
+            right *= np.float32(1 / total)
+            multiplier = multiplier + right
             cells = self._target.cells_of(multiplier)
             confined = self._target.spectrum_of(cells)
+        self._wide_weights = None
         self.weights = FilterWeights(cells, cells.transpose(1, 0, 2) * self._fading, confined)
 
     def respond(self, spectrum: Spectrum) -> Response:
@@ -173,8 +179,10 @@ class CorrelationFilter:
 
     def respond_wide(self, spectrum: Spectrum) -> Response:
         """Respond to the cells of a larger patch."""
-        target = self._wide(len(spectrum))[1]
-        return self._response(spectrum, target.spectrum_of(self._trained.target))
+        if self._wide_weights is None:
+            target = self._wide(spectrum.shape[1])[1]
+            self._wide_weights = target.spectrum_of(self._trained.target)
+        return self._response(spectrum, self._wide_weights)
 
     @property
     def _trained(self) -> FilterWeights:
@@ -182,7 +190,7 @@ class CorrelationFilter:
         return self.weights
 
     def _response(self, spectrum: Spectrum, weights: Spectrum) -> Response:
-        return upsampled(correlated(spectrum, weights), UPSAMPLING)
+        return upsampled((spectrum * weights.conj()).sum(axis=0), UPSAMPLING)
 
     def _wide(self, size: int) -> tuple[PartialFourier, PartialFourier]:
         """Return transforms of a larger square of cells, and of the target in its middle."""
@@ -223,11 +231,12 @@ def climbed(values: Array, places: Places, costs: Array) -> tuple[Places, Array]
     gains : (N,) array
         Value there, less the cost.
     """
-    reach, last = len(costs) // 2, len(values) - 1
-    offsets = np.arange(-reach, reach + 1)
-    dy, dx = (grid.ravel() for grid in np.meshgrid(offsets, offsets, indexing="ij"))
-    rows = np.clip(places[:, 1, np.newaxis] + dy, 0, last)
-    columns = np.clip(places[:, 0, np.newaxis] + dx, 0, last)
-    gains = values[rows, columns] - costs.ravel()
+    side = len(costs)
+    reach = side // 2
+    padded = cv2.copyMakeBorder(values, reach, reach, reach, reach, cv2.BORDER_REPLICATE)
+    offsets = np.arange(side)
+    moves = (offsets[:, np.newaxis] * padded.shape[1] + offsets).ravel()
+    first = places[:, 1] * padded.shape[1] + places[:, 0]
+    gains = padded.take(first[:, np.newaxis] + moves) - costs.ravel()
     best = gains.argmax(axis=1)
-    return np.column_stack([dx[best], dy[best]]), gains[np.arange(len(best)), best]
+    return np.column_stack([best % side, best // side]) - reach, gains.max(axis=1)

@@ -82,7 +82,7 @@ class Foreground:
         self._background: deque[SmallGrey] = deque(maxlen=_KEPT)
         self._latest: deque[SmallGrey] = deque(maxlen=_LATEST)
         self._frames = 0
-        self._whole = np.empty((0, 0), np.uint8)
+        self._whole, self._learnt_at = np.empty((0, 0), np.uint8), -1
 
     def keep(self, small: SmallGrey, *, still: bool) -> None:
         """Keep a frame; discard earlier ones of another size, or if the camera has moved."""
@@ -107,7 +107,10 @@ class Foreground:
 
     def history(self) -> Iterator[tuple[float, Array]]:
         """Learn the whole background; give the ages of kept frames, and the boxes in them."""
-        self._whole = median([each.image for each in self._background])
+        self._whole, self._learnt_at = (
+            median([each.image for each in self._background]),
+            self._frames,
+        )
         kept, since = list(self._background)[::-1], (self._frames - 1) % _KEPT_EVERY
         return (
             (float(since + _KEPT_EVERY * back), self._boxes(kept[back]))
@@ -141,7 +144,11 @@ class Foreground:
         piece = small.image[rows, columns]
         if min(piece.shape) < 3:
             return None
-        moving = _moving(piece, median([each.image[rows, columns] for each in self._background]))
+        if self._learnt_at == self._frames:
+            background = self._whole[rows, columns]
+        else:
+            background = median([each.image[rows, columns] for each in self._background])
+        moving = _moving(piece, background)
         inner = centre * small.zoom - corner
         bounds = _bounds(moving, inner, size * small.zoom)
         if bounds is None:
@@ -155,7 +162,10 @@ def _moving(
 ) -> npt.NDArray[np.uint8]:
     """Mask of what differs from the background."""
     change = cv2.absdiff(image, background)
-    level = max(_LEAST_CONTRAST, _NOISE_FACTOR * float(np.median(change)))
+    # The median by a histogram, in a tenth of the time of `np.median`.
+    counts = cv2.calcHist([change], [0], None, [256], [0, 256]).cumsum()
+    noise = np.searchsorted(counts, [(change.size - 1) // 2, change.size // 2], side="right").mean()
+    level = max(_LEAST_CONTRAST, _NOISE_FACTOR * float(noise))
     moving = (cv2.GaussianBlur(change, (3, 3), 0) > level).astype(np.uint8)
     closed = cv2.morphologyEx(moving, cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
     return np.asarray(closed, np.uint8)

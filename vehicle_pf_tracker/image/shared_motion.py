@@ -20,6 +20,7 @@ vehicle that turns or grows.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -37,6 +38,7 @@ CellBlock: TypeAlias = npt.NDArray[np.intp]
 """First column and row, and number of columns and rows, (2, 2); a cell has `CELL` px."""
 Points: TypeAlias = npt.NDArray[np.float32]
 """x, y in px as OpenCV counts them, the middle of the first pixel being 0, shape (N, 2)."""
+_Complex: TypeAlias = npt.NDArray[np.complex128]
 Found: TypeAlias = npt.NDArray[np.bool_]
 
 
@@ -153,38 +155,38 @@ def shared_similarity(before: Array, after: Array) -> Array:
         Rotation times scale, and shift in px. That of no motion where half of the points rest, or
         too few agree.
     """
-    flow = after - before
-    rest = np.eye(2, 3)
+    # As complex numbers, of which a similarity is a factor and a summand.
+    start, end = (np.ascontiguousarray(points).view(complex).ravel() for points in (before, after))
+    flow, rest = end - start, np.eye(2, 3)
     if len(flow) < LEAST_CORNERS:
         return rest
-    if (np.hypot(flow[:, 0], flow[:, 1]) < AGREEING_PX).mean() >= STILL_SHARE:
+    if (np.abs(flow) < AGREEING_PX).mean() >= STILL_SHARE:
         return rest
     # A zoom or a roll spreads the flow over the image, hence the wide neighbourhood.
-    apart = np.linalg.norm(flow[:, np.newaxis] - flow, axis=2)
+    apart = np.abs(flow[:, np.newaxis] - flow)
     densest = int((apart < 3 * AGREEING_PX).sum(axis=1).argmax())
     agreeing = apart[densest] < 5 * AGREEING_PX
     if agreeing.sum() < LEAST_CORNERS:
         return rest
-    return _robust_similarity(before[agreeing], after[agreeing])
+    factor, shift = _robust_similarity(start[agreeing], end[agreeing])
+    (along, across), (x, y) = ((each.real, each.imag) for each in (factor, shift))
+    return np.array([[along, -across, x], [across, along, y]])
 
 
-def _robust_similarity(before: Array, after: Array) -> Array:
+def _robust_similarity(start: _Complex, end: _Complex) -> tuple[complex, complex]:
     """Fit by least squares, reweighted so that points far off count little."""
-    weights = np.ones(len(before))
-    found = np.empty((2, 3))
+    weights = np.ones(len(start))
     for _ in range(FITS):
-        total = weights.sum()
-        middle, target = weights @ before / total, weights @ after / total
-        x, y = before - middle, after - target
-        spread = float(weights @ (x**2).sum(axis=1)) + 1e-9
-        along = float(weights @ (x * y).sum(axis=1)) / spread
-        across = float(weights @ (x[:, 0] * y[:, 1] - x[:, 1] * y[:, 0])) / spread
-        turn = np.array([[along, -across], [across, along]])
-        found[:, :2], found[:, 2] = turn, target - turn @ middle
-        residual = np.linalg.norm(after - (before @ turn.T + found[:, 2]), axis=1)
+        shares = weights / weights.sum()
+        middle, target = shares @ start, shares @ end
+        off = start - middle
+        weighted = weights * off.conj()
+        factor = weighted @ (end - target) / ((weighted @ off).real + 1e-9)
+        shift = target - factor * middle
+        residual = np.abs(end - factor * start - shift)
         scale = max(1.5 * median(residual), AGREEING_PX / 2)
         weights = 1 / (1 + (residual / scale) ** 2) ** 2
-    return found
+    return factor, shift
 
 
 def median(values: Array) -> float:
@@ -199,13 +201,19 @@ def shared_turn(before: Array, after: Array, strayed: float) -> Array:
     It has no shift, so that points which stay behind with an occluder do not fit into it. Those
     that are `strayed` off count half.
     """
-    turn = np.eye(2)
+    turn, kept = np.eye(2), TURN_INERTIA * np.eye(2)
     for _ in range(TURN_FITS):
         off = after - before @ turn
-        weighted = before / (1 + (off**2).sum(axis=1) / strayed**2)[:, np.newaxis]
-        kept = TURN_INERTIA * np.eye(2)
-        turn = np.linalg.solve(weighted.T @ before + kept, weighted.T @ after + kept)
+        far = (off[:, 0] ** 2 + off[:, 1] ** 2) / strayed**2
+        weighted = before.T / (1 + far)
+        turn = solved(weighted @ before + kept, weighted @ after + kept)
     return turn
+
+
+def solved(matrix: Array, right: Array) -> Array:
+    """Solve a (2, 2) system, in a fraction of the time of `np.linalg.solve`."""
+    (a, b), (c, d) = matrix.tolist()
+    return np.asarray(np.array([[d, -b], [-c, a]]) @ right / (a * d - b * c))
 
 
 def staying(before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
@@ -228,8 +236,6 @@ def staying(before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
 def shared_stretch(before: Array, after: Array, size: Array) -> Array:
     """Median change of the log distance of points (N, 2) along x and y, of a box of a size."""
     change = np.zeros(2)
-    if len(before) < FEWEST_POINTS:
-        return change
     half = len(before) // 2
     for axis in (0, 1):
         # Each of the lower half with one of the upper half: far apart for most, and no N² pairs.
@@ -240,7 +246,7 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
         if far.sum() >= FEWEST_POINTS // 2:
             ratio = np.maximum(new[far] / old[far], LEAST_RATIO)
             change[axis] = median(np.log(ratio))
-    return np.clip(change, -LARGEST_STRETCH, LARGEST_STRETCH)
+    return np.minimum(np.maximum(change, -LARGEST_STRETCH), LARGEST_STRETCH)
 
 
 def carried_share(
@@ -264,12 +270,10 @@ def carried_share(
         Matrix and then summand that take a point to where the background there was; empty where the
         two have hardly moved apart.
     """
-    columns, rows = (
-        (cells[0, axis] + np.arange(cells[1, axis])) * CELL + CELL // 2 for axis in (0, 1)
-    )
-    x, y = (each.ravel() for each in np.meshgrid(columns, rows))
-    points = np.stack([x, y], axis=-1) + 0.5
-    source = points + flow[y, x]
+    (left, top), (columns, rows) = cells.tolist()
+    block = slice(top, top + rows), slice(left, left + columns)
+    points = _middles(*flow.shape[:2])[block].reshape(-1, 2)
+    source = points + flow[CELL // 2 :: CELL, CELL // 2 :: CELL][block].reshape(-1, 2)
     place = points * places[0] + places[1]
     off = source - (points * vehicle[0] + vehicle[1])
     limits = np.full(len(points), STRAYED_PX)
@@ -279,5 +283,12 @@ def carried_share(
     near = np.hypot(off[:, 0], off[:, 1]) < NEARLY * limits
     if near.sum() >= FEWEST_CARRIED:
         gram = place[near].T @ place[near] + np.eye(2) * TURN_INERTIA
-        off = off - place @ np.linalg.solve(gram, place[near].T @ off[near])
+        off = off - place @ solved(gram, place[near].T @ off[near])
     return float((np.hypot(off[:, 0], off[:, 1]) < limits).mean())
+
+
+@functools.cache
+def _middles(height: int, width: int) -> Array:
+    """Middles of all cells, by [row, column]."""
+    x, y = (np.arange(CELL // 2, side, CELL) + 0.5 for side in (width, height))
+    return np.stack(np.meshgrid(x, y), axis=-1)

@@ -139,6 +139,8 @@ class Outcome:
         Number of resamplings in the step, and of particles that they replaced.
     left_image : bool
         True where the cloud's mean crossed the border before it was clipped.
+    size : (float, float) or None
+        Width and height of the estimated box in px; None: those of the target.
     """
 
     cloud: Cloud
@@ -150,6 +152,7 @@ class Outcome:
     resampling_passes: int = 0
     resampled_particles: int = 0
     left_image: bool = False
+    size: tuple[float, float] | None = None
 
 
 class BaseTracker(ABC, Generic[ParametersT]):
@@ -275,7 +278,8 @@ class BaseTracker(ABC, Generic[ParametersT]):
         return keep_inside(frame, proposed), is_outside(frame, x, y)
 
     def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:
-        box = Box.around(outcome.position, self.target.box.width, self.target.box.height)
+        target = self.target.box
+        box = Box.around(outcome.position, *outcome.size or (target.width, target.height))
         return Estimate(
             position=outcome.position,
             box=box,

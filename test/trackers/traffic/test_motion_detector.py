@@ -84,11 +84,10 @@ def mask(*boxes):
     return image
 
 
-def test_a_blob_of_two_vehicles_is_divided_by_their_predictions():
-    predicted = np.array([[20.0, 40, 60, 70], [45, 20, 75, 44]])
-    edges, _ = BlobReader().read(mask((20, 40, 60, 70), (45, 20, 75, 44)), predicted)
-    assert len(edges) == 2
-    assert edges[0] == pytest.approx([20, 40, 60, 70], abs=8)
+def test_a_vehicle_that_is_followed_as_two_parts_stays_one_blob():
+    parts = np.array([[20.0, 40, 46, 60], [34, 50, 60, 70]])
+    edges, _ = BlobReader().read(mask((20, 40, 60, 70)), parts)
+    assert edges.tolist() == [[20, 40, 60, 70]]
 
 
 def test_pieces_of_one_vehicle_are_joined():

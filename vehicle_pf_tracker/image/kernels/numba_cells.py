@@ -82,13 +82,14 @@ def _direction_histograms(
     sums = np.zeros(DIRECTIONS * columns, np.float32)
     above, below = np.zeros_like(sums), np.zeros_like(sums)
     magnitudes, places = np.empty(width, np.float32), np.empty(width, np.uint32)
+    place_x = (np.arange(width) + 0.5) / CELL + 0.5
+    column = place_x.astype(np.uint64)
+    share = (place_x - column).astype(np.float32)
     for y in range(1, height - 1):
         _gradients(grey, y, magnitudes, places)
         for x in range(1, width - 1):
-            place_x = np.float32(x + 0.5) * np.float32(1 / CELL) + np.float32(0.5)
-            column = np.uint32(place_x)
-            right = (place_x - np.float32(column)) * magnitudes[x]
-            i = np.uint64(direction_of[places[x]]) * np.uint64(columns) + np.uint64(column)
+            right = share[x] * magnitudes[x]
+            i = np.uint64(direction_of[places[x]]) * np.uint64(columns) + column[x]
             sums[i] += magnitudes[x] - right
             sums[i + np.uint64(1)] += right
         place_y = (y + 0.5) / CELL + 0.5

@@ -67,8 +67,8 @@ _COLOURS = 3
 _HUE_GAIN = 4.0
 """Weight of Lab's a and b. Paint spans some 20 of their 100 units: unweighted, a grey car answers
 to the filter of a beige one of the same shape (scenes `bus` and `braking`, seeds 100 to 104)."""
-_COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32) / 100
-_COLOUR_MIDDLE = np.array([0.5, 0, 0], np.float32)
+_COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32)[:, np.newaxis, np.newaxis] / 100
+_COLOUR_MIDDLE = np.array([0.5, 0, 0], np.float32)[:, np.newaxis, np.newaxis]
 _PAINTED = 0.6
 """Middle of a box that paint is measured in, of each side."""
 _PAINT_SIDE = 8
@@ -86,7 +86,7 @@ class View:
     ----------
     patch : Patch
         The surroundings.
-    spectrum : (n, channels, 2, n // 2 + 1) array or None
+    spectrum : (channels, n, n // 2 + 1) array or None
         Spectrum of their cells; None for a wide view.
     response : (m, m) array
         Response by [y, x], relative to the usual one of visible frames.
@@ -125,8 +125,8 @@ class View:
             min(max(place, reach + 1), inner) for place in self.places(position).tolist()
         )
         near = self.response[row - reach : row + reach + 1, column - reach : column + reach + 1]
-        dy, dx = np.unravel_index(int(near.argmax()), near.shape)
-        y, x = row - reach + int(dy), column - reach + int(dx)
+        dy, dx = divmod(int(near.argmax()), 2 * reach + 1)
+        y, x = row - reach + dy, column - reach + dx
         top = self.response[y - 1 : y + 2, x - 1 : x + 2].astype(np.float64)
         exact = x + _vertex(*top[1].tolist()), y + _vertex(*top[:, 1].tolist())
         return self.position(*exact), float(self.response[y, x])
@@ -238,7 +238,7 @@ class Appearance:
         small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
         lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
         # Lightness is 0 to 100, a and b about as much to either side: all within about one.
-        features[GRADIENT_CHANNELS:] = (lab * _COLOUR_GAINS - _COLOUR_MIDDLE).transpose(2, 0, 1)
+        features[GRADIENT_CHANNELS:] = lab.transpose(2, 0, 1) * _COLOUR_GAINS - _COLOUR_MIDDLE
         return features
 
 
@@ -246,7 +246,9 @@ def _paint(frame: Frame, position: Array, size: Array) -> Array:
     """Median of the colours in the middle of a box, as L, a and b."""
     small = cut_image(frame, position, _PAINT_SIDE / (_PAINTED * size), (_PAINT_SIDE, _PAINT_SIDE))
     lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
-    return np.asarray(np.median(lab.reshape(-1, 3), axis=0), float)
+    middle = _PAINT_SIDE**2 // 2
+    ordered = np.sort(lab.reshape(-1, 3), axis=0)
+    return np.asarray(ordered[middle - 1 : middle + 1].mean(axis=0), float)
 
 
 _DIRECTIONS = ((1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))

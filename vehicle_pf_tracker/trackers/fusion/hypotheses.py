@@ -16,7 +16,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -61,8 +62,7 @@ def chain(elapsed: float) -> tuple[float, float]:
     return (1 - HIDING) ** elapsed, 1 - (1 - RETURN) ** elapsed
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Hypotheses:
+class Hypotheses(NamedTuple):
     """A weighted set of hypotheses.
 
     The visibility of each is a Markov chain, {visible, hidden}, that is summed out
@@ -121,8 +121,7 @@ class Hypotheses:
 
     def moved(self, camera: CameraMotion) -> Hypotheses:
         """Move positions and velocities with the background."""
-        return replace(
-            self,
+        return self._replace(
             positions=camera.apply(self.positions),
             velocities=camera.apply_to_velocities(self.velocities),
         )
@@ -150,17 +149,17 @@ class Hypotheses:
         positions = self.positions + velocities * elapsed
         positions += rng.normal(size=shape) * (sigmas[0] * root)
         growths = self.growths * (1 + self.growths * elapsed)
-        growths = np.clip(growths, -FASTEST_GROWTH, FASTEST_GROWTH)
-        return replace(self, positions=positions, velocities=velocities, growths=growths)
+        growths = np.minimum(np.maximum(growths, -FASTEST_GROWTH), FASTEST_GROWTH)
+        return self._replace(positions=positions, velocities=velocities, growths=growths)
 
     def passed(self, elapsed: float) -> Hypotheses:
         """Let the chain of visibility pass `elapsed` frames."""
         stays, returns = chain(elapsed)
-        return replace(self, visible=self.visible * stays + (1 - self.visible) * returns)
+        return self._replace(visible=self.visible * stays + (1 - self.visible) * returns)
 
     def all_visible(self, probability: float) -> Hypotheses:
         """Take the vehicle to be visible with one probability; 0 for one that has left."""
-        return replace(self, visible=np.full(len(self.visible), probability))
+        return self._replace(visible=np.full(len(self.visible), probability))
 
     def evidence(self, log_ratios: Array) -> float:
         """Likelihood ratio, of this set against a hidden vehicle, of what gave these log ratios."""
@@ -171,12 +170,12 @@ class Hypotheses:
         seen = self.visible * np.exp(log_ratios)
         total = seen + (1 - self.visible)  # in this order never below `seen`
         weights, _ = normalise(self.weights * total)
-        return replace(self, visible=seen / total, weights=weights)
+        return self._replace(visible=seen / total, weights=weights)
 
     def witnessed(self, log_ratio: float) -> Hypotheses:
         """Take evidence on visibility that is the same for all hypotheses."""
         seen = self.visible * np.exp(log_ratio)
-        return replace(self, visible=seen / (seen + (1 - self.visible)))
+        return self._replace(visible=seen / (seen + (1 - self.visible)))
 
     def resampled(self, rng: np.random.Generator, count: int) -> Hypotheses:
         """Draw `count` hypotheses by weight, where few carry most of it or their number differs."""
@@ -192,7 +191,7 @@ class Hypotheses:
 
 def along_heading(noise: Array, heading: Array, across: float) -> Array:
     """Shrink the part of `noise` (N, 2) that is across the heading (2,) to the share `across`."""
-    speed = float(np.hypot(*heading))
+    speed = math.hypot(*heading.tolist())
     if across == 1.0 or not speed:
         return noise
     unit = heading / speed

@@ -17,7 +17,6 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import replace
 
 import numpy as np
 
@@ -71,7 +70,7 @@ def _moved_with_camera(state: State, step: Step) -> State:
     if camera.still:
         return state
     position, particles = camera.apply(state.position), state.particles.moved(camera)
-    return replace(state, position=position, particles=particles)
+    return state._replace(position=position, particles=particles)
 
 
 def _set_off(state: State, step: Step) -> State:
@@ -83,8 +82,8 @@ def _set_off(state: State, step: Step) -> State:
     particles, share = state.particles, _MEASURED_SPREAD
     positions = state.position + share * (particles.positions - state.position)
     velocities = move + share * particles.velocities
-    particles = replace(particles, positions=positions, velocities=velocities)
-    return replace(state, particles=particles, sets_off=True)
+    particles = particles._replace(positions=positions, velocities=velocities)
+    return state._replace(particles=particles, sets_off=True)
 
 
 def _driven(state: State, step: Step) -> State:
@@ -102,9 +101,8 @@ def _driven(state: State, step: Step) -> State:
     across = 1.0 if seen else ACROSS_LANES
     driven = particles.driven(step.rng, elapsed, sigmas, across=across)
     driven = driven.passed(elapsed)
-    return replace(
-        state,
-        particles=replace(driven, positions=step.inside(driven.positions)),
+    return state._replace(
+        particles=driven._replace(positions=step.inside(driven.positions)),
         size=size,
         frames=state.frames + 1,
         left_image=is_outside(step.frame, *driven.mean.tolist()),
@@ -119,7 +117,7 @@ def observe(state: State, step: Step) -> tuple[State, Observation]:
     again = not state.visibility.is_seen
     if state.sets_off:
         position = step.inside(state.particles.positions.mean(axis=0))
-        return replace(state, sets_off=False), Observation(view, position, view.at(position), again)
+        return state._replace(sets_off=False), Observation(view, position, view.at(position), again)
     position, response = likeliest_peak(view, state.particles, state.extent)
     return state, Observation(view, step.inside(position), response, again)
 
@@ -133,9 +131,9 @@ def _weighed(state: State, step: Step) -> tuple[State, View]:
     scales = (1.0,) if state.visibility.is_seen else HIDDEN_SCALES
     looks = [(*_look(state, step, scale), scale) for scale in scales]
     view, positions, ratios, scale = max(looks, key=lambda it: state.particles.evidence(it[2]))
-    particles = replace(state.particles, positions=positions).observed(ratios)
+    particles = state.particles._replace(positions=positions).observed(ratios)
     size = step.bounded(scale * state.size) if particles.probability_visible > 0.5 else state.size
-    return replace(state, particles=particles, size=size), view
+    return state._replace(particles=particles, size=size), view
 
 
 def _look(state: State, step: Step, scale: float) -> tuple[View, Array, Array]:
@@ -162,7 +160,7 @@ def _observe_return(
     position, velocity = returned
     particles = gathered(state, step, position, velocity, 1 - DOUBT)
     seen = Observation(view, position, view.at(position), again=True)
-    return replace(state, particles=particles), seen
+    return state._replace(particles=particles), seen
 
 
 def gathered(
@@ -212,9 +210,8 @@ def response_evidence(
     seen = np.minimum(np.maximum(view.response, 0), np.float32(_HIGHEST_RESPONSE))
     ratios = parameters.response_slope * (seen.astype(np.float64) - EVEN)
     moves, log_ratios = climbed(ratios, view.places(positions), _costs(*climb))
-    return positions + moves / view.steps, np.clip(
-        log_ratios, -_LARGEST_LOG_RATIO, _LARGEST_LOG_RATIO
-    )
+    bounded = np.minimum(np.maximum(log_ratios, -_LARGEST_LOG_RATIO), _LARGEST_LOG_RATIO)
+    return positions + moves / view.steps, bounded
 
 
 def likeliest_peak(view: View, particles: Hypotheses, extent: float) -> tuple[Array, float]:
@@ -227,6 +224,6 @@ def likeliest_peak(view: View, particles: Hypotheses, extent: float) -> tuple[Ar
     """
     votes = particles.weights * particles.visible
     best = particles.positions[int(votes.argmax())]
-    apart = np.linalg.norm(particles.positions - best, axis=1)
-    votes = np.where(apart < _SAME_VEHICLE * extent, votes, 0.0)
+    x, y = (particles.positions - best).T
+    votes = votes * (np.hypot(x, y) < _SAME_VEHICLE * extent)
     return view.peak_near(votes @ particles.positions / votes.sum(), _PEAK_REACH)

@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from enum import Enum, Flag
+from typing import NamedTuple
 
 import numpy as np
 
@@ -63,8 +64,7 @@ class Work(Flag):
     BOTH = SIZE | TRAINING
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class State:
+class State(NamedTuple):
     """Belief about the vehicle after a frame.
 
     Attributes
@@ -154,12 +154,13 @@ class Step:
 
     def bounded(self, size: Array) -> Array:
         """Bound width and height."""
-        return np.clip(size, _LEAST_SIDE, _LARGEST_SHARE * max(frame_size(self.frame)))
+        largest = _LARGEST_SHARE * max(frame_size(self.frame))
+        return np.minimum(np.maximum(size, _LEAST_SIDE), largest)
 
     def share_inside(self, position: Array, size: Array) -> float:
-        """Share of a box that is inside the image."""
-        ends = np.clip([position - size / 2, position + size / 2], 0, frame_size(self.frame))
-        return float(((ends[1] - ends[0]) / size).prod())
+        """Share of a box, whose centre is inside the image, that is inside."""
+        low, high = np.maximum(position - size / 2, 0), position + size / 2
+        return float(((np.minimum(high, frame_size(self.frame)) - low) / size).prod())
 
     @property
     def hidden_velocity_sigma(self) -> float:

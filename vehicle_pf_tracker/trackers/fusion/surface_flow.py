@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
@@ -31,7 +31,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, Flow, carried_share
+from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, Flow, carried_share, solved
 
 _KEPT = 8
 """Patches kept; by less than half a canonical px per frame a vehicle is taken to stand."""
@@ -57,22 +57,12 @@ _LEAST_KEPT = 3
 
 @dataclass(slots=True, eq=False)
 class _Kept:
-    """An earlier patch, the vehicle's position and size in it, and the camera's motion since.
-
-    `moved` is that position, moved with the camera.
-    """
+    """An earlier patch, the vehicle's position and size in it, and the camera's next motion."""
 
     patch: Patch
     position: Array
     size: Array
-    moved: Array
-    turn: Array = field(default_factory=lambda: np.eye(2))
-    shift: Array = field(default_factory=lambda: np.zeros(2))
-
-    def move(self, camera: CameraMotion) -> None:
-        """Let the camera move."""
-        self.turn, self.shift = camera.turn @ self.turn, camera.apply(self.shift)
-        self.moved = camera.apply(self.moved)
+    camera: CameraMotion = field(default_factory=CameraMotion)
 
 
 class SurfaceFlow:
@@ -98,15 +88,13 @@ class SurfaceFlow:
         self.share, self.tells = 1.0, False
 
     def move_with_camera(self, camera: CameraMotion) -> None:
-        """Let the camera move."""
-        if camera.still:
-            return
-        for kept in self._kept:
-            kept.move(camera)
+        """Let the camera move, once between two patches that are kept."""
+        if self._kept:
+            self._kept[-1].camera = camera
 
     def keep(self, patch: Patch, position: Array, size: Array) -> None:
         """Keep a patch, and position and size of the vehicle in it, px."""
-        self._kept.append(_Kept(_middle(patch), position, size, position))
+        self._kept.append(_Kept(_middle(patch), position, size))
 
     def judge(self, patch: Patch, position: Array, size: Array) -> float | None:
         """Judge how much of the vehicle still moves with it.
@@ -125,8 +113,9 @@ class SurfaceFlow:
         """
         if not self._kept:
             return None
-        kept, apart = self._earlier(position, patch.zoom)
-        self._latest = self._moving(_middle(patch), kept, position, size, apart)
+        kept, camera, apart = self._earlier(position, patch.zoom)
+        background = camera if apart >= _TELLING_PX else None
+        self._latest = self._moving(_middle(patch), kept, position, size, background)
         if not self._usual:
             self._usual = self._latest
         self.tells = self._usual >= _LEAST_USUAL
@@ -138,49 +127,53 @@ class SurfaceFlow:
         if len(self._kept) >= _LEAST_KEPT:
             self._usual += USUAL_RATE * (self._latest - self._usual)
 
-    def _earlier(self, position: Array, zoom: Array) -> tuple[_Kept, float]:
-        """Choose a patch to compare with, and tell how far vehicle and background came apart."""
+    def _earlier(self, position: Array, zoom: Array) -> tuple[_Kept, CameraMotion, float]:
+        """Choose a patch to compare with; the camera's motion since, and the vehicle's beyond."""
+        since = CameraMotion()
         for kept in reversed(self._kept):
-            apart = math.hypot(*((position - kept.moved) * zoom))
+            if not kept.camera.still:
+                since = since.after(kept.camera)
+            apart = math.hypot(*((position - since.apply(kept.position)) * zoom).tolist())
             if apart >= _APART_PX:
                 break
-        return kept, apart
+        return kept, since, apart
 
     def _moving(
-        self, patch: Patch, kept: _Kept, position: Array, size: Array, apart: float
-    ) -> float:
-        """Share of the box that has moved with the vehicle since the earlier patch."""
+        self, patch: Patch, kept: _Kept, position: Array, size: Array,
+        camera: CameraMotion | None,
+    ) -> float:  # fmt: skip
+        """Share of the box that has moved with the vehicle since the earlier patch.
+
+        `camera` is the motion since, if the background tells anything.
+        """
         before, half = kept.patch, _SIDE / 2
         # As factor and summand: of the present patch to px, and of px to the earlier patch.
         to_px, from_px = (1 / patch.zoom, patch.centre - half / patch.zoom), before.zoom
         factor, summand = to_px[0] / size, (to_px[1] - position) / size
         grown = kept.size * from_px
-        places = np.stack([factor, summand])
+        places = np.array([factor, summand])
         start = (kept.position - before.centre) * from_px + half
-        vehicle = np.stack([factor * grown, summand * grown + start])
+        vehicle = np.array([factor * grown, summand * grown + start])
         background = np.empty((0, 2))
-        if apart >= _TELLING_PX:
-            back = np.linalg.inv(kept.turn).T * from_px
-            shift = half - before.centre * from_px
-            background = np.vstack(
-                [to_px[0][:, np.newaxis] * back, (to_px[1] - kept.shift) @ back + shift]
-            )
+        if camera is not None:
+            back = solved(camera.turn, np.eye(2)).T * from_px
+            shift = (to_px[1] - camera.shift) @ back + half - before.centre * from_px
+            background = np.array([*(to_px[0][:, np.newaxis] * back), shift])
         cells = _cells(patch, position, size)
-        flow = _flow(patch, before)
-        return carried_share(flow, cells, places, vehicle, background)
+        return carried_share(_flow(patch, before), cells, places, vehicle, background)
 
 
 def _middle(patch: Patch) -> Patch:
     """Cut out what flow is measured in."""
     middle = patch.middle(_SIDE)
-    return replace(middle, grey=np.ascontiguousarray(middle.grey))
+    return Patch(middle.image, np.ascontiguousarray(middle.grey), patch.centre, patch.zoom)
 
 
 def _flow(present: Patch, before: Patch) -> Flow:
     """Flow from the present patch to an earlier one, canonical px.
 
     By dense inverse search (Kroeger et al. 2016), whose stripes, and so its results, do not depend
-    on the number of threads.
+    on the number of threads. Trackers are copied, which this object cannot be: it is made anew.
     """
     method = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
     method.setVariationalRefinementIterations(_REFINED)
@@ -194,4 +187,4 @@ def _cells(patch: Patch, position: Array, size: Array) -> CellBlock:
     last = patch.side // CELL - 1
     low = np.minimum(np.maximum(np.ceil((middle - half) / CELL - 0.5), 0), last)
     high = np.minimum(np.maximum(np.floor((middle + half) / CELL - 0.5), low), last)
-    return np.stack([low, high - low + 1]).astype(np.intp)
+    return np.array([low, high - low + 1], np.intp)

@@ -144,8 +144,7 @@ class SurfacePoints:
         age = _OLDEST if self.points is None else self.points.age
         if age >= (_RENEWED_AFTER if whole else _OLDEST):
             places = _grid(_GRID, _REACH)
-            alive = np.ones(len(places), bool)
-            self.points = _Points(places, position + places * size, alive)
+            self.points = _Points(places, position + places * size, np.ones(len(places), bool))
 
 
 @functools.cache

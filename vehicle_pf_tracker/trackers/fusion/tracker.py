@@ -28,8 +28,6 @@ hidden; flow on the surface gives a second one for all of them. docs/fusion.md h
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
@@ -37,7 +35,7 @@ from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.camera_motion import small_grey
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion.follow import follow, learn
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, Hypotheses
@@ -96,7 +94,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         if self._target is not None:
             self._memory.appearance.use_kernels(self.kernels)
             particles = self._state.particles.resampled(self._rng, parameters.num_particles)
-            self._state = replace(self._state, particles=particles)
+            self._state = self._state._replace(particles=particles)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         _ = self.target  # says what is wrong before the start
@@ -108,12 +106,13 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         state = follow(state, seen, step)
         learn(state, seen, step)
         particles = state.particles.resampled(self._rng, self.parameters.num_particles)
-        self._state = replace(state, particles=particles)
+        self._state = state._replace(particles=particles)
         return self._outcome(state, seen.response, step)
 
     def _outcome(self, state: State, response: float, step: Step) -> Outcome:
         particles, gone = state.particles, state.visibility is Visibility.GONE
         (x, y), (vx, vy) = state.position.tolist(), particles.mean_velocity.tolist()
+        width, height = state.size.tolist()
         regime = "visible" if state.visibility.is_seen else "occluded"
         return Outcome(
             Cloud(step.inside(particles.positions), particles.weights), (x, y), (vx, vy),
@@ -124,8 +123,5 @@ class FusionTracker(ParticleTracker[FusionParameters]):
                 "whole": state.whole,
             },
             left_image=state.left_image or gone,
+            size=(width, height),
         )  # fmt: skip
-
-    def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:
-        estimate = super()._estimate(outcome, mode, confidence, began)
-        return replace(estimate, box=Box.around(outcome.position, *self._state.size.tolist()))

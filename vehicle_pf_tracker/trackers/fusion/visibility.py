@@ -22,7 +22,6 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -49,7 +48,7 @@ long as a vehicle waits behind a hedge."""
 
 def judge(state: State, seen: Observation, step: Step) -> State:
     """Decide how much of the vehicle is seen."""
-    state = replace(state, work=_work(state, seen.response, step.memory.surface))
+    state = state._replace(work=_work(state, seen.response, step.memory.surface))
     if not seen.again:
         state = _witnessed(state, seen, step)
     visible = state.particles.probability_visible > 0.5
@@ -67,7 +66,7 @@ def judge(state: State, seen: Observation, step: Step) -> State:
         visibility = Visibility.VISIBLE if state.is_whole else Visibility.PARTLY_HIDDEN
     if departure is not None or (turned is None and visible):
         turning.end()
-    return replace(state, visibility=visibility, departure=departure, turned=turned)
+    return state._replace(visibility=visibility, departure=departure, turned=turned)
 
 
 def _work(state: State, response: float, surface: SurfaceFlow) -> Work:
@@ -90,7 +89,7 @@ def _witnessed(state: State, seen: Observation, step: Step) -> State:
         share = surface.judge(patch, seen.position, state.size)
     if share is None:
         return state
-    return replace(state, particles=state.particles.witnessed(points_evidence(share, evidence)))
+    return state._replace(particles=state.particles.witnessed(points_evidence(share, evidence)))
 
 
 def points_evidence(share: float, parameters: VisibilityParameters) -> float:
@@ -127,7 +126,7 @@ def _judged_whole(state: State, seen: Observation, step: Step) -> State:
         share = step.memory.surface.share * step.share_inside(seen.position, state.size)
         whole = wholeness(whole, share, step.elapsed, step.parameters.visibility)
     if whole > 0.5:
-        return replace(state, whole=whole)
+        return state._replace(whole=whole)
     growth, measured = state.growth, state.measured
     if state.is_whole:
         fitted = step.memory.sightings.fit()
@@ -136,7 +135,7 @@ def _judged_whole(state: State, seen: Observation, step: Step) -> State:
         measured = state.size
     grown = state.size * math.exp(growth * step.elapsed)
     grown = np.clip(grown, measured / _LARGEST_PARTIAL, measured * _LARGEST_PARTIAL)
-    return replace(state, whole=whole, growth=growth, measured=measured, size=step.bounded(grown))
+    return state._replace(whole=whole, growth=growth, measured=measured, size=step.bounded(grown))
 
 
 def wholeness(

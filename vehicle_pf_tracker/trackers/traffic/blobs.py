@@ -14,8 +14,9 @@
 
 """Boxes of vehicles from a mask of what moves.
 
-What touches in the mask need not be one vehicle, and one vehicle need not be of one piece: the
-predictions of the vehicles that are followed tell, and the size that vehicles have there.
+What touches in the mask need not be one vehicle: the size that vehicles have there tells. One
+vehicle need not be of one piece: the predictions of the vehicles that are followed tell. These do
+not divide blobs: a vehicle that was born as two halves would stay two.
 """
 
 from __future__ import annotations
@@ -34,7 +35,6 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     SHIPPED,
     TrafficNumbers,
     areas,
-    overlaps,
 )
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
@@ -46,21 +46,15 @@ _LEAST_PIECE = 4
 _TRIMMED = 0.15
 """Rows and columns at the rim with less of the fullest one are cut off: reflections, shadows."""
 _COVERED = 0.5
-"""Share of a predicted vehicle in a blob above which it may be a part of the blob."""
-_ALONE = 0.65
-"""Intersection over union with one prediction above which a blob is that vehicle alone."""
+"""Share of a predicted vehicle in a blob above which the blob is, or contains, that vehicle."""
 _PIECE = 0.8
 """Share of a blob inside a prediction above which it is a piece of that vehicle."""
-_REACH = 1.25
-"""Distance from a prediction's centre, of its half size, within which a pixel can be its own."""
 _ASPECT, _ASPECT_SPREAD = math.log(0.8), 0.3
 """Usual logarithm of height over width, to start from, and its standard deviation."""
 _ASPECT_RATE = 0.02
 """Rate at which the usual aspect follows blobs of one vehicle each."""
 _ASPECT_SIDE = 10
 """Least side in px of a blob whose aspect is learnt."""
-_SPLIT_MARGIN = 1.0
-"""Advantage of taking a blob for the several vehicles that are followed there."""
 _NOTABLE = 0.1
 """Share of the largest piece above which another one is part of the vehicle, and no noise."""
 _OWN = 0.15
@@ -194,12 +188,9 @@ class BlobReader:
         pieces: dict[int, list[Piece]] = {}
         room = areas(predicted)
         for part, box in _components(mask):
-            members = np.flatnonzero(intersections(box, predicted) > _COVERED * room)
-            if self._is_divided(box, predicted, members):
-                found += _divided(part, box, predicted[members])
-                continue
+            members = int(np.count_nonzero(intersections(box, predicted) > _COVERED * room))
             for piece in self._apart(part, *box[:2].astype(int).tolist()):
-                self._learn_shape(piece, mask.shape, len(members))
+                self._learn_shape(piece, mask.shape, members)
                 inside = intersections(piece.edges, predicted)
                 if len(inside) and inside.max() > _PIECE * math.prod(piece.sides):
                     pieces.setdefault(int(inside.argmax()), []).append(piece)
@@ -252,19 +243,6 @@ class BlobReader:
         fullness = (piece.log_fullness - self._fullness) / _FULLNESS_SPREAD
         return aspect**2 + fullness**2 + self._sizes.cost(piece)
 
-    def _is_divided(self, box: Array, predicted: Array, members: npt.NDArray[np.intp]) -> bool:
-        """Test for several vehicles in a blob: none fits alone, and the aspects suggest it."""
-        if len(members) < 2 or overlaps(box, predicted).max() > _ALONE:
-            return False
-        apart = self._aspect_cost(predicted[members]).mean()
-        return bool(apart < self._aspect_cost(box[np.newaxis])[0] + _SPLIT_MARGIN)
-
-    def _aspect_cost(self, edges: Array) -> Array:
-        sides = np.maximum(edges[:, 2:] - edges[:, :2], 1.0)
-        return np.asarray(
-            ((np.log(sides[:, 1] / sides[:, 0]) - self._aspect) / _ASPECT_SPREAD) ** 2
-        )
-
     def _learn_shape(self, piece: Piece, shape: tuple[int, ...], members: int) -> None:
         if members == 1 and piece.is_free(shape) and min(piece.sides) > _ASPECT_SIDE:
             self._aspect += _ASPECT_RATE * (piece.log_aspect - self._aspect)
@@ -312,23 +290,6 @@ def _cut(part: Mask, axis: int) -> list[tuple[Mask, int, int]]:
         cropped = half[v : v + height, u : u + width]
         halves.append((cropped, u + start * axis, v + start * (1 - axis)))
     return halves
-
-
-def _divided(part: Mask, box: Array, predicted: Array) -> list[Piece]:
-    """Give each pixel of a blob to the prediction that it is nearest to, in its half sizes."""
-    rows, columns = np.nonzero(part)
-    points = np.column_stack([columns, rows]) + box[:2] + 0.5
-    middles = (predicted[:, :2] + predicted[:, 2:]) / 2
-    halves = (predicted[:, 2:] - predicted[:, :2]) / 2
-    distances = (np.abs(points[:, np.newaxis] - middles) / halves).max(axis=2)
-    owners = np.where(distances.min(axis=1) < _REACH, distances.argmin(axis=1), -1)
-    pieces = []
-    for owner in range(len(predicted)):
-        own = points[owners == owner]
-        if len(own):
-            (left, top), (right, bottom) = own.min(axis=0) - 0.5, own.max(axis=0) + 0.5
-            pieces.append(Piece(left, top, right, bottom, len(own)))
-    return pieces
 
 
 def _joined(pieces: list[Piece]) -> Piece:

@@ -220,7 +220,7 @@ _WIDEST = 400
 _CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
 """Holes and gaps up to this size are closed: windscreens show the sky."""
 _FOLLOWED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
-"""Modes of vehicles that divide blobs; tentative ones may be pieces of a lorry."""
+"""Modes of vehicles that join their pieces; tentative ones may be pieces of a lorry."""
 _ALL_MOVES = 0.5
 """Share of moving pixels above which the camera moves, or the light was switched."""
 
