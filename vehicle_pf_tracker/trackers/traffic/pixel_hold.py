@@ -29,19 +29,34 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.shared_motion import PointFlow
-from vehicle_pf_tracker.trackers.traffic.association import deviations
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import HALF, areas
 from vehicle_pf_tracker.trackers.traffic.track import FEW, Track
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR, PIXEL_NOISE, V, W, X
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR, PIXEL_NOISE, V, X
 
 Grey: TypeAlias = npt.NDArray[np.uint8]
 
 _GRID = 5
-"""Points along each side of a box; two rows of them tell a motion, and those of one count as
-independent: neighbours err together. The rim is background."""
+"""Points along each side of a box, and the fewest that a motion is taken from."""
+_REACH = 0.8
+"""Part of the box that points are placed in; its rim is background."""
+_POINT_NOISE = 0.5
+"""Standard deviation of a point's flow, px."""
+_INDEPENDENT = 6
+"""Number of points that count as independent: neighbours err together."""
+_OUTLIER = 0.02
+"""Likelihood of a point that went elsewhere."""
+_SLIP = 0.02
+"""Standard deviation, of its size, by which a box grows or slips on its vehicle in a frame."""
+_SLIP_PX = 0.3
+"""The same in px."""
+_CAUTION = 1.5
+"""Factor on these deviations: errors of successive frames go the same way and add up."""
 _STANDS = 0.4
 """Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
+_HELD_SHARE = 0.3
+"""Least visible share of a vehicle, and share in the image, for pixels to hold it. At a half, and
+without the caution, IDF1 by motion falls by three."""
 _HELD_FALL = 0.15
 """Fall of the colours' similarity below its usual value above which pixels do not hold it."""
 _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
@@ -66,9 +81,7 @@ class PixelHold:
         """Take the next frame."""
         self._before, self._present = self._present, grey
 
-    def hold(
-        self, tracks: Sequence[Track], colours: ColourBins, normals: Array, noise: float
-    ) -> None:
+    def hold(self, tracks: Sequence[Track], colours: ColourBins, normals: Array) -> None:
         """Measure the vehicles among `tracks` that were not detected; see `measure`."""
         held = [
             track
@@ -76,10 +89,11 @@ class PixelHold:
             if track.confirmed
             and track.undetected > 0
             and track.unseen < FEW  # later the points lie on what hides it
+            and min(track.visible, track.inside) > _HELD_SHARE
         ]
         for track, hold in zip(held, self.measure(held, colours, normals), strict=True):
             if hold is not None:
-                track.hold(hold.edges, np.hypot(hold.deviations, deviations(hold.edges, noise)))
+                track.hold(hold.edges, hold.deviations)
 
     def measure(
         self, tracks: Sequence[Track], colours: ColourBins, normals: Array
@@ -119,7 +133,7 @@ def _hold(
     before, predicted = track.before, track.state.edges
     found = np.isfinite(new[:, 0])
     alive = found & ~_standing(old, new, before, predicted)
-    if alive.sum() < max(2 * _GRID, HALF * found.sum()):
+    if alive.sum() < max(_GRID, HALF * found.sum()):
         return None
     centre, size = (predicted[:2] + predicted[2:]) / 2, predicted[2:] - predicted[:2]
     relative = (old[alive] - (before[:2] + before[2:]) / 2) * _growth(before, predicted)
@@ -127,11 +141,14 @@ def _hold(
     particles = _particles(track, observed - relative, normals)
     expected = (1 + particles[:, 2])[:, np.newaxis, np.newaxis] * relative
     expected += particles[:, np.newaxis, :2]
-    squared = ((observed - expected) ** 2).sum(axis=2) / PIXEL_NOISE**2
-    logs = -_GRID / 2 * np.minimum(squared, FAR**2).mean(axis=1)
+    squared = ((observed - expected) ** 2).sum(axis=2) / _POINT_NOISE**2
+    logs = np.log(np.exp(-squared / 2) + _OUTLIER).mean(axis=1)
+    logs *= min(_INDEPENDENT, len(relative))
     middles = centre + particles[:, :2]
     halves = size * (1 + particles[:, 2:]) / 2
     boxes = np.hstack([middles - halves, middles + halves])
+    if (squared[int(np.argmax(logs))] < FAR**2).mean() < HALF:
+        return None
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
     edges = weights @ boxes
@@ -140,7 +157,9 @@ def _hold(
     )
     if fall > _HELD_FALL:
         return None
-    return Hold(edges, np.sqrt(weights @ (boxes - edges) ** 2))
+    spread = np.sqrt(weights @ (boxes - edges) ** 2)
+    sides = np.tile(edges[2:] - edges[:2], 2)
+    return Hold(edges, _CAUTION * (np.hypot(spread, _SLIP * sides) + _SLIP_PX))
 
 
 def _standing(old: Array, new: Array, before: Array, predicted: Array) -> npt.NDArray[np.bool_]:
@@ -160,8 +179,8 @@ def _particles(track: Track, motions: Array, normals: Array) -> Array:
     """
     covariance = track.state.covariance
     place = np.sqrt([covariance[X, X], covariance[V, V]]) + PIXEL_NOISE
-    growth = np.sqrt(covariance[W, W]) / track.state.mean[W]
-    particles = np.asarray(normals * np.append(place, growth))
+    spread = np.append(place, _SLIP)
+    particles = np.asarray(normals * spread)
     particles[::2, :2] = np.median(motions, axis=0) + normals[::2, :2] * PIXEL_NOISE
     return particles
 
@@ -179,7 +198,7 @@ def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
 
 
 def _points(edges: Array) -> Array:
-    places = (np.arange(_GRID) + 1) / (_GRID + 1) - 0.5
+    places = ((np.arange(_GRID) + 0.5) / _GRID - 0.5) * _REACH
     x, y = np.meshgrid(places, places)
     middle, size = (edges[:2] + edges[2:]) / 2, edges[2:] - edges[:2]
     return np.asarray(np.column_stack([x.ravel(), y.ravel()]) * size + middle)

@@ -140,8 +140,7 @@ class TrafficTracker:
         if detections is not None:
             self._take(detections.usable(*self._size), elapsed)
         if self.parameters.pixels:
-            noise = self.parameters.detections.edge_noise
-            self._pixels.hold(self._tracks, self._colours, normals, noise)
+            self._pixels.hold(self._tracks, self._colours, normals)
         self._end()
         self._learn_similarity()
         ordered = sorted(self._tracks, key=lambda one: (one.identity or math.inf, one.serial))
