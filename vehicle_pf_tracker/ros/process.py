@@ -88,7 +88,8 @@ def run_process(name: str, arguments: Sequence[str], serve: Callable[[list[str]]
     # rclpy's words where a signal comes while a node is made; the node is not missed.
     warnings.filterwarnings("ignore", "Failed to fini rosout publisher", RuntimeWarning)
     try:
-        _check_parameter_files(arguments)
+        for path in _parameter_files(arguments):  # of a key that is there twice, ROS takes the last
+            check_yaml_file(path, "parameter file")
         rclpy.init(args=list(arguments))
         interrupts.left_to_ros = True
         return serve(remove_ros_args(list(arguments)))
@@ -162,12 +163,6 @@ def end_at_once(status: int) -> None:
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)
-
-
-def _check_parameter_files(arguments: Sequence[str]) -> None:
-    """Refuse files in which a key is there twice, of which ROS would take the last."""
-    for path in _parameter_files(arguments):
-        check_yaml_file(path, "parameter file")
 
 
 def _parameter_files(arguments: Sequence[str]) -> Iterator[Path]:

@@ -205,19 +205,15 @@ class VideoSourceNode(Node):  # type: ignore[misc]
 
     def _run(self) -> None:
         try:
-            self._show_all(self._open())
+            goes_on = self._show(self._open())
+            while goes_on and not self._stop.is_set():  # it is live, or looped
+                again = self._opened_again()
+                goes_on = again is None or self._show(again)
         except InputError as error:
             self.problem = str(error)
         except Exception as error:
             if self.context.ok():  # otherwise a signal took the ground from under a call
                 self.problem = f"{type(error).__name__}: {error}"
-
-    def _show_all(self, opened: Footage) -> None:
-        """Show the source, again and again where it is live or looped."""
-        goes_on = self._show(opened)
-        while goes_on and not self._stop.is_set():
-            again = self._opened_again()
-            goes_on = again is None or self._show(again)
 
     def _show(self, source: Footage) -> bool:
         """Show the source until it ends or breaks; return whether it is to be opened again."""

@@ -126,26 +126,21 @@ class IncidentRecorder:
         text = to_yaml(configuration.specs(), configuration.to_mapping(), f"{name}'s.")
 
         def write() -> None:
-            with writer(folder, overwrite=True) as recording:
-                for (topic, type_name), stamp, data in messages:
-                    recording.write_serialized(topic.format(name), type_name, stamp, data)
-                if first is not None:
-                    recording.write_truth(Truth(*first, Occlusion.NONE))
-            with output_errors(folder):
-                (folder / "parameters.yaml").write_text(text, encoding="utf-8")
+            try:
+                with writer(folder, overwrite=True) as recording:
+                    for (topic, type_name), stamp, data in messages:
+                        recording.write_serialized(topic.format(name), type_name, stamp, data)
+                    if first is not None:
+                        recording.write_truth(Truth(*first, Occlusion.NONE))
+                with output_errors(folder):
+                    (folder / "parameters.yaml").write_text(text, encoding="utf-8")
+                tell(f"the last seconds are written to {folder}")
+            except InputError as error:
+                tell(f"the last seconds are not kept: {error}")
 
-        self._writing = threading.Thread(target=_telling, args=[write, folder, tell])
+        self._writing = threading.Thread(target=write)
         self._writing.start()
         return folder
-
-
-def _telling(write: Callable[[], None], folder: Path, tell: Callable[[str], object]) -> None:
-    try:
-        write()
-    except InputError as error:
-        tell(f"the last seconds are not kept: {error}")
-    else:
-        tell(f"the last seconds are written to {folder}")
 
 
 class KeptTarget:

@@ -56,16 +56,12 @@ class KernelLoading:
     @property
     def is_done(self) -> bool:
         """True once the kernels are loaded."""
-        return not self._problem and not self._is_running
+        return not self._problem and not (self._thread is not None and self._thread.is_alive())
 
     @property
     def reason(self) -> str:
         """Reason why there are no kernels (yet), in one sentence."""
         return self._problem or _REASON
-
-    @property
-    def _is_running(self) -> bool:
-        return self._thread is not None and self._thread.is_alive()
 
     def _load(self) -> None:
         try:

@@ -99,12 +99,9 @@ class ParameterTable:
         for name, value in self.configuration.to_mapping().items():
             # The override is in the value already, converted; rclpy refuses 6 where 6.0 is meant.
             node.declare_parameter(name, value, describe(self._specs[name]), ignore_override=True)
-        node.add_pre_set_parameters_callback(self._convert)
+        node.add_pre_set_parameters_callback(lambda given: list(map(self._as_declared, given)))
         node.add_on_set_parameters_callback(self._validate)
         node.add_post_set_parameters_callback(self._apply)
-
-    def _convert(self, parameters: list[Parameter]) -> list[Parameter]:
-        return [self._as_declared(one) for one in parameters]
 
     def _as_declared(self, one: Parameter) -> Parameter:
         spec = self._specs.get(one.name)

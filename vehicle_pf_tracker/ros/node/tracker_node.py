@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from geometry_msgs.msg import PointStamped, PolygonStamped
@@ -86,11 +87,11 @@ class TrackerNode(ImageNode):
         self.open_images()
         self.warn_of_overrides()
         self._cameras.open(self.table.configuration.session.road)
-        self.listen(RegionOfInterest, "~/set_target", self._on_region)
-        self.listen(PolygonStamped, "~/set_box", self._on_polygon)
-        self.listen(PointStamped, "~/clicked_point", self._on_point)
+        self._take_target("~/set_target", RegionOfInterest, box_of_region)
+        self._take_target("~/set_box", PolygonStamped, box_of_polygon)
+        self._take_target("~/clicked_point", PointStamped, self._box_at)
         if detection_type() is not None:
-            self.listen(detection_type(), "~/set_detection", self._on_detection)
+            self._take_target("~/set_detection", detection_type(), box_of_detection)
         self._has_logged_ready = False
         self._await_kernels()
 
@@ -99,31 +100,18 @@ class TrackerNode(ImageNode):
         super().deactivate()
         self._cameras.close()
 
-    def _on_region(self, message: RegionOfInterest) -> None:
-        self._set_target(lambda stream: box_of_region(message))
+    def _take_target(self, topic: str, kind: Any, read: Callable[[Any], Box]) -> None:
+        """Start on the boxes that messages on `topic` give, those with a header in its frame."""
 
-    def _on_polygon(self, message: PolygonStamped) -> None:
-        self._set_target(lambda stream: box_of_polygon(message), "~/set_box", message)
-
-    def _on_point(self, message: PointStamped) -> None:
-        self._set_target(
-            lambda stream: box_of_point(message, stream.box), "~/clicked_point", message
-        )
-
-    def _on_detection(self, message: Any) -> None:
-        self._set_target(lambda stream: box_of_detection(message), "~/set_detection", message)
-
-    def _set_target(
-        self, read: Callable[[Stream], Box], topic: str = "", message: Any = None
-    ) -> None:
-        """Start on the box that is read; a message with a header is to be in the images' frame."""
-
-        def start(stream: Stream) -> None:
-            if message is not None:
+        def start(message: Any, stream: Stream) -> None:
+            if kind is not RegionOfInterest:
                 stream.check_frame_id(topic, message.header)
-            stream.start_on(read(stream))
+            stream.start_on(read(message))
 
-        self.ask("target", start)
+        self.listen(kind, topic, lambda message: self.ask("target", partial(start, message)))
+
+    def _box_at(self, message: PointStamped) -> Box:
+        return box_of_point(message, self.stream.box if self.stream is not None else None)
 
     def _await_kernels(self) -> None:
         """Log once that the node is ready: active, and with kernels."""

@@ -98,7 +98,7 @@ class TopicPublisher:
         name: str,
         kind: type[Any],
         qos: QoSProfile,
-        convert: Callable[[bytes], Any] = bytes,
+        convert: Callable[[bytes], Any],
     ) -> None:
         try:
             self._publisher = node.create_publisher(kind, name, qos)
@@ -156,8 +156,13 @@ def make_publishers(
         if kind is None:
             what = topic.type_name if topic.is_cdr and topic.type_name else "an unknown type"
             notices.append(f"not played: {topic.name}, since {what} is not installed here")
-        else:
-            publishers[topic.name] = _make_publisher(node, topic, kind, options)
+            continue
+        convert: Callable[[bytes], Any] = bytes
+        if _is_decompressed(topic, options):
+            kind, convert = Image, decompressed
+        qos = recorded_qos(topic.offered_qos, _IMAGE_DEPTH if kind is Image else _DEPTH)
+        name = _final_name(topic, options)
+        publishers[topic.name] = TopicPublisher(node, name, kind, qos, convert)
     return publishers, notices
 
 
@@ -172,18 +177,6 @@ def decompressed(data: bytes) -> Image:
     compressed = deserialize_message(data, CompressedImage)
     frame = decode_compressed(compressed.format, compressed.data)
     return image_message(compressed.header, frame)
-
-
-def _make_publisher(
-    node: Node, topic: TopicInfo, kind: type[Any], options: ReplayOptions
-) -> TopicPublisher:
-    name = _final_name(topic, options)
-    is_image = kind is Image or _is_decompressed(topic, options)
-    depth = _IMAGE_DEPTH if is_image else _DEPTH
-    qos = recorded_qos(topic.offered_qos, depth)
-    if _is_decompressed(topic, options):
-        return TopicPublisher(node, name, Image, qos, decompressed)
-    return TopicPublisher(node, name, kind, qos)
 
 
 def _check_names(recording: Recording, options: ReplayOptions) -> None:

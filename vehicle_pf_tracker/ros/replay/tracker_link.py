@@ -157,7 +157,7 @@ class TrackerLink:
         InputError
             If that takes longer than the timeout.
         """
-        if not self._spinner.until(self._is_matched, self._timeout):
+        if not self._spinner.until(lambda: self._mode.get_publisher_count() > 0, self._timeout):
             raise InputError(
                 f"the node {self.name} did not offer {self.name}/mode within {self._timeout:g} s; "
                 "is it an active tracker node?"
@@ -210,9 +210,6 @@ class TrackerLink:
             result = self._call(self._reset, Trigger.Request())
         if not result.success:
             raise InputError(f"the node {self.name} refuses to reset: {result.message}")
-
-    def _is_matched(self) -> bool:
-        return bool(self._mode.get_publisher_count())
 
     def _call(self, client: Any, request: Any) -> Any:
         if not self._spinner.until(client.service_is_ready, self._timeout):
