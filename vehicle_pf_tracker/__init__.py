@@ -23,31 +23,20 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from vehicle_pf_tracker.core.box import Box
-    from vehicle_pf_tracker.core.errors import InputError
-    from vehicle_pf_tracker.offline.library import Estimates, track
-    from vehicle_pf_tracker.offline.traffic_library import TrafficTracker
-    from vehicle_pf_tracker.offline.traffic_results import read_counts, read_tracks
-    from vehicle_pf_tracker.recordings.source import open_source
-    from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
-    from vehicle_pf_tracker.trackers.registry import make_tracker
+if TYPE_CHECKING:  # `as` makes them names of this package for type checkers
+    from vehicle_pf_tracker.core.box import Box as Box
+    from vehicle_pf_tracker.core.errors import InputError as InputError
+    from vehicle_pf_tracker.offline.library import Estimates as Estimates
+    from vehicle_pf_tracker.offline.library import track as track
+    from vehicle_pf_tracker.offline.traffic_library import TrafficTracker as TrafficTracker
+    from vehicle_pf_tracker.offline.traffic_results import read_counts as read_counts
+    from vehicle_pf_tracker.offline.traffic_results import read_tracks as read_tracks
+    from vehicle_pf_tracker.recordings.source import open_source as open_source
+    from vehicle_pf_tracker.trackers.estimate import Estimate as Estimate
+    from vehicle_pf_tracker.trackers.estimate import Mode as Mode
+    from vehicle_pf_tracker.trackers.registry import make_tracker as make_tracker
 
 __version__: str
-__all__ = [
-    "Box",
-    "Estimate",
-    "Estimates",
-    "InputError",
-    "Mode",
-    "TrafficTracker",
-    "make_tracker",
-    "open_source",
-    "read_counts",
-    "read_tracks",
-    "track",
-]
-
 _HOMES = {
     "Box": "core.box",
     "Estimate": "trackers.estimate",
@@ -61,6 +50,8 @@ _HOMES = {
     "read_tracks": "offline.traffic_results",
     "track": "offline.library",
 }
+"""Module of each public name."""
+__all__ = list(_HOMES)
 
 
 def __getattr__(name: str) -> Any:
