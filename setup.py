@@ -97,6 +97,7 @@ setup(
         f"{NAME}.cli": ["pick.html", "pick.js"],
         f"{NAME}.offline": ["live.html"],
         f"{NAME}.recordings": ["ImageAnnotations.msg"],
+        f"{NAME}.ros": ["transport.xml"],
         f"{NAME}.evaluation": ["baselines.txt"],
         f"{NAME}.evaluation.report": ["templates/*"],
     },

@@ -26,6 +26,7 @@ import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, MutableMapping
 from contextlib import contextmanager
+from importlib import resources
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -42,32 +43,6 @@ SHARED_MEMORY = Path("/dev/shm")  # noqa: S108 (the system's place for it)
 IMAGES_PER_SEGMENT = 4
 SMALLEST_SEGMENT = 4 * 1024 * 1024
 _LARGEST_SEGMENT = 2**31
-
-_PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
-<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
-  <transport_descriptors>
-    <transport_descriptor>
-      <transport_id>images_shared_memory</transport_id>
-      <type>SHM</type>
-      <segment_size>{segment_size}</segment_size>
-    </transport_descriptor>
-    <transport_descriptor>
-      <transport_id>images_udp</transport_id>
-      <type>UDPv4</type>
-    </transport_descriptor>
-  </transport_descriptors>
-  <participant profile_name="images" is_default_profile="true">
-    <rtps>
-      <userTransports>
-        <transport_id>images_shared_memory</transport_id>
-        <transport_id>images_udp</transport_id>
-      </userTransports>
-      <useBuiltinTransports>false</useBuiltinTransports>
-    </rtps>
-  </participant>
-</profiles>
-"""
-
 
 LAUNCHED_SEGMENT = 64 * 2**20
 """Bytes of shared memory for `large_images` of the launch files, as ``config/large_images.xml`` has
@@ -87,7 +62,8 @@ def segment_size(image_bytes: int, free_bytes: int) -> int | None:
 
 def profile(size: int) -> str:
     """Write the XML profile with a shared-memory segment of `size` bytes and UDP beside it."""
-    return _PROFILE.format(segment_size=size)
+    text = resources.files(__package__).joinpath("transport.xml").read_text(encoding="utf-8")
+    return text.format(segment_size=size)
 
 
 def is_free_to_choose(environment: Mapping[str, str], middleware: str) -> bool:
