@@ -94,38 +94,33 @@ def check(request: TrafficRequest) -> None:
 
 def run_traffic(request: TrafficRequest) -> int:
     """Run the comparison, write its report, and print its tables."""
-    from vehicle_pf_tracker.evaluation.traffic.comparison import (
-        MOTION,
-        NAME,
-        cases_of,
-        compare,
-        write_traffic_report,
-    )
+    from vehicle_pf_tracker.evaluation.traffic import comparison
     from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
     from vehicle_pf_tracker.parameters.configuration import Configuration
     from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
     sequences = [read_sequence(Path(source)) for source in request.sources]
-    known = {MOTION, *(name for sequence in sequences for name in sequence.detections)}
+    known = {comparison.MOTION, *(name for sequence in sequences for name in sequence.detections)}
     only = request.detections
     sources = None if only is None else names_in(only, known, "a file of det/")
-    cases = cases_of(sequences, sources)
+    cases = comparison.cases_of(sequences, sources)
     assigned = parse_assignments(specs(TRAFFIC.parameters), request.assignments)
     parameters = Configuration.of(TRAFFIC).updated(assigned).tracker
     seeds = request.some_seeds(FEW_SEEDS)
     with TrafficWorker(request.baselines_python) as worker, counting("compared") as progress:
-        results = list(compare(cases, worker, parameters, seeds, on_progress=progress))
+        run = comparison.compare(cases, worker, parameters, seeds, on_progress=progress)
+        results = list(run)
         options = {
             "command": list(request.command),
             "seeds": list(seeds),
             "set": request.assignments,
             **worker.versions,
         }
-    tables = write_traffic_report(results, request.output, options)
+    tables = comparison.write_traffic_report(results, request.output, options)
     for title, table in tables.items():
         print_rows(*table, title)
-    print(f"the report is {request.output / NAME}.md")
+    print(f"the report is {request.output / comparison.NAME}.md")
     return 0
 
 

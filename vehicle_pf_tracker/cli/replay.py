@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from argparse import REMAINDER
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
@@ -30,7 +31,6 @@ from vehicle_pf_tracker.cli.console import (
 )
 from vehicle_pf_tracker.cli.requests import (
     OverwriteOption,
-    RosOptions,
     TopicOption,
     number,
     option,
@@ -84,7 +84,7 @@ def _absolute(topic: str) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(RosOptions, TopicOption, OverwriteOption):
+class Request(TopicOption, OverwriteOption):
     """Request of `replay`, with options named as the rosbag2 player's where it has them."""
 
     recording: Path = positional(metavar="REC", help="rosbag2 folder or MCAP file")
@@ -131,6 +131,13 @@ class Request(RosOptions, TopicOption, OverwriteOption):
         "-o", metavar="DIR",
         help="write what the nodes answered: estimates.csv, in a folder for each of several nodes",
     )  # fmt: skip
+    timeout: float = option(
+        type=positive_number, default=10.0, metavar="S",
+        help="longest wait for a node in seconds (default: 10)",
+    )  # fmt: skip
+    ros_args: Sequence[str] = option(
+        nargs=REMAINDER, default=[], metavar="...", help="all words after this go to ROS"
+    )
 
 
 def run(request: Request) -> int:

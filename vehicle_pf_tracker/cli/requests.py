@@ -144,20 +144,16 @@ def names_in(text: str, known: Collection[str], what: str) -> tuple[str, ...]:
     return names
 
 
-def positive(text: str) -> int:
-    """Read an integer >= 1."""
-    return _at_least(1, text)
-
-
-def natural(text: str) -> int:
-    """Read an integer >= 0."""
-    return _at_least(0, text)
-
-
 def _at_least(least: int, text: str) -> int:
     if not text.isascii() or not text.isdigit() or int(text) < least:
         raise InputError(f"{text!r} is not an integer >= {least}")
     return int(text)
+
+
+positive = functools.partial(_at_least, 1)
+"""Read an integer >= 1."""
+natural = functools.partial(_at_least, 0)
+"""Read an integer >= 0."""
 
 
 def positive_number(text: str) -> float:
@@ -193,19 +189,6 @@ class MaxDiffOption(VerbRequest):
     max_diff: float = option(
         default=MAX_DIFF, metavar="S",
         help=f"largest time between an image and its truth (default: {MAX_DIFF:g} s)",
-    )  # fmt: skip
-
-
-@dataclass(frozen=True, kw_only=True)
-class RosOptions(VerbRequest):
-    """Request that talks to nodes."""
-
-    ros_args: Sequence[str] = option(
-        nargs=argparse.REMAINDER, default=[], metavar="...", help="all words after this go to ROS"
-    )
-    timeout: float = option(
-        type=positive_number, default=10.0, metavar="S",
-        help="longest wait for a node in seconds (default: 10)",
     )  # fmt: skip
 
 

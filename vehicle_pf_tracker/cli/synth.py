@@ -19,7 +19,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting
 from vehicle_pf_tracker.cli.requests import Names, OverwriteOption, option, positional, switch
@@ -136,10 +135,6 @@ def _words(box: Box) -> str:
 def _listing() -> Iterator[str]:
     for name, kind in SCENES.items():
         yield f"{name}: {kind.summary}"
-        yield from _settings(kind.parameters)
-
-
-def _settings(parameters: type[Any]) -> Iterator[str]:
-    for spec in specs(parameters).values():
-        facts = ", ".join(filter(None, (spec.unit, spec.bounds_text, " | ".join(spec.choices))))
-        yield f"  {spec.name}={spec.default} [{facts}]: {spec.doc}"
+        for spec in specs(kind.parameters).values():
+            facts = filter(None, (spec.unit, spec.bounds_text, " | ".join(spec.choices)))
+            yield f"  {spec.name}={spec.default} [{', '.join(facts)}]: {spec.doc}"

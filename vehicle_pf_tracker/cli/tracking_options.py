@@ -50,13 +50,6 @@ class StartOptions(VerbRequest):
     )  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
-class ParameterOptions(StartOptions):
-    """Options that choose parameters."""
-
-    seed: int | None = option(help="seed of the random numbers; -1 draws one and run.json keeps it")
-
-
 def parse_box(text: str) -> Box:
     """Read ``x,y,w,h`` of a command line."""
     try:
@@ -68,7 +61,7 @@ def parse_box(text: str) -> Box:
     return Box(x, y, width, height)
 
 
-def chosen(variant: Variant, request: ParameterOptions) -> Configuration:
+def chosen(variant: Variant, request: TrackingRequest) -> Configuration:
     """Collect the parameters that a request chooses.
 
     Raises
@@ -267,9 +260,10 @@ class Moment:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrackingRequest(SourceOptions, ParameterOptions, OverwriteOption):
+class TrackingRequest(SourceOptions, StartOptions, OverwriteOption):
     """Request to track in a source, or in a part of it."""
 
+    seed: int | None = option(help="seed of the random numbers; -1 draws one and run.json keeps it")
     start: Moment | None = option(
         type=Moment.parse, metavar="AT",
         help="first frame: its number, from 1, or its time in seconds, as 4.3s",
