@@ -142,13 +142,10 @@ def image_files(folder: Path) -> list[Path]:
 
 
 def _numbered_images(folder: Path) -> dict[int, Path]:
-    if paths := image_files(folder):
-        return dict(sorted(_by_number(paths).items()))
-    raise InputError(f"the folder {folder} has no images img/000001.jpg, ... (jpg or png)")
-
-
-def _by_number(paths: list[Path]) -> dict[int, Path]:
     """Return images by number: their name, else its last digits, else their order."""
+    paths = image_files(folder)
+    if not paths:
+        raise InputError(f"the folder {folder} has no images img/000001.jpg, ... (jpg or png)")
     for path in paths:
         if not path.is_file():
             raise InputError(f"the image {path} is not a regular file")
@@ -165,7 +162,7 @@ def _by_number(paths: list[Path]) -> dict[int, Path]:
         if number in images:
             raise InputError(f"{path} and {images[number].name} have the same number")
         images[number] = path
-    return images
+    return dict(sorted(images.items()))
 
 
 def _frame_rate(folder: Path) -> float | None:

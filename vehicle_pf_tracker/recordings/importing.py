@@ -94,7 +94,10 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
     """
     if format is not None and format not in FORMATS:
         raise InputError(f"the format {format!r} is unknown; choose from {', '.join(FORMATS)}")
-    _refuse(source)
+    if not source.exists():
+        raise InputError(f"there is no file or folder {source} to import")
+    if is_recording(source):
+        raise InputError(f"{source} is a recording already")
     footage = open_footage(source, truth=truth, fps=fps, identity=identity)
     frames, truths, size = 0, 0, (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
@@ -111,13 +114,6 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
             if progress is not None:
                 progress(frames, footage.frame_count)
     return ImportSummary(frames, truths, footage.fps, *size, tuple(footage.notices))
-
-
-def _refuse(source: Path) -> None:
-    if not source.exists():
-        raise InputError(f"there is no file or folder {source} to import")
-    if is_recording(source):
-        raise InputError(f"{source} is a recording already")
 
 
 def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:

@@ -234,7 +234,12 @@ class Recording:
 
     def _decode_or_note(self, message: Message) -> StampedFrame:
         try:
-            return _decode(self.image_type, message.data)
+            image = deserialize(message.data, self.image_type)
+            if self.image_type == messages.COMPRESSED_IMAGE:
+                frame = decode_compressed(image.format, image.data)
+            else:
+                frame = frame_of_message(image)
+            return StampedFrame(messages.stamp_ns(image), frame)
         except InputError as error:
             self._notices.add_image(message.log_time_ns, self.start_ns, error)
             stamp = header_stamp_ns(message.data)
@@ -272,15 +277,6 @@ class Recording:
                 "nothing in it can be used"
             )
         raise InputError(f"the recording {self.path} holds no messages")
-
-
-def _decode(type_name: str, data: memoryview) -> StampedFrame:
-    message = deserialize(data, type_name)
-    if type_name == messages.COMPRESSED_IMAGE:
-        frame = decode_compressed(message.format, message.data)
-    else:
-        frame = frame_of_message(message)
-    return StampedFrame(messages.stamp_ns(message), frame)
 
 
 def _nanoseconds(name: str, seconds: float) -> int:

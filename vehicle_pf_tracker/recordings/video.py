@@ -302,11 +302,6 @@ def open_footage(
     return VideoFile(path, truth, fps, identity)
 
 
-def is_live(footage: Footage) -> bool:
-    """Return whether the images come by themselves: those of a camera or a stream."""
-    return isinstance(footage, Camera)
-
-
 def is_recording(path: Path) -> bool:
     """Return whether `path` is a rosbag2 folder or an MCAP file, by its name and content."""
     return path.suffix == ".mcap" or (path / "metadata.yaml").exists()

@@ -36,7 +36,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs
 from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, Footage, Picture
-from vehicle_pf_tracker.recordings.video import is_live, is_recording, open_footage
+from vehicle_pf_tracker.recordings.video import Camera, is_recording, open_footage
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
 from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_nodes
@@ -236,7 +236,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         return self._settings.loop
 
     def _show_images(self, source: Footage) -> None:
-        self._is_live = is_live(source)
+        self._is_live = isinstance(source, Camera)
         self._pace.begin(is_live=self._is_live)
         for picture in source.frames():
             if self._stop.is_set():
