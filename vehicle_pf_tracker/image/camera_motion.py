@@ -154,10 +154,6 @@ class CameraFlow:
         self._still = 0
         self._motion = CameraMotion()
 
-    @property
-    def _is_mounted(self) -> bool:
-        return self._still >= _STANDS_AFTER and self._still % _CHECKED_EVERY != 0
-
     def measure(self, small: SmallGrey, target: Box) -> CameraMotion:
         """Motion since the last frame shown; none for the first one.
 
@@ -175,7 +171,8 @@ class CameraFlow:
         corners = self._background(last, target, zoom)
         if len(corners) < LEAST_CORNERS:
             return CameraMotion()
-        if self._is_mounted and _stand(last, reduced, corners):
+        is_mounted = self._still >= _STANDS_AFTER and self._still % _CHECKED_EVERY != 0
+        if is_mounted and _stand(last, reduced, corners):
             self._age += _WEAR_IN_PLACE - 1
             self._still += 1
             return CameraMotion()

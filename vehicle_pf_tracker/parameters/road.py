@@ -185,17 +185,11 @@ def parse_pairs(text: str) -> tuple[Pair, ...]:
 
 
 def _pair(word: str) -> Pair:
-    pixel, equals, road = word.partition("=")
-    if not equals:
+    sides = [parse_numbers(side, f"the pair {word!r} of the road") for side in word.split("=")]
+    if [len(numbers) for numbers in sides] != [2, 2]:
         raise InputError(f"the pair {word!r} of the road is not u,v=x,y (pixels = metres)")
-    return Pair(_point(pixel, word), _point(road, word))
-
-
-def _point(text: str, word: str) -> tuple[float, float]:
-    numbers = parse_numbers(text, f"the pair {word!r} of the road")
-    if len(numbers) != 2:
-        raise InputError(f"the pair {word!r} of the road is not u,v=x,y (pixels = metres)")
-    return numbers[0], numbers[1]
+    (u, v), (x, y) = sides
+    return Pair((u, v), (x, y))
 
 
 def format_pairs(pairs: tuple[Pair, ...]) -> str:

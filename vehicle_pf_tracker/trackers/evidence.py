@@ -100,7 +100,9 @@ class EvidenceJudge:
         left_image : bool
             True where the cloud's mean crossed the border before it was clipped.
         """
-        if self._is_evidence(similarity, parameters):
+        visible = self.mode is Mode.TRACKING
+        share = parameters.occluded_below if visible else parameters.clear_above
+        if similarity >= max(parameters.minimum, share * self.level):
             self.mode, self.seconds_without = Mode.TRACKING, 0.0
             self._level.add(similarity, parameters.level_rate)
             return self.mode
@@ -112,8 +114,3 @@ class EvidenceJudge:
     def confidence(self, similarity: float) -> float:
         """Similarity relative to its clear level, 0 to 1."""
         return min(similarity / self.level, 1.0) if self.level > 0 else 0.0
-
-    def _is_evidence(self, similarity: float, parameters: EvidenceParameters) -> bool:
-        visible = self.mode is Mode.TRACKING
-        share = parameters.occluded_below if visible else parameters.clear_above
-        return similarity >= max(parameters.minimum, share * self.level)

@@ -227,7 +227,9 @@ class Session(StreamSession[BaseTracker[Any]]):
         self.events += turn.events
         if turn.corrects:
             self._take_back()
-        self._backup = self._copied() if turn.leaps else None
+        kernels = self.tracker.kernels  # they have no state of their own, and need no copy
+        kept = {id(kernels): kernels}
+        self._backup = copy.deepcopy(self.tracker, kept) if turn.leaps else None
         if turn.begins_anew:
             self._seen = None
             self._await_again(None)
@@ -236,11 +238,6 @@ class Session(StreamSession[BaseTracker[Any]]):
 
     def _start_anew(self) -> None:
         self._await_again(self._seen)
-
-    def _copied(self) -> BaseTracker[Any]:
-        """Copy what an image changes; kernels have no state of their own."""
-        kernels = self.tracker.kernels
-        return copy.deepcopy(self.tracker, {id(kernels): kernels})
 
     def _take_back(self) -> None:
         """Go back to before the last image, whose stamp was ahead, unless it started the target."""
