@@ -164,9 +164,9 @@ class Drive:
         heading = 0.0 if self.rightward else math.pi
         return straight(Pose(self.x(s), self.road.middle(lane), heading, self.scale), pace)
 
-    def sways(self, course: Course, name: str = "sway") -> Course:
+    def sways(self, course: Course) -> Course:
         """Add a human hand to a course: at most 1.5 px along the road and 0.5 across."""
-        phases = stream(self.seed, name).uniform(0, 2 * math.pi, 2).tolist()
+        phases = stream(self.seed, "sway").uniform(0, 2 * math.pi, 2).tolist()
         return swaying(course, wave(1.5, 90, phases[0]), wave(0.5, 130, phases[1]))
 
     def meeting(

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.compositing import Image, Sprite, stream
+from vehicle_pf_tracker.scenes.compositing import Sprite, stream
 from vehicle_pf_tracker.scenes.drive import LANE, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.models import Pace, moving, standing
 from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene, noise_parameter, stamps_parameter
@@ -72,15 +72,11 @@ def bar(parameters: BarParameters, seed: int) -> Scene:
         height=HEIGHT,
         frame_rate=parameters.frame_rate,
         frame_count=int(run / parameters.speed) + 1,
-        backdrop=lambda: _backdrop(seed),
+        backdrop=lambda: plain((HEIGHT, WIDTH), (168, 170, 166), stream(seed, "backdrop")),
         actors=(vehicle, *_bars(parameters.width)),
         target=0,
         camera=Camera(parameters.noise, seed),
     )
-
-
-def _backdrop(seed: int) -> Image:
-    return plain((HEIGHT, WIDTH), (168, 170, 166), stream(seed, "backdrop"))
 
 
 def _bars(width: float) -> tuple[Actor, ...]:
@@ -127,13 +123,13 @@ def bridge_at(drive: Drive, share: float, frames: float) -> list[Actor]:
     return list(make_bridge(left, width, drive.height, stream(drive.seed, "bridge")))
 
 
-def sign_at(drive: Drive, share: float, frames: float, name: str = "sign") -> list[Actor]:
+def sign_at(drive: Drive, share: float, frames: float) -> list[Actor]:
     """Put up a road sign that hides the target for `frames` frames."""
     middle, width = drive.x(drive.along(share)), hiding_width(drive, frames)
     height = drive.target.size[1]
     board = width, drive.row - height - 12, drive.row + 0.4 * height + 8
     foot = drive.opposite.rows.stop + 22
-    return sign(middle, board, foot, stream(drive.seed, name))
+    return sign(middle, board, foot, stream(drive.seed, "sign"))
 
 
 def posts_at(drive: Drive, shares: tuple[float, ...], width: float = 9.0) -> list[Actor]:

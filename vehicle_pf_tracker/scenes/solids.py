@@ -77,11 +77,11 @@ def strips(
     ]
 
 
-def disc(x: float, z: float, radius: float, colour: Colour, y: float = 0.0) -> Face:
+def disc(x: float, z: float, radius: float, colour: Colour) -> Face:
     """Make a round upright face along the road."""
     turns = [2 * math.pi * step / 24 for step in range(24)]
     contour = [(x + radius * math.cos(t), z + radius * math.sin(t)) for t in turns]
-    return side_panel(contour, y, colour)
+    return side_panel(contour, 0.0, colour)
 
 
 def mirrored(faces: Iterable[Face]) -> list[Face]:
@@ -126,7 +126,8 @@ def draw(faces: Sequence[Face], width: float, height: float, opacity: float = 1.
             near, depth = _nearness(face, x, y[:, np.newaxis])
             inside &= near > nearness[window.slices] - depth
             nearness[window.slices][inside] = near[inside]
-            colour[window.slices][inside] = _shaded(face)
+            seen = face.colour if face.glow else lit(face.colour, normal_of(face))
+            colour[window.slices][inside] = seen
     return Sprite(colour, np.isfinite(nearness) * opacity)
 
 
@@ -147,10 +148,6 @@ def _nearness(face: Face, x: Array, y: Array) -> tuple[Array, float]:
 def _project(face: Face) -> Array:
     x, y, z = np.transpose(face.points)
     return np.stack([x, -z * math.cos(ELEVATION) - y * math.sin(ELEVATION)], axis=1)
-
-
-def _shaded(face: Face) -> Colour:
-    return face.colour if face.glow else lit(face.colour, normal_of(face))
 
 
 def lit(colour: Colour, normal: Array) -> Colour:

@@ -43,7 +43,6 @@ from vehicle_pf_tracker.parameters.table import specs, to_mapping
 from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
 from vehicle_pf_tracker.trackers.parameters import (
-    CommonParameters,
     ParametersT,
     ParticleParameters,
     WindowParameters,
@@ -167,6 +166,8 @@ class BaseTracker(ABC, Generic[ParametersT]):
 
     Attributes
     ----------
+    seed : int
+        Seed in use.
     frame_period : float
         Nominal time between frames in s; the reader of the stamps keeps it up to date.
     kernels : Kernels
@@ -176,18 +177,13 @@ class BaseTracker(ABC, Generic[ParametersT]):
     def __init__(self, parameters: ParametersT) -> None:
         self.parameters = parameters
         self.frame_period = DEFAULT_PERIOD
-        self._seed = drawn_seed(parameters.seed)
-        self._rng = np.random.default_rng(self._seed)
+        self.seed = drawn_seed(parameters.seed)
+        self._rng = np.random.default_rng(self.seed)
         self.kernels = load_kernels(parameters.kernels)
         self._target: Target | None = None
         self._window: Window | None = None
         self._judge = EvidenceJudge()
         self._cloud = Cloud.uniform(np.zeros((1, 2)))
-
-    @property
-    def seed(self) -> int:
-        """Seed in use."""
-        return self._seed
 
     @property
     def _settings(self) -> ParametersT:
@@ -224,7 +220,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         check_target(box, *frame_size(check_frame(frame)))
         self._target = Target(frame, box)
         self._window = self._target.window(self.parameters.window)
-        self._rng = np.random.default_rng(self._seed)
+        self._rng = np.random.default_rng(self.seed)
         self._judge = EvidenceJudge()
         self._cloud = Cloud.uniform(keep_inside(frame, self._scatter(box.centre)))
         self._learn()
@@ -249,12 +245,14 @@ class BaseTracker(ABC, Generic[ParametersT]):
 
     def reconfigure(self, parameters: ParametersT) -> None:
         """Take new parameters between two frames; the track goes on."""
-        changed = _changed_effects(self.parameters, parameters)
+        before, table = to_mapping(self.parameters), specs(type(parameters))
+        new = to_mapping(parameters)
+        changed = {table[name].effect for name in new if before[name] != new[name]}
         self.parameters = parameters
         self.kernels = load_kernels(parameters.kernels)
         if "restarts" in changed:
-            self._seed = drawn_seed(parameters.seed)
-            self._rng = np.random.default_rng(self._seed)
+            self.seed = drawn_seed(parameters.seed)
+            self._rng = np.random.default_rng(self.seed)
         if self._target is not None and "relearns" in changed:
             self._window = self._target.window(parameters.window)
             self._learn()
@@ -315,9 +313,3 @@ class ParticleTracker(BaseTracker[ParticleParametersT]):
 def drawn_seed(seed: int) -> int:
     """Return the seed to use: another one in each run where `seed` is -1."""
     return seed if seed >= 0 else int(np.random.default_rng().integers(2**31))
-
-
-def _changed_effects(old: CommonParameters, new: CommonParameters) -> set[str]:
-    before, after = to_mapping(old), to_mapping(new)
-    table = specs(type(new))
-    return {table[name].effect for name in after if before[name] != after[name]}

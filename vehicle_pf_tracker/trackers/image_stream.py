@@ -27,6 +27,7 @@ from __future__ import annotations
 
 import copy
 from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
 
@@ -277,8 +278,8 @@ class ImageStream:
             raise
         turns = []
         if continuation is Continuation.CONFIRMS and aside is not None:
-            frame = _decoded_if_whole(aside[0])
-            if frame is not None:
+            with suppress(InputError):  # a coded one may be damaged
+                frame = _decoded(aside[0])
                 turns.append(self._turn(frame, aside[1], continuation, is_tracking))
         turns.append(self._turn(_decoded(image), stamp_ns, continuation, is_tracking))
         return turns
@@ -326,10 +327,3 @@ def _size(image: Frame | CodedFrame) -> Size:
 
 def _decoded(image: Frame | CodedFrame) -> Frame:
     return image if isinstance(image, np.ndarray) else image.decode()
-
-
-def _decoded_if_whole(image: Frame | CodedFrame) -> Frame | None:
-    try:
-        return _decoded(image)
-    except InputError:
-        return None
