@@ -35,21 +35,13 @@ from vehicle_pf_tracker.cli.tracking_options import StartOptions
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.evaluation import tuning
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.report.writing import write_report
 from vehicle_pf_tracker.evaluation.tables import markdown
-from vehicle_pf_tracker.evaluation.tuning import (
-    OBJECTIVES,
-    SearchTask,
-    check_gain,
-    default_search,
-    open_study,
-    search,
-    search_space,
-)
 from vehicle_pf_tracker.offline.output_files import make_folder, write_csv, write_text
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
@@ -84,7 +76,7 @@ class Request(StartOptions, TopicOption, MaxDiffOption, WorkersOption):
     search: Sequence[str] = option(
         action="append", default=[], metavar="NAME[=LOW:HIGH],…",
         help="parameters to search (default: those marked as tuned, "
-        f"{', '.join(default_search(find_variant('apf')))} for apf)",
+        f"{', '.join(tuning.default_search(find_variant('apf')))} for apf)",
     )  # fmt: skip
     trials: int = option(
         type=positive, default=TRIALS, metavar="N",
@@ -96,9 +88,9 @@ class Request(StartOptions, TopicOption, MaxDiffOption, WorkersOption):
         f"{SEARCH_SEED} on, so that the gain is judged by others",
     )  # fmt: skip
     objective: str = option(
-        default="success_auc", choices=OBJECTIVES, metavar="METRIC",
-        help=f"what to improve, of {', '.join(OBJECTIVES)} (default: %(default)s): its mean over "
-        "the runs of a recording and then over the recordings",
+        default="success_auc", choices=tuning.OBJECTIVES, metavar="METRIC",
+        help=f"what to improve, of {', '.join(tuning.OBJECTIVES)} (default: %(default)s): its mean "
+        "over the runs of a recording and then over the recordings",
     )  # fmt: skip
 
 
@@ -109,7 +101,7 @@ def run(request: Request) -> int:
     configuration = configure(variant, given, request.assignments)
     base = make_system(variant, "", configuration, {})
     words = [word for text in request.search for word in text.split(",") if word]
-    space = search_space(variant, dict(base.parameters), words)
+    space = tuning.search_space(variant, dict(base.parameters), words)
     with stages("tune") as on_stage:
         tuned, held_out = find_recordings(request.sources), find_recordings(request.held_out)
         locations = [*tuned, *held_out]
@@ -119,7 +111,7 @@ def run(request: Request) -> int:
         if other.digest in {source.digest for source in sources}:
             raise InputError(f"{other.path} is both held out and tuned on; it can only be one")
     seeds = range(SEARCH_SEED, SEARCH_SEED + request.seeds)
-    what = SearchTask(base, space, sources, seeds, request.objective, request.max_diff)
+    what = tuning.SearchTask(base, space, sources, seeds, request.objective, request.max_diff)
     outputs = [Products(request.output, (BEST,)), Products(request.output / EVALUATION)]
     inputs = (*locations, request.params)
     try:
@@ -131,12 +123,14 @@ def run(request: Request) -> int:
 
 
 def _tune(
-    request: Request, configuration: Configuration, what: SearchTask, recordings: Recordings
+    request: Request, configuration: Configuration, what: tuning.SearchTask, recordings: Recordings
 ) -> int:
     folder, variant = make_folder(request.output), what.base.kind
-    study = open_study(what, folder / "study.log")
+    study = tuning.open_study(what, folder / "study.log")
     with counting("tuned", "runs") as on_progress:
-        trials = search(what, request.trials, study, on_this_machine(request.workers), on_progress)
+        trials = tuning.search(
+            what, request.trials, study, on_this_machine(request.workers), on_progress
+        )
     header = ["trial", what.objective, *what.space]
     rows = ([one.number, one.value, *(one.params[name] for name in what.space)] for one in trials)
     write_csv(folder / "trials.csv", header, rows)
@@ -163,7 +157,7 @@ def _tune(
 
 
 def _judge(
-    request: Request, what: SearchTask, values: Mapping[str, Value], recordings: Recordings
+    request: Request, what: tuning.SearchTask, values: Mapping[str, Value], recordings: Recordings
 ) -> int:
     """Compare the best parameters with those before, by other seeds, and print the verdict."""
     systems, seeds = [what.base, what.base.changed("best", values)], range(request.seeds)
@@ -175,7 +169,7 @@ def _judge(
     if report.evaluation.failed:
         raise InputError(f"not every run succeeded; {report.paths[0]} says why")
     held_out = [source.name for source, _ in recordings if source not in what.sources]
-    rows, verdict = check_gain(report.evaluation, held_out, what.objective)
+    rows, verdict = tuning.check_gain(report.evaluation, held_out, what.objective)
     header = [what.objective, "default", "best", "change"]
     write_text(request.output / "tuning.md", f"{markdown(header, rows)}\n{verdict}\n")
     print_rows(header, rows)

@@ -151,9 +151,8 @@ class TrafficStream(NodeStream):
         self.vehicles = Vehicles(configuration)
         super().__init__(node, configuration, outputs, health)
         self._outputs = outputs
-        self._waiting: WaitingImages[Image | CompressedImage] | None = None
-        if configuration.tracker.detector.kind == TOPIC:
-            self._waiting = WaitingImages()
+        self._awaits_detections = configuration.tracker.detector.kind == TOPIC
+        self._waiting: WaitingImages[Image | CompressedImage] = WaitingImages()
         self._began = 0.0
         self._rates = Rates()
         self._detections: Detections | None = None
@@ -168,19 +167,19 @@ class TrafficStream(NodeStream):
     def facts(self) -> Mapping[str, object]:
         """Values for the node's report: seed, detector, vehicles."""
         waiting = self._waiting
-        detections = {} if waiting is None else {
+        detections = {
             "images with detections": waiting.matched,
             "images without detections": waiting.missed,
             "late detections": waiting.late,
             "detections of no image": waiting.unmatched,
-        }  # fmt: skip
+        }
         return {
             "variant": TRAFFIC.name,
             "seed": self.vehicles.session.tracker.seed,
             "detector": self._configuration.tracker.detector.kind,
             **self.vehicles.summary(),
             **{name: round(value, 2) for name, value in self._rates.values.items()},
-            **detections,
+            **(detections if self._awaits_detections else {}),
         }
 
     @property
@@ -190,7 +189,7 @@ class TrafficStream(NodeStream):
 
     def take(self, message: Image | CompressedImage) -> None:
         """Take an image, which is answered with exactly one `~/mode`, now or after its detector."""
-        if self._waiting is None:
+        if not self._awaits_detections:
             self.process(message)
             return
         max_wait = self._configuration.tracker.detector.max_wait
@@ -199,8 +198,6 @@ class TrafficStream(NodeStream):
 
     def take_detections(self, message: bytes) -> None:
         """Take a serialized vision_msgs/Detection2DArray."""
-        if self._waiting is None:
-            return
         every = self._configuration.tracker.detector.every
         late, unmatched = self._waiting.late, self._waiting.unmatched
         try:
@@ -230,8 +227,6 @@ class TrafficStream(NodeStream):
 
     def go_on(self) -> None:
         """Process the images that need not wait any longer."""
-        if self._waiting is None:
-            return
         missed = self._waiting.missed
         for message, detections in self._waiting.ready(self._configuration.tracker.detector.every):
             self.process(message, detections)
@@ -241,8 +236,7 @@ class TrafficStream(NodeStream):
 
     def drop_waiting(self) -> None:
         """Forget the images that wait for detections."""
-        if self._waiting is not None:
-            self._waiting.clear()
+        self._waiting.clear()
 
     @property
     def size(self) -> tuple[int, int] | None:
@@ -333,7 +327,7 @@ class TrafficStream(NodeStream):
 
     def _note_rates(self, estimates: Sequence[TrackEstimate]) -> None:
         detector, found, seconds = self.vehicles.session.detector, len(self._detections or ()), 0.0
-        if self._waiting is not None:
+        if self._awaits_detections:
             seconds = self._waiting.latency
         elif isinstance(detector, PacedDetector):
             found, seconds = detector.found, detector.seconds
