@@ -48,11 +48,6 @@ class Products:
     folder: Path
     names: Sequence[str] = ()
 
-    def existing(self) -> Iterator[Path]:
-        """Yield what the command would replace."""
-        for name in self.names:
-            yield from self.folder.glob(name)
-
 
 Output: TypeAlias = Path | Products
 """Output of a command: a file or a folder that it replaces as a whole, or products."""
@@ -91,11 +86,10 @@ def claimed(
             if any(_is_same(place, one) for one in places):
                 raise InputError(f"{place} is given for two outputs; name another")
             places.append(place)
-            _check_not_read(output, [path for path in read if path.exists()])
+            _check_not_read(place, _replaced(output), [path for path in read if path.exists()])
             claims.enter_context(_alone_with(output))
-            if not overwrite:
-                for path in output.existing() if isinstance(output, Products) else [output]:
-                    check_free(path)
+            for path in _replaced(output) if not overwrite else ():
+                check_free(path)
         yield
 
 
@@ -130,11 +124,14 @@ def _input(given: str | Path) -> Path:
     return path.parent if (path.parent / BAG_INFORMATION).is_file() else path
 
 
-def _check_not_read(output: Output, inputs: Iterable[Path]) -> None:
+def _replaced(output: Output) -> list[Path]:
+    """Return what a command replaces by writing this output."""
     if isinstance(output, Products):
-        place, replaced = output.folder, list(output.existing())
-    else:
-        place, replaced = output, [output]
+        return [path for name in output.names for path in output.folder.glob(name)]
+    return [output]
+
+
+def _check_not_read(place: Path, replaced: Iterable[Path], inputs: Iterable[Path]) -> None:
     for path in inputs:
         # A picture that is put into a folder of images would be one of them from then on.
         is_inside = path.is_dir() and _is_in(place, path)
@@ -164,6 +161,7 @@ def _is_same(one: Path, other: Path) -> bool:
 
 @contextmanager
 def _alone_with(output: Output) -> Iterator[None]:
+    """Hold a lock file, gone afterwards, which the system frees if the process dies."""
     if isinstance(output, Products):
         folder, lock, named = output.folder, output.folder / ".lock", output.folder
     else:
@@ -175,28 +173,21 @@ def _alone_with(output: Output) -> Iterator[None]:
         made = [one for one in (folder, *folder.parents) if not one.exists()]
         folder.mkdir(parents=True, exist_ok=True)
     try:
-        with _locked(lock, named):
+        with output_errors(named):
+            descriptor = _lock(lock)
+        if descriptor is None:
+            raise InputError(
+                f"another command is at work in {named}; wait for it, or name another output"
+            )
+        try:
             yield
+        finally:
+            lock.unlink(missing_ok=True)
+            os.close(descriptor)
     finally:
         with suppress(OSError):  # they hold something
             for one in made:
                 one.rmdir()
-
-
-@contextmanager
-def _locked(lock: Path, output: Path) -> Iterator[None]:
-    """Hold the file `lock`, which is gone afterwards; the system frees it if the process dies."""
-    with output_errors(output):
-        descriptor = _lock(lock)
-    if descriptor is None:
-        raise InputError(
-            f"another command is at work in {output}; wait for it, or name another output"
-        )
-    try:
-        yield
-    finally:
-        lock.unlink(missing_ok=True)
-        os.close(descriptor)
 
 
 def _lock(path: Path) -> int | None:
