@@ -53,6 +53,7 @@ SUCCESS_THRESHOLDS: Array = np.linspace(0.0, 1.0, 21)
 """Intersections over union: 0, 0.05, ... 1."""
 NORMALISED_THRESHOLDS: Array = np.linspace(0.0, 0.5, 51)
 """Errors of the centre in sizes of the true box: 0, 0.01, ... 0.5."""
+_MODES = (*(mode.value for mode in Mode), WAITING, REJECTED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,10 +201,14 @@ class Metrics:
 
 def measure(scores: Scores) -> Metrics:
     """Take the metrics of a run."""
-    counted = scores.counted
+    counted, found = scores.counted, curves(scores.counted)
     visible = [frame for frame in counted if not frame.hidden]
     hidden = [frame for frame in counted if frame.hidden]
+    occluded = [frame for frame in counted if frame.row.mode == Mode.OCCLUDED]
+    errors = _errors(counted)
+    precision, success, normalised = map(found.get, ("precision", "success", "normalised"))
     times = [frame.row.step_ms for frame in scores.frames if frame.row.step_ms is not None]
+    modes = Counter(frame.row.mode for frame in scores.frames)
     return Metrics(
         frames=len(scores.frames),
         frames_scored=len(counted),
@@ -211,16 +216,30 @@ def measure(scores: Scores) -> Metrics:
         frames_waiting=sum(frame.waiting for frame in scores.frames),
         truths_unmatched=scores.truths_unmatched,
         frames_standing=sum(frame.stands_still for frame in counted),
+        rmse_px=_rms(errors),
         rmse_visible_px=_rms(_errors(visible)),
+        median_px=_quantile(errors, 0.5),
+        p95_px=_quantile(errors, 0.95),
+        max_px=_quantile(errors, 1.0),
+        p_error_lt_15px=_share([f.error is not None and f.error < CLOSE_PX for f in counted]),
+        precision_20px=precision.at(PRECISION_PX) if precision else None,
+        precision_auc=precision.auc if precision else None,
+        success_auc=success.auc if success else None,
+        normalised_precision_auc=normalised.auc if normalised else None,
+        normalised_precision_20=normalised.at(NORMALISED_PRECISION) if normalised else None,
         on_target=_share([is_on_target(frame) for frame in visible]),
+        hidden_not_tracking=_share([frame.row.mode != Mode.TRACKING for frame in hidden]),
+        visible_tracking=_share([frame.row.mode == Mode.TRACKING for frame in visible]),
+        occluded_precision=_share([frame.hidden for frame in occluded]),
+        occluded_precision_partial=_share([_is_occluded(frame) for frame in occluded]),
+        occluded_recall=_share([frame.row.mode == Mode.OCCLUDED for frame in hidden]),
+        lost_hidden=sum(frame.row.mode == Mode.LOST for frame in hidden),
+        lost_visible=sum(frame.row.mode == Mode.LOST for frame in visible),
         failures=count_failures(scores.frames),
-        frames_by_mode=_by_mode(scores.frames),
+        frames_by_mode={name: modes.pop(name, 0) for name in _MODES} | modes,
         step_ms_p50=_quantile(times, 0.5),
         step_ms_p95=_quantile(times, 0.95),
         occlusions=score_occlusions(counted),
-        **_errors_of(counted),
-        **_curves_of(counted),
-        **_modes_of(visible, hidden),
     )
 
 
@@ -230,54 +249,12 @@ def is_on_target(frame: FrameScore) -> bool:
     return truth is not None and error is not None and error < truth.box.diagonal / 2
 
 
-def _errors_of(counted: Sequence[FrameScore]) -> dict[str, Any]:
-    errors = _errors(counted)
-    return {
-        "rmse_px": _rms(errors),
-        "median_px": _quantile(errors, 0.5),
-        "p95_px": _quantile(errors, 0.95),
-        "max_px": _quantile(errors, 1.0),
-        "p_error_lt_15px": _share([f.error is not None and f.error < CLOSE_PX for f in counted]),
-    }
-
-
-def _curves_of(counted: Sequence[FrameScore]) -> dict[str, Any]:
-    found = curves(counted)
-    precision, success, normalised = map(found.get, ("precision", "success", "normalised"))
-    return {
-        "precision_20px": precision.at(PRECISION_PX) if precision else None,
-        "precision_auc": precision.auc if precision else None,
-        "success_auc": success.auc if success else None,
-        "normalised_precision_auc": normalised.auc if normalised else None,
-        "normalised_precision_20": normalised.at(NORMALISED_PRECISION) if normalised else None,
-    }
-
-
-def _modes_of(visible: Sequence[FrameScore], hidden: Sequence[FrameScore]) -> dict[str, Any]:
-    occluded = [f for f in (*visible, *hidden) if f.row.mode == Mode.OCCLUDED]
-    return {
-        "hidden_not_tracking": _share([f.row.mode != Mode.TRACKING for f in hidden]),
-        "visible_tracking": _share([f.row.mode == Mode.TRACKING for f in visible]),
-        "occluded_precision": _share([f.hidden for f in occluded]),
-        "occluded_precision_partial": _share([_is_occluded(f) for f in occluded]),
-        "occluded_recall": _share([f.row.mode == Mode.OCCLUDED for f in hidden]),
-        "lost_hidden": sum(f.row.mode == Mode.LOST for f in hidden),
-        "lost_visible": sum(f.row.mode == Mode.LOST for f in visible),
-    }
-
-
 def _is_occluded(frame: FrameScore) -> bool:
     return frame.truth is not None and frame.truth.occlusion is not Occlusion.NONE
 
 
 def _errors(frames: Sequence[FrameScore]) -> list[float]:
     return [frame.error for frame in frames if frame.error is not None]
-
-
-def _by_mode(frames: Sequence[FrameScore]) -> dict[str, int]:
-    counts = Counter(frame.row.mode for frame in frames)
-    names = [*(mode.value for mode in Mode), WAITING, REJECTED]
-    return {name: counts.pop(name, 0) for name in names} | counts
 
 
 def _rms(values: Sequence[float]) -> float | None:
