@@ -16,12 +16,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.requests import option, switch
@@ -99,22 +98,19 @@ def run(request: Request) -> int:
     inputs = (*request.inputs, request.detections, request.model, request.lines)
     with claimed(outputs, inputs, overwrite=request.overwrite):
         tracking = _tracking(request, configuration, detections, stop)
-        pictures = Pictures(request.video)
-        status, notices = _follow(request, tracking, source, make_folder(folder), stop, pictures)
-        notices = [
-            *source.notices,
-            *(detections.notices if detections is not None else []),
-            *notices,
-        ]
+        pictures, ended = _follow(request, tracking, source, make_folder(folder), stop)
+        notices = [*source.notices, *(detections.notices if detections is not None else [])]
+        notices += [*tracking.notices, *pictures.notices, *ended]
         tell_notices(notices)
-        _write(request, configuration, tracking, source, notices, folder)
+        document = _document(request, configuration, tracking, source.image_topic, notices)
+        write_json(folder / RUN, document)
     detector = str(request.detections or configuration.tracker.detector.kind)
     for sentence in tracking.sentences(detector):
         print(sentence)
     print(f"results are in {folder}; {PICTURE} shows all paths")
     if request.video and not pictures.problem:
         print(f"the video is {request.video}")
-    return stop.ended(status)
+    return stop.ended(stop.status if ended else int(bool(pictures.problem)))
 
 
 def _tracking(
@@ -135,14 +131,10 @@ def _tracking(
 
 
 def _follow(
-    request: Request,
-    tracking: TrafficRun,
-    source: Source,
-    folder: Path,
-    stop: Stop,
-    pictures: Pictures,
-) -> tuple[int, list[str]]:
-    """Follow all vehicles to the end or to a signal; return the exit status, and notices."""
+    request: Request, tracking: TrafficRun, source: Source, folder: Path, stop: Stop
+) -> tuple[Pictures, list[str]]:
+    """Follow all vehicles to the end or to a signal; return the pictures, and what cut it short."""
+    pictures = Pictures(request.video)
     counts, port = tracking.counter.plan.is_counting, tracking.session.tracker.parameters.page_port
     with (
         stopping(stop),
@@ -163,25 +155,18 @@ def _follow(
     else:
         tracking.paths.write(folder / PICTURE, tracking.counter)
         tracking.heat.write(folder / HEAT, tracking.paths.ground)
-    status = stop.status if ended else int(bool(pictures.problem))
-    return status, [*tracking.notices, *pictures.notices, *ended]
+    return pictures, ended
 
 
-def _write(
-    request: Request,
-    configuration: Configuration,
-    tracking: TrafficRun,
-    source: Source,
-    notices: Sequence[str],
-    folder: Path,
-) -> None:
-    """Write `run.json`."""
+def _document(
+    request: Request, configuration: Configuration, tracking: TrafficRun, *source: Any
+) -> dict[str, Any]:
+    """Return the content of `run.json`; `source` is the topic of the images, and the notices."""
     kind = configuration.tracker.detector.kind
     document = describe(
         request.command,
         request.source,
-        source.image_topic,
-        notices,
+        *source,
         variant=TRAFFIC.name,
         seed=tracking.session.tracker.seed,
         parameters={**to_mapping(configuration.tracker), **to_mapping(configuration.session)},
@@ -192,7 +177,7 @@ def _write(
     document["detector"] = str(request.detections or kind)
     document["images_with_detections"] = tracking.session.found.images
     document["summary"] = tracking.summary.to_json(tracking.counter)
-    write_json(folder / RUN, document)
+    return document
 
 
 def _configuration(request: Request) -> Configuration:
