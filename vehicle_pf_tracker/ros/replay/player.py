@@ -25,17 +25,19 @@ from functools import partial
 
 from rclpy.clock import Clock as RosClock
 from rclpy.clock import ClockType
+from rclpy.duration import Duration
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rosgraph_msgs.msg import Clock
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Lookout, Spinner
-from vehicle_pf_tracker.ros.replay.publishing import TopicPublisher, make_publishers
+from vehicle_pf_tracker.ros.replay.publishing import make_publishers
 from vehicle_pf_tracker.ros.replay.replay_options import Progress, ReplayOptions, ReplayReport
 from vehicle_pf_tracker.ros.replay.tracker_link import Targets, TrackerLink, starting_target
 
-_ACKNOWLEDGEMENT_SLICE = 0.05
+_ACKNOWLEDGEMENT_SLICE = Duration(seconds=0.05)
 
 
 class Pace:
@@ -186,8 +188,8 @@ class Player:
     def _get_ready(self) -> Targets:
         options, images = self._options, self._publishers.get(self._recording.image_topic)
         if images is not None:
-            self._await_subscriber(images)
-            self._connect(images)
+            self._await_subscriber(images.publisher)
+            self._connect(images.publisher)
         elif options.lockstep or options.nodes or options.wait_for_subscribers:
             raise InputError(
                 f"the image topic {self._recording.image_topic} is not played; "
@@ -204,15 +206,16 @@ class Player:
         self._spinner.until_time(time.monotonic() + options.delay)
         return Targets(self._links, target)
 
-    def _await_subscriber(self, images: TopicPublisher) -> None:
-        if self._options.wait_for_subscribers and not images.subscription_count():
-            self._tell(f"waiting for a subscriber of {images.name}")
-            self._spinner.until(lambda: images.subscription_count() > 0)
+    def _await_subscriber(self, images: Publisher) -> None:
+        count = images.get_subscription_count
+        if self._options.wait_for_subscribers and not count():
+            self._tell(f"waiting for a subscriber of {images.topic_name}")
+            self._spinner.until(lambda: count() > 0)
 
-    def _connect(self, images: TopicPublisher) -> None:
+    def _connect(self, images: Publisher) -> None:
         """Link the nodes, and wait until images and answers will reach each other."""
         options = self._options
-        lookout = Lookout(self._node, self._spinner, images.name)
+        lookout = Lookout(self._node, self._spinner, images.topic_name)
         if options.nodes:
             names = lookout.await_named(options.nodes, options.timeout)
         else:
@@ -226,7 +229,8 @@ class Player:
         ]
         for link in self._links:
             link.greet()
-        self._spinner.until(lambda: images.subscription_count() >= len(names), options.timeout)
+        count = images.get_subscription_count
+        self._spinner.until(lambda: count() >= len(names), options.timeout)
 
     def _play(self, targets: Targets) -> None:
         """Play until the end, or until interrupted when looping."""
@@ -272,7 +276,8 @@ class Player:
         try:
             if self._is_image(message) and message.stamp_ns is None:
                 raise InputError("it is too short for a header")
-            self._publishers[message.topic].publish(message.data)
+            publisher, convert = self._publishers[message.topic]
+            publisher.publish(convert(message.data))
         except InputError as error:
             self._skipped.append(f"of {message.topic} at {message.log_time_ns} ns: {error}")
             return False
@@ -297,8 +302,8 @@ class Player:
     def _await_acknowledgement(self) -> None:
         """Wait until reliable subscribers have everything, no longer than the timeout."""
         deadline = time.monotonic() + self._options.timeout
-        for publisher in self._publishers.values():
-            while not publisher.is_acknowledged(_ACKNOWLEDGEMENT_SLICE):
+        for publisher, _ in self._publishers.values():
+            while not publisher.wait_for_all_acked(_ACKNOWLEDGEMENT_SLICE):
                 self._spinner.check()
                 if time.monotonic() >= deadline:
                     return

@@ -20,10 +20,9 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any, NamedTuple
 
-from rclpy.duration import Duration
 from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
+from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import CompressedImage, Image
 
@@ -70,65 +69,20 @@ def recorded_images(recording: Recording) -> RecordedImages:
     return RecordedImages(name, base, "compressed", base + _SUFFIX)
 
 
-class TopicPublisher:
-    """Publishes the messages of one recorded topic.
+class TopicPublisher(NamedTuple):
+    """What publishes the messages of one recorded topic.
 
-    Parameters
+    Attributes
     ----------
-    node : Node
-        The player's own node.
-    name : str
-        Topic to publish on.
-    kind : type
-        Class of the messages.
-    qos : QoSProfile
-        Quality of service to offer.
+    publisher : Publisher
+        Publisher of the player's own node.
     convert : callable
-        Makes of the recorded bytes what is published: a message, or its bytes.
-
-    Raises
-    ------
-    InputError
-        If `name` is no name for a topic.
+        Makes of the recorded bytes what is published: a message, or its bytes. Raises `InputError`
+        if they cannot be converted.
     """
 
-    def __init__(
-        self,
-        node: Node,
-        name: str,
-        kind: type[Any],
-        qos: QoSProfile,
-        convert: Callable[[bytes], Any],
-    ) -> None:
-        try:
-            self._publisher = node.create_publisher(kind, name, qos)
-        except NameValidationException as error:
-            reason = str(error).splitlines()[0].rstrip(":").rpartition(": ")[2]
-            raise InputError(f"{name!r} is not a topic name: {reason}") from None
-        self._convert = convert
-
-    @property
-    def name(self) -> str:
-        """The name it is published under, namespace included."""
-        return str(self._publisher.topic_name)
-
-    def publish(self, data: bytes) -> None:
-        """Publish one recorded message.
-
-        Raises
-        ------
-        InputError
-            If it cannot be converted.
-        """
-        self._publisher.publish(self._convert(data))
-
-    def subscription_count(self) -> int:
-        """Count the matched subscriptions."""
-        return int(self._publisher.get_subscription_count())
-
-    def is_acknowledged(self, timeout: float) -> bool:
-        """Return whether all reliable subscriptions have everything; wait up to `timeout` s."""
-        return bool(self._publisher.wait_for_all_acked(Duration(seconds=timeout)))
+    publisher: Publisher
+    convert: Callable[[bytes], Any]
 
 
 def make_publishers(
@@ -162,7 +116,11 @@ def make_publishers(
             kind, convert = Image, decompressed
         qos = recorded_qos(topic.offered_qos, _IMAGE_DEPTH if kind is Image else _DEPTH)
         name = _final_name(topic, options)
-        publishers[topic.name] = TopicPublisher(node, name, kind, qos, convert)
+        try:
+            publishers[topic.name] = TopicPublisher(node.create_publisher(kind, name, qos), convert)
+        except NameValidationException as error:
+            reason = str(error).splitlines()[0].rstrip(":").rpartition(": ")[2]
+            raise InputError(f"{name!r} is not a topic name: {reason}") from None
     return publishers, notices
 
 

@@ -239,7 +239,9 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         histogram = feature.histograms(frame, at, window)[0]  # step 14
         evidence = hellinger_similarity(histogram, self.reference.histogram)
         self._compare_and_learn(settings, histogram, evidence)  # steps 15 and 16
-        self._follow(settings, position, elapsed, regular=regular)
+        if regular or not settings.velocity.frozen_while_occluded:
+            self._velocity.add(self._position, position, elapsed)
+        self._position = position
         return Outcome(
             cloud,
             position,
@@ -303,15 +305,3 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         if all(running.clear for running in self._levels):
             for running, similarity in zip(self._levels, similarities, strict=True):
                 running.add(similarity, level.rate)
-
-    def _follow(
-        self,
-        settings: ApfParameters,
-        position: tuple[float, float],
-        elapsed: float,
-        *,
-        regular: bool,
-    ) -> None:
-        if regular or not settings.velocity.frozen_while_occluded:
-            self._velocity.add(self._position, position, elapsed)
-        self._position = position
