@@ -95,7 +95,10 @@ class StampClock:
         if seconds < 0:
             return Tick(1.0, StampEvent.JUMP_BACK)
         if seconds == 0:
-            return self._repeated()
+            # One repeat is a frame delivered twice; a run of them is a camera without a clock, and
+            # freezing the target for that would be worse than taking the nominal rate.
+            self._repeats += 1
+            return Tick(0.0 if self._repeats == 1 else 1.0, StampEvent.REPEATED)
         self._repeats = 0
         if seconds > _LONGEST_GAP:
             return Tick(self._periods(_LONGEST_GAP), StampEvent.GAP)
@@ -105,12 +108,6 @@ class StampClock:
 
     def _periods(self, seconds: float) -> float:
         return seconds / self.period if self.period else 1.0
-
-    def _repeated(self) -> Tick:
-        # One repeat is a frame delivered twice; a run of them is a camera without a clock, and
-        # freezing the target for that would be worse than taking the nominal rate.
-        self._repeats += 1
-        return Tick(0.0 if self._repeats == 1 else 1.0, StampEvent.REPEATED)
 
     def _learn(self, seconds: float) -> None:
         if self._learned is not None:

@@ -100,25 +100,18 @@ def lengths_inside(segments: Segments, windows: Bounds) -> Array:
     (N, S) array
     """
     start, step = segments[:, :2], segments[:, 2:] - segments[:, :2]
+    # A step of nothing crosses nowhere: a tiny one enters long before and leaves long after, or
+    # the other way round where the segment lies outside.
+    safe = np.where(np.abs(step) < 1e-9, 1e-9, step)
     enter, leave = np.zeros((len(windows.left), len(segments))), np.ones((1, 1))
     for axis, (low, high) in enumerate(
         ((windows.left, windows.right), (windows.top, windows.bottom))
     ):
-        first, last = _crossings(start[:, axis], step[:, axis], low, high)
-        enter, leave = np.maximum(enter, first), np.minimum(leave, last)
+        at_low = (low[:, np.newaxis] - start[:, axis]) / safe[:, axis]
+        at_high = (high[:, np.newaxis] - start[:, axis]) / safe[:, axis]
+        enter = np.maximum(enter, np.minimum(at_low, at_high))
+        leave = np.minimum(leave, np.maximum(at_low, at_high))
     return np.asarray(np.maximum(leave - enter, 0.0) * np.hypot(*step.T))
-
-
-def _crossings(
-    start: Array, step: Array, low: npt.NDArray[np.intp], high: npt.NDArray[np.intp]
-) -> tuple[Array, Array]:
-    """Shares of the way at which segments enter and leave the slabs [low, high], shape (N, S)."""
-    # A step of nothing crosses nowhere: a tiny one enters long before and leaves long after, or
-    # the other way round where the segment lies outside.
-    safe = np.where(np.abs(step) < 1e-9, 1e-9, step)
-    at_low = (low[:, np.newaxis] - start) / safe
-    at_high = (high[:, np.newaxis] - start) / safe
-    return np.minimum(at_low, at_high), np.maximum(at_low, at_high)
 
 
 def direction_shares(segments: Segments, bins: int) -> Array:

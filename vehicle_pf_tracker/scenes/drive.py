@@ -135,12 +135,8 @@ class Drive:
     @property
     def frame_count(self) -> int:
         """Number of frames until the target gets near the edge of the image it leaves by."""
-        return int(self.frame_at(self._end)) + 1
-
-    @property
-    def _end(self) -> float:
-        """Place of the target's middle in the last frame."""
-        return self.width - MARGIN - FREE - self.target.size[0] / 2 - 2
+        last = self.width - MARGIN - FREE - self.target.size[0] / 2 - 2  # place of its middle
+        return int(self.frame_at(last)) + 1
 
     @property
     def row(self) -> float:

@@ -270,7 +270,13 @@ class ImageStream:
             If it is not usable.
         """
         aside, self._aside = self._aside, None
-        image = self._decoded_if_expected(image, aside[0] if aside else None)
+        if isinstance(image, np.ndarray):
+            check_frame(image)
+        else:
+            expected = {self.size, _size(aside[0]) if aside is not None else self.size}
+            # A camera that was turned by 90 degrees says so in the file, and is turned in decoding.
+            if expected & {None, image.size, image.size[::-1]}:  # else a stray, of any size
+                image = image.decode()
         try:
             continuation = self._continuity.judge(_size(image), stamp_ns, timed=is_tracking)
         except StrayImageError:
@@ -283,16 +289,6 @@ class ImageStream:
                 turns.append(self._turn(frame, aside[1], continuation, is_tracking))
         turns.append(self._turn(_decoded(image), stamp_ns, continuation, is_tracking))
         return turns
-
-    def _decoded_if_expected(
-        self, image: Frame | CodedFrame, aside: Frame | CodedFrame | None
-    ) -> Frame | CodedFrame:
-        """Decode a coded image unless it may be a stray, of any size."""
-        if isinstance(image, np.ndarray):
-            return check_frame(image)
-        expected = {self.size, _size(aside) if aside is not None else self.size}
-        # A camera that was turned by 90 degrees says so in the file, and is turned in decoding.
-        return image.decode() if expected & {None, image.size, image.size[::-1]} else image
 
     def _turn(
         self, frame: Frame, stamp_ns: int, continuation: Continuation, is_tracking: bool

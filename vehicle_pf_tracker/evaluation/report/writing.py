@@ -168,27 +168,21 @@ def write_report(
     aggregates = aggregate(evaluation)
     page = folder / "report.html"
     on_stage("drawing the page")
-    write_text(page, make_page(evaluation, aggregates))
-    written = [page, *_write_summaries(folder, evaluation, aggregates)]
+    texts = {
+        page: make_page(evaluation, aggregates),
+        folder / "summary.md": summary_markdown(evaluation, aggregates),
+        folder / "summary.csv": summary_csv(aggregates),
+        folder / "summary.tex": summary_tex(aggregates),
+    }
+    for path, text in texts.items():
+        write_text(path, text)
+    write_json(folder / "summary.json", summary_json(evaluation, aggregates))
+    written = [*texts, folder / "summary.json"]
     if figures:
         on_stage("drawing the figures")
         written += write_figures(evaluation, aggregates, styled(aggregates), figures)
     written += write_toolkits(evaluation, toolkits)
     return Report(written, evaluation, aggregates)
-
-
-def _write_summaries(
-    folder: Path, evaluation: ScoredEvaluation, aggregates: Aggregates
-) -> list[Path]:
-    texts = {
-        "summary.md": summary_markdown(evaluation, aggregates),
-        "summary.csv": summary_csv(aggregates),
-        "summary.tex": summary_tex(aggregates),
-    }
-    for name, text in texts.items():
-        write_text(folder / name, text)
-    write_json(folder / "summary.json", summary_json(evaluation, aggregates))
-    return [folder / name for name in (*texts, "summary.json")]
 
 
 def write_toolkits(evaluation: ScoredEvaluation, toolkits: Sequence[str]) -> list[Path]:

@@ -159,7 +159,11 @@ def kept_identities(sequence: TrafficSequence, tracks: Array) -> tuple[int, int]
         for before, after in pairwise(spells):
             if len(before) >= _LEAST:
                 judged += 1
-                kept += _is_kept(before, after, int(vehicle), followed)
+                first, then = (
+                    [followed[at, vehicle] for at in frames if (at, vehicle) in followed]
+                    for frames in (before[-_WINDOW:], after[:_WINDOW])
+                )
+                kept += bool(first and then) and Tally(then).most_common(1)[0][0] == first[-1]
     return kept, judged
 
 
@@ -174,18 +178,6 @@ def _spells(seen: list[int], hidden: set[int]) -> Iterator[list[int]]:
         spell.append(frame)
     if len(spell) >= _GLIMPSE:
         yield spell
-
-
-def _is_kept(
-    before: list[int], after: list[int], vehicle: int, followed: dict[tuple[int, int], int]
-) -> bool:
-    first = [
-        followed[frame, vehicle] for frame in before[-_WINDOW:] if (frame, vehicle) in followed
-    ]
-    then = Tally(
-        followed[frame, vehicle] for frame in after[:_WINDOW] if (frame, vehicle) in followed
-    )
-    return bool(first and then) and then.most_common(1)[0][0] == first[-1]
 
 
 def _followed(sequence: TrafficSequence, tracks: Array) -> dict[tuple[int, int], int]:

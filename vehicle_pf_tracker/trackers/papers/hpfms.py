@@ -79,8 +79,9 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         settings = self.parameters
         parents = self._resample(self._cloud)
         particles, left_image = self._diffuse(frame, parents, self.spread() * elapsed)
+        window, reference, bits = self.window, self._reference, settings.histogram_bits
         for _ in range(settings.iterations):
-            particles = self._shift(frame, particles)
+            particles = self.kernels.mean_shift(frame, particles, window, reference, bits)
         rho = self.similarity(frame, particles)
         cloud = Cloud(particles, *from_log(log_likelihood(rho, settings.likelihood)))
         outcome = self._report(frame, cloud, elapsed, left_image=left_image)
@@ -100,7 +101,3 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         """Bhattacharyya coefficient of each window with the reference, shape (N,)."""
         bits = self.parameters.histogram_bits
         return self.kernels.kernel_similarity(frame, positions, self.window, self._reference, bits)
-
-    def _shift(self, frame: Frame, positions: Array) -> Array:
-        bits = self.parameters.histogram_bits
-        return self.kernels.mean_shift(frame, positions, self.window, self._reference, bits)

@@ -137,7 +137,8 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         is_hidden, passes = weighting.full_occlusion, 0
         weights, cloud = self.weigh(particles, prior, rho, weighting)
         position = predicted if is_hidden else self._locate(particles, weights, weighting)
-        histograms = self._describe(frame, position)
+        at, window = np.asarray([position]), self.window
+        histograms = [one.histograms(frame, at, window)[0] for one in self.features.values()]
         similarities = [
             hellinger_similarity(found, reference.histogram)
             for found, reference in zip(histograms, self.references, strict=True)
@@ -244,10 +245,6 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             candidates = weights @ particles
         x, y = weighting.combine(candidates)
         return float(x), float(y)
-
-    def _describe(self, frame: Frame, position: tuple[float, float]) -> list[Histograms]:
-        at, window = np.asarray([position]), self.window
-        return [feature.histograms(frame, at, window)[0] for feature in self.features.values()]
 
     def _update(
         self,

@@ -70,25 +70,17 @@ class MsTracker(BaseTracker[MsParameters]):
         return np.asarray([centre])
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        before, bits = self._cloud.mean(), self.parameters.histogram_bits
-        cloud = Cloud.uniform(self._climb(frame, self._cloud.positions))
+        settings, place = self.parameters, self._cloud.positions
+        measured_by = self.window, self._reference, settings.histogram_bits
+        for _ in range(settings.iterations):
+            last, place = place, self.kernels.mean_shift(frame, place, *measured_by)
+            if np.hypot(*(place - last)[0]) < settings.shortest_step:
+                break
+        cloud = Cloud.uniform(place)
         position = cloud.mean()
-        rho = self.kernels.kernel_similarity(
-            frame, cloud.positions, self.window, self._reference, bits
-        )
+        rho = self.kernels.kernel_similarity(frame, place, *measured_by)
         similarity = float(1.0 - hellinger_distance(rho)[0])
-        self._velocity.add(before, position, elapsed)
+        self._velocity.add(self._cloud.mean(), position, elapsed)
         return Outcome(
             cloud, position, self._velocity.value, "regular", similarity, {"pi": similarity}
         )
-
-    def _climb(self, frame: Frame, position: Array) -> Array:
-        """Step until a step is short."""
-        settings, window = self.parameters, self.window
-        bits = settings.histogram_bits
-        for _ in range(settings.iterations):
-            before = position
-            position = self.kernels.mean_shift(frame, before, window, self._reference, bits)
-            if np.hypot(*(position - before)[0]) < settings.shortest_step:
-                break
-        return position
