@@ -229,28 +229,20 @@ def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Fra
     for axis in (0, 1):
         step = _step(float(high[axis] - low[axis]) / _LINES)
         first, last = np.ceil(low[axis] / step), np.floor(high[axis] / step)
+        line = np.empty((_PIECES, 2))
+        line[:, 1 - axis] = np.linspace(low[1 - axis], high[1 - axis], _PIECES)
         for number in np.arange(first, last + 1) * step:
-            _draw_line(picture, plane, axis, float(number), (low, high))
+            line[:, axis] = number
+            pixels = np.clip(np.floor(plane.to_image(line)), -(2**14), 2**14).astype(np.int32)
+            cv2.polylines(picture, [pixels.reshape(-1, 1, 2)], False, _ROAD, 1, cv2.LINE_AA)
+            u, v = pixels[0].tolist()
+            write_words(picture, f"{'xy'[axis]}={number:g}", (u + 2, v + 12), _TEXT)
     for pair in pairs:
         u, v = np.floor(pair.pixel).astype(int).tolist()
         cv2.drawMarker(picture, (u, v), _POINT, cv2.MARKER_CROSS, 11, 1)
         words = f"{pair.road[0]:g},{pair.road[1]:g}"
         write_words(picture, words, (u + 6, v - 4), _TEXT)
     return picture
-
-
-def _draw_line(
-    picture: Frame, plane: RoadPlane, axis: int, number: float, bounds: tuple[Array, Array]
-) -> None:
-    """Draw the line of the road where the coordinate `axis` is `number`."""
-    low, high = bounds
-    line = np.empty((_PIECES, 2))
-    line[:, axis] = number
-    line[:, 1 - axis] = np.linspace(low[1 - axis], high[1 - axis], _PIECES)
-    pixels = np.clip(np.floor(plane.to_image(line)), -(2**14), 2**14).astype(np.int32)
-    cv2.polylines(picture, [pixels.reshape(-1, 1, 2)], False, _ROAD, 1, cv2.LINE_AA)
-    u, v = pixels[0].tolist()
-    write_words(picture, f"{'xy'[axis]}={number:g}", (u + 2, v + 12), _TEXT)
 
 
 def _step(least: float) -> int:

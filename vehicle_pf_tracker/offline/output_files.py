@@ -59,7 +59,8 @@ def replacing(path: Path) -> Iterator[Path]:
     InputError
         If it cannot be written.
     """
-    partial = _partial(path)
+    # The suffix stays, since those who draw pictures choose the format by it.
+    partial = path.with_name(f".{path.stem}.{os.getpid()}.partial{path.suffix}")
     with output_errors(path):
         try:
             yield partial
@@ -119,8 +120,3 @@ def flush(path: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
-
-
-def _partial(path: Path) -> Path:
-    # The suffix stays, since those who draw pictures choose the format by it.
-    return path.with_name(f".{path.stem}.{os.getpid()}.partial{path.suffix}")

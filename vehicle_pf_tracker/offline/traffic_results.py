@@ -53,6 +53,8 @@ _HIDDEN_CONFIDENCE = 0.5
 threshold of a half leaves no predicted box."""
 
 
+_MOT_ROW = "{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.4f},{},{},{}\n"
+"""Row of `tracks.txt`, of `mot_numbers`."""
 IN_TRACKS = frozenset({TrackMode.TENTATIVE, *CONFIRMED})
 """Modes of numbered vehicles that `tracks.txt` has."""
 _SEEN = frozenset({TrackMode.TENTATIVE, TrackMode.TRACKING})
@@ -153,9 +155,8 @@ class TrackFiles:
     def _write(self, frames: Frames) -> None:
         for frame, stamp_ns, estimates in frames:
             self._tracks.writerows(_track_row(frame, stamp_ns, one) for one in estimates)
-            self._mot.writelines(
-                _mot_row(frame, one) for one in estimates if one.mode in self._in_mot
-            )
+            shown = (one for one in estimates if one.mode in self._in_mot)
+            self._mot.writelines(_MOT_ROW.format(*mot_numbers(frame, one)) for one in shown)
 
 
 @contextmanager
@@ -201,10 +202,6 @@ def mot_numbers(frame: int, one: TrackEstimate) -> list[float]:
     """Return the MOTChallenge row of a tracked or occluded vehicle."""
     share = _HIDDEN_CONFIDENCE if one.mode is TrackMode.OCCLUDED else 1.0
     return [frame, one.identity, *astuple(one.box), share * one.confidence, -1, -1, -1]
-
-
-def _mot_row(frame: int, one: TrackEstimate) -> str:
-    return "{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.4f},{},{},{}\n".format(*mot_numbers(frame, one))
 
 
 def _count_row(frame: int, crossing: Crossing) -> list[Any]:

@@ -101,13 +101,25 @@ class TrafficSummary:
 
     def sentences(self, counter: Counter) -> list[str]:
         """Return the summary, a line for each fact."""
+        classes = Tally(one.label for one in self.vehicles.values() if one.label)
         found = [
             f"{_number(len(self.vehicles), 'vehicle')} in {self.frames} frames, at most "
-            f"{self.most_at_once} at once{self._classes()}",
+            f"{self.most_at_once} at once{_listed(classes)}",
             f"{_number(self.survived, 'occlusion')} survived under the same number; "
             f"{_number(self.ended_hidden, 'vehicle')} not seen again after an occlusion",
         ]
-        return found + self._counts(counter)
+        lines = [
+            f"line {line.name}: "
+            + ", ".join(_direction(counter, line.name, to) for to in line.directions)
+            for line in counter.plan.lines
+        ]
+        zones = [
+            f"zone {zone.name}: {counter.count(zone.name, ENTRY)} entered, "
+            f"{counter.count(zone.name, EXIT)} left, {self._mean_in(zone.name):.1f} there on "
+            f"average, at most {self._most_in_zone.get(zone.name, 0)}"
+            for zone in counter.plan.zones
+        ]
+        return [*found, *lines, *zones]
 
     def to_json(self, counter: Counter) -> dict[str, Any]:
         """Return the summary for `run.json`."""
@@ -130,24 +142,6 @@ class TrafficSummary:
             },
         }
 
-    def _classes(self) -> str:
-        classes = Tally(one.label for one in self.vehicles.values() if one.label)
-        return f" ({_listed(classes)})" if classes else ""
-
-    def _counts(self, counter: Counter) -> list[str]:
-        lines = [
-            f"line {line.name}: "
-            + ", ".join(_direction(counter, line.name, to) for to in line.directions)
-            for line in counter.plan.lines
-        ]
-        zones = [
-            f"zone {zone.name}: {counter.count(zone.name, ENTRY)} entered, "
-            f"{counter.count(zone.name, EXIT)} left, {self._mean_in(zone.name):.1f} there on "
-            f"average, at most {self._most_in_zone.get(zone.name, 0)}"
-            for zone in counter.plan.zones
-        ]
-        return lines + zones
-
     def _mean_in(self, zone: str) -> float:
         return self._occupancy[zone] / max(self.frames, 1)
 
@@ -160,12 +154,13 @@ def _direction(counter: Counter, place: str, direction: str) -> str:
             if (at, to) == (place, direction) and label
         }
     )
-    known = f" ({_listed(classes)})" if classes else ""
-    return f"{counter.count(place, direction)} {direction}{known}"
+    return f"{counter.count(place, direction)} {direction}{_listed(classes)}"
 
 
 def _listed(classes: Tally[str]) -> str:
-    return ", ".join(f"{count} {label}" for label, count in classes.most_common())
+    """Return the classes in brackets, the most frequent first; empty where none is known."""
+    words = ", ".join(f"{count} {label}" for label, count in classes.most_common())
+    return f" ({words})" if words else ""
 
 
 def _number(count: int, noun: str) -> str:

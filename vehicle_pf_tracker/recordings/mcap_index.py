@@ -240,7 +240,14 @@ def merged_messages(
         {number for number, one in index.channels.items() if topics is None or one.topic in topics}
         for index in files
     ]
-    heap = _wanted_blocks(files, wanted, first_ns, end_ns)
+    heap: list[_Entry] = [
+        (block.start_ns, number, block.offset, _WHOLE_BLOCK, block)
+        for number, index in enumerate(files)
+        for block in index.blocks
+        if block.end_ns >= first_ns
+        and block.start_ns < end_ns
+        and (block.channels is None or block.channels & wanted[number])
+    ]
     heapq.heapify(heap)
     while heap:
         _, number, offset, _, item = heapq.heappop(heap)
@@ -256,16 +263,3 @@ def merged_messages(
                     heapq.heappush(heap, (message.log_time_ns, number, offset, place, message))
         except DamageError as error:
             on_damage(files[number], item, error)
-
-
-def _wanted_blocks(
-    files: Sequence[McapIndex], wanted: Sequence[set[int]], first_ns: int, end_ns: int
-) -> list[_Entry]:
-    return [
-        (block.start_ns, number, block.offset, _WHOLE_BLOCK, block)
-        for number, index in enumerate(files)
-        for block in index.blocks
-        if block.end_ns >= first_ns
-        and block.start_ns < end_ns
-        and (block.channels is None or block.channels & wanted[number])
-    ]

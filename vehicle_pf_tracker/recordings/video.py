@@ -292,7 +292,12 @@ def open_footage(
             raise InputError(f"{source} is live and has no truth; leave --truth out")
         return camera
     path = Path(text)
-    _refuse_other_bags(path)
+    kinds = {".bag": "a ROS 1 bag", ".db3": "a bag in SQLite"}
+    if path.suffix in kinds:
+        folder = path.parent if path.suffix == ".db3" else path
+        raise InputError(
+            f"{path} is {kinds[path.suffix]}; convert it to MCAP: {_CONVERSION.format(path=folder)}"
+        )
     if not path.exists():
         raise InputError(f"there is no file or folder {path}")
     if path.is_dir():
@@ -305,19 +310,3 @@ def open_footage(
 def is_recording(path: Path) -> bool:
     """Return whether `path` is a rosbag2 folder or an MCAP file, by its name and content."""
     return path.suffix == ".mcap" or (path / "metadata.yaml").exists()
-
-
-def _refuse_other_bags(path: Path) -> None:
-    """Raise for a bag of ROS 1 or of SQLite, with the command that converts it.
-
-    Raises
-    ------
-    InputError
-        If it is one.
-    """
-    kinds = {".bag": "a ROS 1 bag", ".db3": "a bag in SQLite"}
-    if path.suffix in kinds:
-        folder = path.parent if path.suffix == ".db3" else path
-        raise InputError(
-            f"{path} is {kinds[path.suffix]}; convert it to MCAP: {_CONVERSION.format(path=folder)}"
-        )

@@ -99,11 +99,18 @@ class RecordingWriter:
         return self
 
     def __exit__(self, *failure: Any) -> None:
-        if failure[0] is None:
-            with output_errors(self.folder), self._output:
-                self._finish()
-        else:
+        if failure[0] is not None:
             self._output.__exit__(*failure)
+            return
+        with output_errors(self.folder), self._output:
+            first, last = self._times or (0, 0)
+            counts = {name: (one.type_name, one.count) for name, one in self._channels.items()}
+            information = bag_information(self._file_name, first, last - first, counts)
+            self._mcap.add_metadata("rosbag2", {"serialized_metadata": to_yaml(information)})
+            self._mcap.finish()  # type: ignore[no-untyped-call]
+            self._stream.close()
+            text = to_yaml({"rosbag2_bagfile_information": information})
+            (self._partial / "metadata.yaml").write_text(text, encoding="utf-8")
 
     def _close(self) -> None:
         # What could not be written was told already; closing tries to flush it once more.
@@ -169,13 +176,3 @@ class RecordingWriter:
         if channel.type_name != type_name:
             raise InputError(f"the topic {topic} carries {channel.type_name}, not {type_name}")
         return channel
-
-    def _finish(self) -> None:
-        first, last = self._times or (0, 0)
-        counts = {name: (one.type_name, one.count) for name, one in self._channels.items()}
-        information = bag_information(self._file_name, first, last - first, counts)
-        self._mcap.add_metadata("rosbag2", {"serialized_metadata": to_yaml(information)})
-        self._mcap.finish()  # type: ignore[no-untyped-call]
-        self._stream.close()
-        text = to_yaml({"rosbag2_bagfile_information": information})
-        (self._partial / "metadata.yaml").write_text(text, encoding="utf-8")
