@@ -89,15 +89,14 @@ def status(
     level: bytes, name: str, words: str, hardware_id: str, values: Mapping[str, object]
 ) -> DiagnosticStatus:
     """Make a status; every number in it can be read back to its last digit."""
-    pairs = [KeyValue(key=key, value=_text(value)) for key, value in values.items()]
+    pairs = [
+        # float() first: numpy's own numbers write their type's name too.
+        KeyValue(key=key, value=repr(float(one)) if isinstance(one, float) else str(one))
+        for key, one in values.items()
+    ]
     return DiagnosticStatus(
         level=level, name=name, message=words, hardware_id=hardware_id, values=pairs
     )
-
-
-def _text(value: object) -> str:
-    # float() first: numpy's own numbers write their type's name too.
-    return repr(float(value)) if isinstance(value, float) else str(value)
 
 
 def mode_message(

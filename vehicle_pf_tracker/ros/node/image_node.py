@@ -102,7 +102,11 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         try:
             given = self.overrides
             self.table = ParameterTable(self, defaults, given, self._check, self._reconfigure)
-            self.diagnostics = Diagnostics(self, self._facts, self._judge)
+            self.diagnostics = Diagnostics(
+                self,
+                lambda: self.stream.facts if self.stream is not None else {},
+                lambda: self.stream.judge() if self.stream is not None else "",
+            )
             for loss in missing(self):
                 words = f"this release of rclpy is not one of those tried: {loss}"
                 self.get_logger().warning(words)
@@ -122,12 +126,6 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         """Take parameters that were changed."""
         if self.stream is not None:
             self.stream.reconfigure(configuration)
-
-    def _judge(self) -> str:
-        return self.stream.judge() if self.stream is not None else ""
-
-    def _facts(self) -> Mapping[str, object]:
-        return self.stream.facts if self.stream is not None else {}
 
     def open_images(self) -> ImageInput:
         """Listen to images."""

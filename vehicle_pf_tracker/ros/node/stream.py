@@ -105,12 +105,21 @@ class Stream(NodeStream):
         bool
             True once images can be tracked in.
         """
-        if self._loading.is_done:
-            if self._session is None:
-                self._begin()
-            elif self._applied is not self._configuration:
-                self._apply(self._session)
-        return self._session is not None
+        is_applied = self._session is not None and self._applied is self._configuration
+        if is_applied or not self._loading.is_done:
+            return self._session is not None
+        self._applied, seed = self._configuration, None
+        tracker, settings = self._configuration.tracker, self._configuration.session
+        if self._session is None:
+            self._session = Session(self._variant, tracker, settings)
+            for notice in self._session.tracker.kernels.notices:
+                self.log.warning(notice)
+        else:
+            seed = self._session.tracker.seed
+            self._session.reconfigure(tracker, settings)
+        if self._session.tracker.seed != seed:
+            self.tell_drawn_seed(self._session.tracker.seed)
+        return True
 
     @property
     def facts(self) -> Mapping[str, object]:
@@ -213,22 +222,6 @@ class Stream(NodeStream):
         if configuration.tracker.kernels != self._loading.choice:
             self._loading = KernelLoading(configuration.tracker.kernels)
         self.get_ready()
-
-    def _begin(self) -> None:
-        self._applied = self._configuration
-        self._session = Session(
-            self._variant, self._configuration.tracker, self._configuration.session
-        )
-        self.tell_drawn_seed(self._session.tracker.seed)
-        for notice in self._session.tracker.kernels.notices:
-            self.log.warning(notice)
-
-    def _apply(self, session: Session) -> None:
-        before = session.tracker.seed
-        self._applied = self._configuration
-        session.reconfigure(self._configuration.tracker, self._configuration.session)
-        if session.tracker.seed != before:
-            self.tell_drawn_seed(session.tracker.seed)
 
     def _wait(self, header: Header, reason: str) -> None:
         """Answer an image in which nothing can be tracked, for this reason."""

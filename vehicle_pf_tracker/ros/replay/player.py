@@ -188,7 +188,6 @@ class Player:
     def _get_ready(self) -> Targets:
         options, images = self._options, self._publishers.get(self._recording.image_topic)
         if images is not None:
-            self._await_subscriber(images.publisher)
             self._connect(images.publisher)
         elif options.lockstep or options.nodes or options.wait_for_subscribers:
             raise InputError(
@@ -206,15 +205,12 @@ class Player:
         self._spinner.until_time(time.monotonic() + options.delay)
         return Targets(self._links, target)
 
-    def _await_subscriber(self, images: Publisher) -> None:
-        count = images.get_subscription_count
-        if self._options.wait_for_subscribers and not count():
-            self._tell(f"waiting for a subscriber of {images.topic_name}")
-            self._spinner.until(lambda: count() > 0)
-
     def _connect(self, images: Publisher) -> None:
         """Link the nodes, and wait until images and answers will reach each other."""
-        options = self._options
+        options, count = self._options, images.get_subscription_count
+        if options.wait_for_subscribers and not count():
+            self._tell(f"waiting for a subscriber of {images.topic_name}")
+            self._spinner.until(lambda: count() > 0)
         lookout = Lookout(self._node, self._spinner, images.topic_name)
         if options.nodes:
             names = lookout.await_named(options.nodes, options.timeout)
@@ -229,7 +225,6 @@ class Player:
         ]
         for link in self._links:
             link.greet()
-        count = images.get_subscription_count
         self._spinner.until(lambda: count() >= len(names), options.timeout)
 
     def _play(self, targets: Targets) -> None:

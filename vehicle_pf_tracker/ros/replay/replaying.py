@@ -96,7 +96,9 @@ def _ros_node(
 ) -> Iterator[Node]:
     """Make the player's node in a context of its own, with room for the images on the way."""
     context = Context()
-    size = _image_bytes(recording, options)
+    data = first_image(recording, options).data  # the others are about as large
+    is_turned = options.decompress and recording.image_type == COMPRESSED_IMAGE
+    size = len(decompressed(data).data if is_turned else data)
     with image_transport(size, rclpy.get_rmw_implementation_identifier()) as notices:
         for notice in notices:
             tell(notice)
@@ -120,11 +122,3 @@ def _initialise(context: Context, options: ReplayOptions) -> None:
     except RuntimeError as error:
         reason = str(error).splitlines()[0]
         raise InputError(f"the words after --ros-args are not understood: {reason}") from error
-
-
-def _image_bytes(recording: Recording, options: ReplayOptions) -> int:
-    """Size of the published images in bytes, judged by the first."""
-    first = first_image(recording, options)
-    if options.decompress and recording.image_type == COMPRESSED_IMAGE:
-        return len(decompressed(first.data).data)
-    return len(first.data)

@@ -301,8 +301,11 @@ class TrafficStream(NodeStream):
         if selected is not None:
             self._outputs.publish_vehicle(in_pixels(header, own), selected, own, period)
         self._show(header, frame)
-        mode = WAITING if selected is None else selected.mode.value
-        values = {"reason": self._reason} if selected is None else scalars(selected)
+        chosen, mode = vehicles.selection.identity, WAITING
+        reason = f"vehicle {chosen} is not followed any more" if chosen else "none is selected"
+        values: dict[str, object] = {"reason": reason}
+        if selected is not None:
+            mode, values = selected.mode.value, scalars(selected)
         values |= {**vehicles.summary(), "step_ms": step_ms}
         if vehicles.session.recovered:
             self.note_restart()
@@ -335,9 +338,3 @@ class TrafficStream(NodeStream):
         visible = sum(one.mode is TrackMode.TRACKING for one in estimates)
         cluttered = self.vehicles.session.tracker.cluttered_places
         self._rates.note(known, found, visible, seconds, cluttered)
-
-    @property
-    def _reason(self) -> str:
-        """Reason why there is no selected vehicle in the estimates."""
-        identity = self.vehicles.selection.identity
-        return f"vehicle {identity} is not followed any more" if identity else "none is selected"

@@ -84,10 +84,6 @@ class Selection:
             raise InputError(f"there is no vehicle at {point[0]:g},{point[1]:g} px")
         self.identity = min(near, key=lambda one: _distance(one.box, point)).identity
 
-    def clear(self) -> None:
-        """Select none."""
-        self.identity = NONE
-
     def of(self, estimates: Sequence[TrackEstimate]) -> TrackEstimate | None:
         """Return the estimate of the selected vehicle, where there is one."""
         chosen = self.identity
@@ -203,7 +199,7 @@ class Vehicles(CountedVehicles):
         identity = self.selection.identity
         if not identity:
             raise InputError("no vehicle is selected")
-        self.selection.clear()
+        self.selection.identity = NONE
         if not self.session.remove(identity):
             raise InputError(f"the vehicle {identity} is not followed any more")
         return identity
