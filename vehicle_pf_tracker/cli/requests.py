@@ -103,10 +103,13 @@ def add_options(parser: argparse.ArgumentParser, kind: type[VerbRequest]) -> Non
             settings = {**settings, **declared[name]["settings"]}
             if "type" in settings:
                 settings["type"] = _telling_why(settings["type"])
-            if "flags" in declared[name]:
-                place.add_argument(*_words(name, declared[name]["flags"]), dest=name, **settings)
-            else:
+            if "flags" not in declared[name]:
                 place.add_argument(name, **settings)
+                continue
+            flags = declared[name]["flags"]
+            if not any(flag.startswith("--") for flag in flags):
+                flags = (*flags, f"--{name.replace('_', '-')}")
+            place.add_argument(*flags, dest=name, **settings)
 
 
 def _telling_why(read: Callable[[str], Any]) -> Callable[[str], Any]:
@@ -120,12 +123,6 @@ def _telling_why(read: Callable[[str], Any]) -> Callable[[str], Any]:
             raise argparse.ArgumentTypeError(str(error)) from None
 
     return read_or_tell
-
-
-def _words(name: str, flags: Sequence[str]) -> Sequence[str]:
-    """Return the words of the option of a field."""
-    is_named = any(flag.startswith("--") for flag in flags)
-    return flags if is_named else (*flags, f"--{name.replace('_', '-')}")
 
 
 def request_of(kind: type[RequestT], args: argparse.Namespace) -> RequestT:

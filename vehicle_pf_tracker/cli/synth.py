@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import UsageError, counting
@@ -84,7 +84,8 @@ def run(request: Request) -> int:
     if request.format:
         raise UsageError("--format is for recordings; a video is H.264")
     truth, box = _film(scene, request.out, overwrite=request.overwrite)
-    print(f"{facts}; the truth is in {truth}, and begins with --target {_words(box)}")
+    target = ",".join(f"{value:.0f}" for value in astuple(box))
+    print(f"{facts}; the truth is in {truth}, and begins with --target {target}")
     return 0
 
 
@@ -121,15 +122,11 @@ def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
             write(rendered.frame, (number - 1) / scene.frame_rate)
             box = rendered.truth.box
             boxes.append(box)
-            cells = (f"{value:.3f}" for value in (box.x, box.y, box.width, box.height))
+            cells = (f"{value:.3f}" for value in astuple(box))
             lines.append(f"{number},{','.join(cells)},{rendered.truth.occlusion.value}")
             progress(number, scene.frame_count)
         partial.write_text("\n".join([*lines, ""]), encoding="utf-8", newline="\n")
     return table, boxes[0]
-
-
-def _words(box: Box) -> str:
-    return ",".join(f"{value:.0f}" for value in (box.x, box.y, box.width, box.height))
 
 
 def _listing() -> Iterator[str]:

@@ -123,7 +123,9 @@ def mean_shift(
     kernel, pixel = epanechnikov(window), _pixels(frame, positions)
     cells = _cells(frame, pixel, window, reference.active, bits)
     masses = _masses(cells, kernel, len(reference.active))
-    weights = _pixel_weights(masses, reference.values, cells)
+    table = np.zeros((len(masses), masses.shape[1] + 2))
+    np.divide(reference.values, masses, out=table[:, :-2], where=masses > 0)
+    weights = np.sqrt(table).ravel().take(cells)  # sqrt(q / p) of eq. 25, (N, P)
     total = weights.sum(axis=1)
     moved = total > 0
     step = (weights @ kernel.offsets)[moved] / total[moved, np.newaxis]
@@ -166,10 +168,3 @@ def _masses(cells: Indices, kernel: Kernel, bins: int) -> Array:
     masses = masses.reshape(count, width)
     # The centre pixel always exists, so the sum without the last column is never zero.
     return np.asarray(masses[:, :bins] / masses[:, :-1].sum(axis=1, keepdims=True))
-
-
-def _pixel_weights(masses: Array, reference: Histogram, cells: Indices) -> Array:
-    """``sqrt(q / p)`` of each kernel pixel's colour (eq. 25), shape (N, P)."""
-    table = np.zeros((len(masses), masses.shape[1] + 2))
-    np.divide(reference, masses, out=table[:, :-2], where=masses > 0)
-    return np.sqrt(table).ravel().take(cells)

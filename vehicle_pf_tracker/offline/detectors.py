@@ -194,7 +194,11 @@ class DetectionFile:
     """
 
     def __init__(self, path: Path) -> None:
-        rows = _read_rows(path)
+        numbers = array("d")  # 48 bytes per row: a list of a million rows would take ten times that
+        for number, line in enumerate(read_text(path, "the detections").splitlines(), start=1):
+            if line.strip() and not line.lstrip().startswith("#"):
+                numbers.extend(_row(line, f"row {number} of the detections {path}"))
+        rows: Array = np.frombuffer(numbers, np.float64).reshape(-1, 6)
         frames = rows[:, 0].astype(np.int64)
         order = np.argsort(frames, kind="stable")
         self.notices: list[str] = []
@@ -212,16 +216,8 @@ class DetectionFile:
         return Detections.make(self._rows[begin:end, :4], self._rows[begin:end, 4])
 
 
-def _read_rows(path: Path) -> Array:
-    """Return frame, left, top, width, height and score of every row, shape (N, 6)."""
-    numbers = array("d")  # 48 bytes per row: a list of a million rows would take ten times as much
-    for number, line in enumerate(read_text(path, "the detections").splitlines(), start=1):
-        if line.strip() and not line.lstrip().startswith("#"):
-            numbers.extend(_row(line, f"row {number} of the detections {path}"))
-    return np.frombuffer(numbers, np.float64).reshape(-1, 6)
-
-
 def _row(line: str, what: str) -> tuple[float, ...]:
+    """Return frame, left, top, width, height and score."""
     words = line.split(",")
     if len(words) < _REQUIRED:
         raise InputError(f"{what} is not {','.join(_COLUMNS)}: {line.strip()[:_SHOWN]!r}")

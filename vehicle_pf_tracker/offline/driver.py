@@ -124,9 +124,12 @@ class OfflineTracker:
         next_ns = None if following is None else following.stamp_ns
         self._on_road.append({})
         truth = self._first_truth
-        if truth is not None and self._is_start(truth, stamp_ns, next_ns):
-            self._configure_target(truth.box)
-            self._first_truth = None
+        if truth is not None:
+            distance = abs(stamp_ns - truth.stamp_ns)
+            is_nearest = next_ns is None or abs(next_ns - truth.stamp_ns) >= distance
+            if is_nearest and distance <= self._limit_ns:
+                self._configure_target(truth.box)
+                self._first_truth = None
         if (box := self._targets.get(number)) is not None:
             if is_first:
                 self._configure_target(box)
@@ -159,12 +162,6 @@ class OfflineTracker:
             for reason, count in self._off_road.items()
         )
         return [*self._notices, *off_road]
-
-    def _is_start(self, truth: Truth, stamp_ns: int, next_ns: int | None) -> bool:
-        """Return whether the image at `stamp_ns` is the one nearest to the first truth."""
-        distance = abs(stamp_ns - truth.stamp_ns)
-        is_nearest = next_ns is None or abs(next_ns - truth.stamp_ns) >= distance
-        return distance <= self._limit_ns and is_nearest
 
     def _configure_target(self, box: Box) -> None:
         """Start on `box`, and again where the recording loops."""

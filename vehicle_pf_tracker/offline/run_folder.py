@@ -87,21 +87,18 @@ def describe(
 
 def versions() -> dict[str, str | None]:
     """Return the versions that determine the numbers; None for packages not installed."""
+    try:
+        numba: str | None = metadata.version("numba")
+    except metadata.PackageNotFoundError:
+        numba = None
     return {
         "vehicle_pf_tracker": __version__,
         "python": platform.python_version(),
         "numpy": np.__version__,
         "opencv": cv2.__version__,
-        "numba": _installed("numba"),
+        "numba": numba,
         "platform": platform.platform(),
     }
-
-
-def _installed(name: str) -> str | None:
-    try:
-        return metadata.version(name)
-    except metadata.PackageNotFoundError:
-        return None
 
 
 ESTIMATES, METRICS, RUN = "estimates.csv", "metrics.json", "run.json"

@@ -190,7 +190,11 @@ class PathPicture:
             self.ground, self._on_ground = frame.copy(), visible
         for one in estimates:
             if one.mode in CONFIRMED:
-                self._extend(one)
+                (end,) = pixels_at(np.array([one.box.centre]) * self._scale)
+                begin, self._ends[one.identity] = self._ends.get(one.identity, end), end
+                share = _HIDDEN if one.mode is TrackMode.OCCLUDED else 1.0
+                red, green, blue = (int(share * value) for value in identity_colour(one.identity))
+                cv2.line(self._layer, begin, end, (red, green, blue), line_width(self._layer))
 
     def write(self, path: Path, counter: Counter) -> None:
         """Write the picture, where there was a frame.
@@ -214,14 +218,6 @@ class PathPicture:
             draw_vehicle(picture, replace(one, box=box))
         draw_counts(picture, counter, scale)
         write_picture(path, picture)
-
-    def _extend(self, estimate: TrackEstimate) -> None:
-        (end,) = pixels_at(np.array([estimate.box.centre]) * self._scale)
-        begin = self._ends.get(estimate.identity, end)
-        share = _HIDDEN if estimate.mode is TrackMode.OCCLUDED else 1.0
-        red, green, blue = (int(share * value) for value in identity_colour(estimate.identity))
-        cv2.line(self._layer, begin, end, (red, green, blue), line_width(self._layer))
-        self._ends[estimate.identity] = end
 
 
 _STANDING = 0.2

@@ -256,14 +256,11 @@ def _area(corners: _Points) -> float:
 
 
 def _crosses_itself(corners: _Points) -> bool:
-    edges = list(pairwise((*corners, corners[0])))
-    return any(_cross(a, b) for a, b in combinations(edges, 2))
-
-
-def _cross(one: _Points, other: _Points) -> bool:
     """Test whether two edges cross at a point within both; common corners do not count."""
-    (a, b), (c, d) = one, other
-    return _turn(a, b, c) * _turn(a, b, d) < 0 and _turn(c, d, a) * _turn(c, d, b) < 0
+    return any(
+        _turn(a, b, c) * _turn(a, b, d) < 0 and _turn(c, d, a) * _turn(c, d, b) < 0
+        for (a, b), (c, d) in combinations(pairwise((*corners, corners[0])), 2)
+    )
 
 
 def _turn(a: Position, b: Position, c: Position) -> float:

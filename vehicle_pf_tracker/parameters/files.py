@@ -138,7 +138,7 @@ def read_yaml(path: Path, node_name: str) -> dict[str, object]:
             f"the parameter file {path} has no ros__parameters section; "
             "`vehicle-pf-tracker params VARIANT` prints one to start from"
         )
-    chosen = [body for name, body in sections if _matches(name, node_name)]
+    chosen = [body for name, body in sections if name.rpartition("/")[2] in {node_name, "*", "**"}]
     if not chosen:
         names = ", ".join(name for name, _ in sections)
         raise InputError(
@@ -162,10 +162,6 @@ def _sections(document: Any, prefix: str) -> Iterable[tuple[str, Mapping[str, An
         if isinstance(inner, Mapping):
             yield name, inner
         yield from _sections({k: v for k, v in body.items() if k != "ros__parameters"}, name)
-
-
-def _matches(section: str, node_name: str) -> bool:
-    return section.rsplit("/", 1)[-1] in {node_name, "*", "**"}
 
 
 def flatten(body: Mapping[str, Any], prefix: str = "") -> dict[str, object]:

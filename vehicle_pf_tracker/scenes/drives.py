@@ -66,6 +66,9 @@ def bar(parameters: BarParameters, seed: int) -> Scene:
         draw(car((196, 44, 36)), *size),
         moving(Box(BAR_MARGIN, (HEIGHT - size[1]) / 2, *size), parameters.speed),
     )
+    # Its left edge is on a whole pixel.
+    box = Box(WIDTH // 2 - parameters.width // 2, 0.0, parameters.width, HEIGHT)
+    obstacle = Actor(Sprite.plain((34.0, 34.0, 38.0)), standing(box))
     run = WIDTH - 2 * BAR_MARGIN - parameters.vehicle_width
     return Scene(
         width=WIDTH,
@@ -73,18 +76,10 @@ def bar(parameters: BarParameters, seed: int) -> Scene:
         frame_rate=parameters.frame_rate,
         frame_count=int(run / parameters.speed) + 1,
         backdrop=lambda: plain((HEIGHT, WIDTH), (168, 170, 166), stream(seed, "backdrop")),
-        actors=(vehicle, *_bars(parameters.width)),
+        actors=(vehicle, obstacle) if parameters.width else (vehicle,),
         target=0,
         camera=Camera(parameters.noise, seed),
     )
-
-
-def _bars(width: float) -> tuple[Actor, ...]:
-    """Make the bar, its left edge on a whole pixel; none for a width of 0."""
-    if width == 0:
-        return ()
-    box = Box(WIDTH // 2 - width // 2, 0.0, width, HEIGHT)
-    return (Actor(Sprite.plain((34.0, 34.0, 38.0)), standing(box)),)
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,12 +18,11 @@ from __future__ import annotations
 
 import shlex
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation import tables
 from vehicle_pf_tracker.evaluation.columns import COLUMNS
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
@@ -98,24 +97,20 @@ def _facts(evaluation: ScoredEvaluation) -> str:
 def _section(evaluation: ScoredEvaluation, aggregates: Aggregates, entry: Source) -> dict[str, Any]:
     """Return the values of a recording's section of the template."""
     truths = evaluation.truths[entry.name]
+    kinds = Counter(truth.occlusion.name.lower() for truth in truths.values())
+    facts = [tables.counted(entry.frames, "frame"), f"{entry.width} × {entry.height} px"]
+    facts += [f"{len(truths)} with truth"] if len(truths) != entry.frames else []
+    facts += [f"{kinds['partial']} partly occluded"] if kinds["partial"] else []
+    facts += [f"{kinds['total']} totally occluded"] if kinds["total"] else []
     runs = evaluation.by_system(entry.name, aggregates.order)
     shown = [column for column in COLUMNS if column.by_recording]
     return {
         "name": entry.name,
-        "facts": _recording_facts(entry, truths),
+        "facts": ", ".join(facts),
         "table": tables.recording_table(aggregates, entry.name, shown),
         "occlusions": tables.occlusions_table(runs),
         "figure": ERRORS + safe_name(entry.name),
     }
-
-
-def _recording_facts(entry: Source, truths: Mapping[int, Truth]) -> str:
-    kinds = Counter(truth.occlusion.name.lower() for truth in truths.values())
-    parts = [tables.counted(entry.frames, "frame"), f"{entry.width} × {entry.height} px"]
-    parts += [f"{len(truths)} with truth"] if len(truths) != entry.frames else []
-    parts += [f"{kinds['partial']} partly occluded"] if kinds["partial"] else []
-    parts += [f"{kinds['total']} totally occluded"] if kinds["total"] else []
-    return ", ".join(parts)
 
 
 def _failed_groups(failed: Sequence[FailedCell]) -> list[tuple[str, str, str]]:

@@ -125,7 +125,9 @@ class WaitingImages(Generic[ImageT]):
                 self._awaited = first.number + every
             else:
                 self.missed += first.number >= self._awaited
-                self._remember(first)
+                self._passed[first.stamp_ns] = first.number
+                if len(self._passed) > _REMEMBERED:
+                    del self._passed[next(iter(self._passed))]
             yield first.image, first.detections
 
     def clear(self) -> None:
@@ -141,8 +143,3 @@ class WaitingImages(Generic[ImageT]):
             and len(self._images) <= MOST_WAITING
             and not any(one.is_answered for one in self._images)
         )
-
-    def _remember(self, passed: _Waiting[ImageT]) -> None:
-        self._passed[passed.stamp_ns] = passed.number
-        if len(self._passed) > _REMEMBERED:
-            del self._passed[next(iter(self._passed))]

@@ -131,12 +131,14 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         averages = self._averages(rho)
         if self._initial is None:
             self._initial = averages
-        predicted = self._predict(frame, elapsed)  # step 3
+        # Step 3: the object's position by equation 5 with the last increments.
+        moved = np.asarray(self._position) + np.asarray(self._velocity.value) * elapsed
+        x, y = keep_inside(frame, moved).tolist()
         threshold = settings.confidence.threshold
         weighting = weigh_features(averages, self._initial, threshold)  # step 4, to its update
         is_hidden, passes = weighting.full_occlusion, 0
         weights, cloud = self.weigh(particles, prior, rho, weighting)
-        position = predicted if is_hidden else self._locate(particles, weights, weighting)
+        position = (x, y) if is_hidden else self._locate(particles, weights, weighting)
         at, window = np.asarray([position]), self.window
         histograms = [one.histograms(frame, at, window)[0] for one in self.features.values()]
         similarities = [
@@ -210,12 +212,6 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         """Average similarity of each feature (F,) (eq. 16)."""
         best_share = self._settings.confidence.best_share
         return average_similarities(hellinger_distance(rho), best_share)
-
-    def _predict(self, frame: Frame, elapsed: float) -> tuple[float, float]:
-        """Predict the object's position by equation 5 with the last increments (step 3)."""
-        moved = np.asarray(self._position) + np.asarray(self._velocity.value) * elapsed
-        x, y = keep_inside(frame, moved)
-        return float(x), float(y)
 
     def weigh(
         self, particles: Array, prior: Array, rho: Array, weighting: FeatureWeighting
