@@ -262,17 +262,13 @@ def run(request: Request) -> int:
     is_in_place = output == request.edit
     inputs = [request.source, None if is_in_place else request.edit]
     with claimed([output], inputs, overwrite=request.overwrite or is_in_place):
-        if request.grid is not None:
-            return _write_grid(request, source, request.grid)
-        return _draw(request, source, output)
-
-
-def _write_grid(request: Request, source: Source, path: Path) -> int:
-    with counting("read") as progress:
-        frame = frame_at(source, request.frame, progress)
-    write_picture(path, draw_pixel_grid(frame))
-    print(f"frame {request.frame} with a grid is in {path}")
-    return 0
+        if request.grid is None:
+            return _draw(request, source, output)
+        with counting("read") as progress:
+            frame = frame_at(source, request.frame, progress)
+        write_picture(request.grid, draw_pixel_grid(frame))
+        print(f"frame {request.frame} with a grid is in {request.grid}")
+        return 0
 
 
 def _draw(request: Request, source: Source, output: Path | None) -> int:

@@ -24,7 +24,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, wait
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -88,7 +88,7 @@ class StillAtWork(BaseException):
 
 
 class Stop:
-    """Ends an iteration when a signal has come.
+    """Tells that a signal has come, and leaves a computation that does not end then.
 
     Attributes
     ----------
@@ -118,13 +118,6 @@ class Stop:
             sys.stdout.flush()
             os._exit(status)
         return status
-
-    def until(self, items: Iterable[T]) -> Iterator[T]:
-        """Yield items until then."""
-        for item in items:
-            if self.came:
-                return
-            yield item
 
     def leaving(self, compute: Callable[[], T]) -> T:
         """Compute in a thread of its own, so that code that never returns can be left.
@@ -193,7 +186,8 @@ def _numbered(
     frames = source.frames()
     if source.frame_count is None:  # it may stall
         frames = _leavable(frames, stop)
-    for number, found in enumerate(stop.until(frames), start=1):
+    frames = itertools.takewhile(lambda _: not stop.came, frames)
+    for number, found in enumerate(frames, start=1):
         first_ns = found.stamp_ns if first_ns is None else first_ns
         elapsed = (found.stamp_ns - first_ns) * 1e-9
         if start is not None and start.after(number, elapsed) > 0:

@@ -143,38 +143,28 @@ def describe(
     InputError
         If one cannot be read or has no truth, or two have one name.
     """
-    names = _names(locations)
-    described = []
+    names, described = _names(locations), []
     for location in locations:
         on_stage(f"reading {location}")
-        described.append(_describe(location, names[location], topic, max_diff, identity))
+        path = Path(location)
+        recording = open_source(path, topic=topic, identity=identity)
+        truth = recording.truth()
+        if not truth:
+            hint = "; import it with truth, or track it with `vehicle-pf-tracker run`"
+            why = ": " + "; ".join(recording.notices) if recording.notices else hint
+            raise InputError(f"the recording {location} has no truth to compare with{why}")
+        stamps = _stamps(recording)
+        pairs = associate(stamps, [one.stamp_ns for one in truth], max_diff)
+        if not pairs:
+            raise InputError(
+                f"no stamp of the truth in {location} is within {max_diff:g} s of an image's; "
+                "a larger --max-diff may help"
+            )
+        facts = len(stamps), *_size(recording, location), _digest(recording, path)
+        place = str(path.absolute())
+        source = Source(names[location], place, recording.image_topic, *facts, identity)
+        described.append((source, {index + 1: truth[at] for index, at in pairs.items()}))
     return described
-
-
-def _describe(
-    location: str, name: str, topic: str | None, max_diff: float, identity: int | None
-) -> tuple[Source, dict[int, Truth]]:
-    path = Path(location)
-    recording = open_source(path, topic=topic, identity=identity)
-    truth = recording.truth()
-    if not truth:
-        hint = "; import it with truth, or track it with `vehicle-pf-tracker run`"
-        why = ": " + "; ".join(recording.notices) if recording.notices else hint
-        raise InputError(f"the recording {location} has no truth to compare with{why}")
-    stamps = _stamps(recording)
-    pairs = associate(stamps, [one.stamp_ns for one in truth], max_diff)
-    if not pairs:
-        raise InputError(
-            f"no stamp of the truth in {location} is within {max_diff:g} s of an image's; "
-            "a larger --max-diff may help"
-        )
-    width, height = _size(recording, location)
-    digest = _digest(recording, path)
-    source = Source(
-        name, str(path.absolute()), recording.image_topic, len(stamps), width, height, digest,
-        identity,
-    )  # fmt: skip
-    return source, {index + 1: truth[place] for index, place in pairs.items()}
 
 
 def _stamps(recording: Recording | RecordedFootage) -> list[int]:
