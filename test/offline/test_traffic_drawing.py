@@ -20,9 +20,8 @@ from traffic_samples import vehicle
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.offline import drawing
-from vehicle_pf_tracker.offline.drawing import draw_box
+from vehicle_pf_tracker.offline.drawing import NEUTRAL, draw_box
 from vehicle_pf_tracker.offline.traffic_drawing import (
-    NEUTRAL,
     Trails,
     annotated,
     draw_counts,

@@ -20,7 +20,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.offline import traffic_drawing
+from vehicle_pf_tracker.offline import drawing
 from vehicle_pf_tracker.offline.traffic_drawing import HeatPicture, PathPicture, identity_colour
 from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
@@ -112,7 +112,7 @@ def test_frames_of_another_size_begin_the_picture_anew(tmp_path):
 def test_the_road_is_blue_where_vehicles_drove_and_red_where_they_stood(tmp_path, monkeypatch):
     written = []
     say = lambda _, words, *rest: written.append(words)  # noqa: E731
-    monkeypatch.setattr(traffic_drawing, "write_words", say)
+    monkeypatch.setattr(drawing, "write_words", say)
     heat, ground = HeatPicture(), np.full((240, 320, 3), 90, np.uint8)
     heat.add(ground[:120], [estimate(9, "T", Box(0, 0, 300, 100))], 0, 0.04)
     for index in range(50):

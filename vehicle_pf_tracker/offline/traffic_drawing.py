@@ -29,23 +29,13 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.offline.drawing import (
-    LETTER,
-    NEUTRAL,
-    Colour,
-    draw_box,
-    draw_path,
-    line_width,
-    pixels_at,
-    write_above,
-    write_words,
-)
+from vehicle_pf_tracker.offline import drawing
 from vehicle_pf_tracker.offline.output_files import write_picture
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, reference_point
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.watches import ENTRY, EXIT
 
-_PLAN: Colour = (255, 255, 255)
+_PLAN: drawing.Colour = (255, 255, 255)
 _GOLDEN = 0.6180339887498949
 """Golden ratio: multiples of it modulo 1 stay apart as far as their number allows."""
 _TRAIL = 60
@@ -53,7 +43,7 @@ _TRAIL = 60
 
 
 @functools.lru_cache(maxsize=1024)
-def identity_colour(identity: int) -> Colour:
+def identity_colour(identity: int) -> drawing.Colour:
     """Return the colour of a vehicle; numbers that follow each other have unlike ones."""
     red, green, blue = colorsys.hsv_to_rgb(identity * _GOLDEN % 1.0, 0.75, 1.0)
     return round(255 * red), round(255 * green), round(255 * blue)
@@ -87,16 +77,16 @@ def draw_vehicle(
     """
     if estimate.mode is TrackMode.LOST:
         return
-    width = line_width(picture)
+    width = drawing.line_width(picture)
     if estimate.mode is TrackMode.TENTATIVE:
-        draw_box(picture, estimate.box, NEUTRAL, width)
+        drawing.draw_box(picture, estimate.box, drawing.NEUTRAL, width)
         return
     colour, is_hidden = identity_colour(estimate.identity), estimate.mode is TrackMode.OCCLUDED
-    draw_path(picture, trail, colour)
-    draw_box(picture, estimate.box, colour, width, dashed=is_hidden)
+    drawing.draw_path(picture, trail, colour)
+    drawing.draw_box(picture, estimate.box, colour, width, dashed=is_hidden)
     words = [str(estimate.identity), estimate.label, "" if kmh is None else f"{kmh:.0f} km/h"]
     words += [estimate.mode.value] if is_hidden else []
-    write_above(picture, " ".join(filter(None, words)), estimate.box, colour)
+    drawing.write_above(picture, " ".join(filter(None, words)), estimate.box, colour)
 
 
 def draw_counts(picture: Frame, counter: Counter, scale: float = 1.0) -> None:
@@ -113,12 +103,12 @@ def draw_counts(picture: Frame, counter: Counter, scale: float = 1.0) -> None:
     """
     for line in counter.plan.lines:
         ends = np.array([line.start, line.end]) * scale
-        draw_path(picture, ends, _PLAN)
+        drawing.draw_path(picture, ends, _PLAN)
         counts = ", ".join(f"{counter.count(line.name, to)} {to}" for to in line.directions)
         _write_at(picture, f"{line.name}: {counts}", ends[0])
     for zone in counter.plan.zones:
         corners = np.array(zone.corners) * scale
-        draw_path(picture, corners, _PLAN, closed=True)
+        drawing.draw_path(picture, corners, _PLAN, closed=True)
         entries, exits = (counter.count(zone.name, to) for to in (ENTRY, EXIT))
         there = counter.occupancy[zone.name]
         words = f"{zone.name}: {there} ({entries} entered, {exits} left)"
@@ -138,18 +128,18 @@ def annotated(
     for one in estimates:
         trail = trails.of.get(one.serial, ()) if trails is not None else ()
         draw_vehicle(picture, one, counter.speed_kmh(one.serial), trail)
-    width = line_width(picture)
-    write_words(picture, words, (5 * width, 16 * width), NEUTRAL, width)
+    width = drawing.line_width(picture)
+    drawing.write_words(picture, words, (5 * width, 16 * width), drawing.NEUTRAL, width)
     return picture
 
 
 def _write_at(picture: Frame, words: str, point: Array) -> None:
     """Write words above a point, moved into the picture where it is outside."""
-    width, (height, across) = line_width(picture), picture.shape[:2]
+    width, (height, across) = drawing.line_width(picture), picture.shape[:2]
     x = min(max(point[0] + 3 * width, 0), 0.8 * across)
     # Not in the topmost line, which has the time.
-    y = min(max(point[1] - 3 * width, 2.3 * LETTER * width), height - 3 * width)
-    write_words(picture, words, (int(x), int(y)), _PLAN, width)
+    y = min(max(point[1] - 3 * width, 2.3 * drawing.LETTER * width), height - 3 * width)
+    drawing.write_words(picture, words, (int(x), int(y)), _PLAN, width)
 
 
 _LEAST_WIDTH = 640
@@ -190,11 +180,13 @@ class PathPicture:
             self.ground, self._on_ground = frame.copy(), visible
         for one in estimates:
             if one.mode in CONFIRMED:
-                (end,) = pixels_at(np.array([one.box.centre]) * self._scale)
+                (end,) = drawing.pixels_at(np.array([one.box.centre]) * self._scale)
                 begin, self._ends[one.identity] = self._ends.get(one.identity, end), end
                 share = _HIDDEN if one.mode is TrackMode.OCCLUDED else 1.0
                 red, green, blue = (int(share * value) for value in identity_colour(one.identity))
-                cv2.line(self._layer, begin, end, (red, green, blue), line_width(self._layer))
+                cv2.line(
+                    self._layer, begin, end, (red, green, blue), drawing.line_width(self._layer)
+                )
 
     def write(self, path: Path, counter: Counter) -> None:
         """Write the picture, where there was a frame.
@@ -275,9 +267,9 @@ class HeatPicture:
             opacity = np.log1p(seconds) / max(np.log1p(seconds.max()), 1e-9) * _MOST_OPAQUE
             picture += opacity[:, :, None] * (np.array(colour, np.float32) - picture)
         drawn: Frame = picture.astype(np.uint8)
-        width = line_width(drawn)
+        width = drawing.line_width(drawn)
         most = [f"{seconds.max():.1f} s" for seconds in self._seconds]
         words = f"drove (blue): at most {most[0]}", f"stood (red): at most {most[1]}"
         for row, line in enumerate(words, start=1):
-            write_words(drawn, line, (5 * width, 16 * width * row), NEUTRAL, width)
+            drawing.write_words(drawn, line, (5 * width, 16 * width * row), drawing.NEUTRAL, width)
         write_picture(path, drawn)

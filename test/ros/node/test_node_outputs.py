@@ -28,7 +28,6 @@ from tracker_rig import HEIGHT, PERIOD_NS, SPEED, WIDTH, Rig, on_target, road, v
 
 from vehicle_pf_tracker.offline.drawing import Annotator
 from vehicle_pf_tracker.ros import messages
-from vehicle_pf_tracker.ros.node import outputs
 
 pytestmark = pytest.mark.ros
 
@@ -65,7 +64,7 @@ def test_velocity_is_in_px_per_second(bench, rig):
 def test_particles_come_while_subscribed(bench, rig, monkeypatch):
     frames = road(3)
     with monkeypatch.context() as patch:
-        patch.setattr(outputs, "particles_message", lambda *_: pytest.fail("nobody looks"))
+        patch.setattr(messages, "particles_message", lambda *_: pytest.fail("nobody looks"))
         rig.play(frames[:1])
     clouds = bench.collect(PointCloud2, "/apf_tracker/particles", qos_profile_sensor_data)
     answer = rig.show_frame(frames[1], 1)
@@ -125,13 +124,13 @@ def test_the_overlay_shows_waiting_too(bench):
 def test_messages_that_nobody_hears_are_not_made(bench, rig, monkeypatch):
     made = []
     for name in ("box_message", "velocity_message", "particles_message"):
-        original = getattr(outputs, name)
+        original = getattr(messages, name)
 
         def record(*arguments, name=name, original=original):
             made.append(name)
             return original(*arguments)
 
-        monkeypatch.setattr(outputs, name, record)
+        monkeypatch.setattr(messages, name, record)
     frames = road(4)
     rig.play(frames[:2])
     assert made == []

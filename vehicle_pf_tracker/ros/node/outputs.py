@@ -37,17 +37,7 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.offline.drawing import COLOURS, NEUTRAL, Annotator, line_width, write_words
 from vehicle_pf_tracker.parameters.configuration import NodeParameters
-from vehicle_pf_tracker.ros.messages import (
-    box_message,
-    detection_message,
-    detection_type,
-    image_message,
-    mode_message,
-    particles_message,
-    point_message,
-    pose_message,
-    velocity_message,
-)
+from vehicle_pf_tracker.ros import messages
 from vehicle_pf_tracker.trackers.estimate import START, Estimate
 from vehicle_pf_tracker.trackers.localisation import Localisation
 
@@ -121,18 +111,20 @@ class Outputs:
         frame_period: float,
     ) -> None:
         """Publish where a vehicle is; `frame_period` in s makes px/frame to px/s."""
-        self.send("position", point_message, header, estimate.position)
+        self.send("position", messages.point_message, header, estimate.position)
         if own.publish.box:
-            self.send("box", box_message, header, estimate.box)
+            self.send("box", messages.box_message, header, estimate.box)
         if own.publish.velocity:
-            self.send("velocity", velocity_message, header, estimate.velocity, frame_period)
+            self.send(
+                "velocity", messages.velocity_message, header, estimate.velocity, frame_period
+            )
 
     def publish_mode(
         self, header: Header, mode: str, values: Mapping[str, object], level: bytes | None = None
     ) -> DiagnosticArray:
         """Publish the one `~/mode` of an image; `level` is that of the mode unless it is higher."""
         name = f"{self.node_name}: target"
-        message = mode_message(header, name, self.hardware_id, mode, values, level)
+        message = messages.mode_message(header, name, self.hardware_id, mode, values, level)
         self.send("mode", lambda: message)
         return message
 
@@ -167,7 +159,7 @@ class TrackerOutputs(Outputs):
             "pose_with_covariance": (PoseWithCovarianceStamped, RELIABLE),
             "road_position": (PointStamped, RELIABLE),
             "road_velocity": (Vector3Stamped, RELIABLE),
-            "detection": (detection_type(), RELIABLE),
+            "detection": (messages.detection_type(), RELIABLE),
         }
         super().__init__(node, hardware_id, more)
         self._annotator = Annotator(particles=True)
@@ -189,17 +181,19 @@ class TrackerOutputs(Outputs):
         header = in_pixels(header, own)
         self.publish_vehicle(header, estimate, own, frame_period)
         if own.publish.particles:
-            self.send("particles", particles_message, header, estimate)
-        self.send("detection", detection_message, header, estimate, str(self._track))
+            self.send("particles", messages.particles_message, header, estimate)
+        self.send("detection", messages.detection_message, header, estimate, str(self._track))
         road = localisation.road
         if road is not None:
             there = in_frame(header, localisation.parameters.frame_id)
-            self.send("pose_with_covariance", pose_message, there, road.position, road.covariance)
-            self.send("road_position", point_message, there, road.position)
-            self.send("road_velocity", velocity_message, there, road.velocity)
+            self.send(
+                "pose_with_covariance", messages.pose_message, there, road.position, road.covariance
+            )
+            self.send("road_position", messages.point_message, there, road.position)
+            self.send("road_velocity", messages.velocity_message, there, road.velocity)
         elif not localisation.has_road and self.is_heard("pose_with_covariance"):
             position, covariance = np.asarray(estimate.position), localisation.covariance
-            self.send("pose_with_covariance", pose_message, header, position, covariance)
+            self.send("pose_with_covariance", messages.pose_message, header, position, covariance)
 
     def publish_overlay(
         self, header: Header, frame: Frame, mode: str, estimate: Estimate | None, more: str = ""
@@ -212,4 +206,4 @@ class TrackerOutputs(Outputs):
         words = mode if estimate is None else f"{mode} {estimate.confidence:.2f}"
         words, width = f"{words}  {more}".rstrip(), line_width(picture)
         write_words(picture, words, (5 * width, 16 * width), COLOURS.get(mode, NEUTRAL), width)
-        self.send("overlay", image_message, header, picture)
+        self.send("overlay", messages.image_message, header, picture)

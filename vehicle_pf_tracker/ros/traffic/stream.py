@@ -40,16 +40,7 @@ from vehicle_pf_tracker.ros.messages import WAITING, detections_type, image_mess
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import RELIABLE, Outputs, in_pixels
-from vehicle_pf_tracker.ros.traffic.messages import (
-    counts_message,
-    detections_message,
-    markers_message,
-    modes_message,
-    read_serialized_detections,
-    read_stamp,
-    scalars,
-    tracks_message,
-)
+from vehicle_pf_tracker.ros.traffic import messages
 from vehicle_pf_tracker.ros.traffic.rates import Rates
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
@@ -96,17 +87,19 @@ class TrafficOutputs(Outputs):
     ) -> None:
         """Publish all vehicles; `frame_period` in s makes px/frame to px/s."""
         name, there = self.node_name, in_pixels(header, own)
-        self.send("tracks", tracks_message, there, estimates, frame_period)
-        self.send("modes", modes_message, header, name, self.hardware_id, estimates)
-        self.send("detections", detections_message, there, estimates)
-        self.send("markers", markers_message, there, estimates)
+        self.send("tracks", messages.tracks_message, there, estimates, frame_period)
+        self.send("modes", messages.modes_message, header, name, self.hardware_id, estimates)
+        self.send("detections", messages.detections_message, there, estimates)
+        self.send("markers", messages.markers_message, there, estimates)
 
     def publish_counts(
         self, header: Header, counter: Counter, latest: Mapping[str, Crossing]
     ) -> None:
         """Publish what was counted, and the last crossing of each place."""
         name = self.node_name
-        self.send("counts", counts_message, header, name, self.hardware_id, counter, latest)
+        self.send(
+            "counts", messages.counts_message, header, name, self.hardware_id, counter, latest
+        )
 
     def publish_overlay(self, header: Header, frame: Frame, vehicles: Vehicles) -> None:
         """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
@@ -201,7 +194,7 @@ class TrafficStream(NodeStream):
         every = self._configuration.tracker.detector.every
         late, unmatched = self._waiting.late, self._waiting.unmatched
         try:
-            stamp = read_stamp(message)
+            stamp = messages.read_stamp(message)
         except InputError as error:
             self.warnings.say("flood", str(error))
             return
@@ -216,7 +209,7 @@ class TrafficStream(NodeStream):
 
     def _read(self, message: bytes) -> Detections | None:
         try:
-            detections = read_serialized_detections(message)
+            detections = messages.read_serialized_detections(message)
         except InputError as error:
             self.warnings.say("flood", f"{error}; {_BY_PIXELS}")
             return None
@@ -305,7 +298,7 @@ class TrafficStream(NodeStream):
         reason = f"vehicle {chosen} is not followed any more" if chosen else "none is selected"
         values: dict[str, object] = {"reason": reason}
         if selected is not None:
-            mode, values = selected.mode.value, scalars(selected)
+            mode, values = selected.mode.value, messages.scalars(selected)
         values |= {**vehicles.summary(), "step_ms": step_ms}
         if vehicles.session.recovered:
             self.note_restart()
