@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -81,15 +81,7 @@ def run(request: Request) -> int:
 
 def _track(request: Request, variant: Variant, source: Source, folder: Path, stop: Stop) -> int:
     pictures = Pictures(request.video, particles=request.particles)
-    with stopping(stop), counting("tracked") as progress:
-        (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
-        trackers = _trackers(request, variant, source, first, found.stamp_ns)
-        recording: AbstractContextManager[OnFrame | None] = nullcontext()
-        if request.recording is not None:
-            node = f"{variant.name}_tracker"
-            recording = run_recording(request.recording, node, list(trackers), source.truth())
-        with recording as on_frame:
-            rows = follow(trackers, frames, pictures, on_frame)
+    trackers, rows = _follow(request, variant, source, stop, pictures)
     ended = cut_short(stop, source, max(map(len, rows.values())))
     of_trackers = [
         f"{name}: {sentence}" if len(trackers) > 1 else sentence
@@ -98,7 +90,17 @@ def _track(request: Request, variant: Variant, source: Source, folder: Path, sto
     ]
     notices = [*source.notices, *of_trackers, *pictures.notices, *ended]
     tell_notices(notices)
-    _write(folder, request, source, trackers, rows, notices)
+    for earlier in (TRACKS, SHEET):
+        (folder / earlier).unlink(missing_ok=True)
+    for name, tracker in trackers.items():
+        provenance = request.command, request.source, source.image_topic, notices
+        description = describe_run(tracker.session, tracker.start_frame, *provenance)
+        part = folder if len(trackers) == 1 else folder / name
+        write_run(part, rows[name], description, tracker.road_columns)
+    if len(trackers) > 1:
+        write_tracks(folder / TRACKS, rows)
+    else:
+        _score(request, source, folder, *rows.values())
     pictures.sheet.write(folder / SHEET)
     for name, of_target in rows.items():
         print(f"{name + ': ' if len(rows) > 1 else ''}{summary(of_target)}")
@@ -108,6 +110,21 @@ def _track(request: Request, variant: Variant, source: Source, folder: Path, sto
     if request.recording:
         print(f"the recording is {request.recording}, for Foxglove and `ros2 bag play`")
     return stop.status if ended else int(bool(pictures.problem))
+
+
+def _follow(
+    request: Request, variant: Variant, source: Source, stop: Stop, pictures: Pictures
+) -> tuple[dict[str, OfflineTracker], dict[str, list[EstimateRow]]]:
+    """Follow all targets to the end or to a signal; return their trackers and rows by name."""
+    with stopping(stop), counting("tracked") as progress:
+        (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
+        trackers = _trackers(request, variant, source, first, found.stamp_ns)
+        recording: AbstractContextManager[OnFrame | None] = nullcontext()
+        if request.recording is not None:
+            node = f"{variant.name}_tracker"
+            recording = run_recording(request.recording, node, list(trackers), source.truth())
+        with recording as on_frame:
+            return trackers, follow(trackers, frames, pictures, on_frame)
 
 
 def _trackers(
@@ -136,27 +153,9 @@ def _trackers(
     }  # fmt: skip
 
 
-def _write(
-    folder: Path,
-    request: Request,
-    source: Source,
-    trackers: Mapping[str, OfflineTracker],
-    rows: Mapping[str, Sequence[EstimateRow]],
-    notices: Sequence[str],
-) -> None:
-    """Write the run of one target to `folder`; of several to folders in it and to one table."""
-    for earlier in (TRACKS, SHEET):
-        (folder / earlier).unlink(missing_ok=True)
-    for name, tracker in trackers.items():
-        provenance = request.command, request.source, source.image_topic, notices
-        description = describe_run(tracker.session, tracker.start_frame, *provenance)
-        part = folder if len(trackers) == 1 else folder / name
-        write_run(part, rows[name], description, tracker.road_columns)
-    if len(trackers) > 1:
-        write_tracks(folder / TRACKS, rows)
-        return
-    (found,) = rows.values()
-    metrics = measure(score_frames(found, source.truth(), request.max_diff))
+def _score(request: Request, source: Source, folder: Path, rows: Sequence[EstimateRow]) -> None:
+    """Write and print the metrics of the run of one target, where there is truth."""
+    metrics = measure(score_frames(rows, source.truth(), request.max_diff))
     if metrics.frames_scored:
         write_json(folder / METRICS, metrics.to_json())
         print_rows(["", request.variant], run_rows(metrics))

@@ -274,10 +274,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         return TransitionCallbackReturn.SUCCESS
 
     def _answer_change_state(
-        self,
-        answer: Callable[[ChangeState.Request, ChangeState.Response], ChangeState.Response],
-        request: ChangeState.Request,
-        response: ChangeState.Response,
+        self, answer: Callable[..., Any], request: ChangeState.Request, response: Any
     ) -> ChangeState.Response:
         label, state_id = state_label(self), request.transition.id
         wanted = request.transition.label or str(state_id)
