@@ -35,17 +35,11 @@ from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.systems import BASELINE
+from vehicle_pf_tracker.offline import run_folder
 from vehicle_pf_tracker.offline.driver import OfflineTracker
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
 from vehicle_pf_tracker.offline.output_files import flush, make_folder, write_json
 from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
-from vehicle_pf_tracker.offline.run_folder import (
-    METRICS,
-    RUN,
-    describe,
-    describe_run,
-    write_run,
-)
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 
@@ -103,7 +97,7 @@ def _run_variant(
     rows = list(tracker.rows(recording.frames()))
     notices = [*recording.notices, *tracker.notices]
     source = cell.source.path, cell.source.topic, notices
-    return rows, describe_run(tracker.session, tracker.start_frame, [], *source)
+    return rows, run_folder.describe_run(tracker.session, tracker.start_frame, [], *source)
 
 
 def _run_baseline(
@@ -116,7 +110,7 @@ def _run_baseline(
         rows = list(baseline_rows(baseline, recording.frames(), first))
         opencv = baseline.versions["opencv"]
     started = (row.frame for row in rows if row.mode not in {WAITING, REJECTED})
-    description = describe(
+    description = run_folder.describe(
         [],
         cell.source.path,
         cell.source.topic,
@@ -174,7 +168,7 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) 
 def _is_stored(cell: GridCell, folder: Path) -> bool:
     """Return whether the folder has the result of the cell; one that failed is tried again."""
     try:
-        return bool(read_document(folder / RUN).get("key") == cell.key())
+        return bool(read_document(folder / run_folder.RUN).get("key") == cell.key())
     except InputError:  # it is not there, or nothing that can be read
         return False
 
@@ -186,6 +180,6 @@ def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]
             write_json(partial / FAILED, {"reason": outcome.reason})
         else:
             keys = {"command": command, "key": cell.key()}
-            write_run(partial, outcome.rows, {**outcome.run, **keys})
-            write_json(partial / METRICS, outcome.metrics.to_json())
+            run_folder.write_run(partial, outcome.rows, {**outcome.run, **keys})
+            write_json(partial / run_folder.METRICS, outcome.metrics.to_json())
     flush(folder.parent)

@@ -25,13 +25,7 @@ from sensor_msgs.msg import RegionOfInterest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import (
-    box_of_detection,
-    box_of_point,
-    box_of_polygon,
-    box_of_region,
-    detection_type,
-)
+from vehicle_pf_tracker.ros import messages
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
 from vehicle_pf_tracker.ros.node.image_input import image_topic
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
@@ -87,11 +81,11 @@ class TrackerNode(ImageNode):
         self.open_images()
         self.warn_of_overrides()
         self._cameras.open(self.table.configuration.session.road)
-        self._take_target("~/set_target", RegionOfInterest, box_of_region)
-        self._take_target("~/set_box", PolygonStamped, box_of_polygon)
+        self._take_target("~/set_target", RegionOfInterest, messages.box_of_region)
+        self._take_target("~/set_box", PolygonStamped, messages.box_of_polygon)
         self._take_target("~/clicked_point", PointStamped, self._box_at)
-        if detection_type() is not None:
-            self._take_target("~/set_detection", detection_type(), box_of_detection)
+        if (kind := messages.detection_type()) is not None:
+            self._take_target("~/set_detection", kind, messages.box_of_detection)
         self._has_logged_ready = False
         self._await_kernels()
 
@@ -111,7 +105,7 @@ class TrackerNode(ImageNode):
         self.listen(kind, topic, lambda message: self.ask("target", partial(start, message)))
 
     def _box_at(self, message: PointStamped) -> Box:
-        return box_of_point(message, self.stream.box if self.stream is not None else None)
+        return messages.box_of_point(message, self.stream.box if self.stream is not None else None)
 
     def _await_kernels(self) -> None:
         """Log once that the node is ready: active, and with kernels."""

@@ -35,14 +35,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.drawing import NEUTRAL
 from vehicle_pf_tracker.offline.traffic_drawing import identity_colour
-from vehicle_pf_tracker.ros.messages import (
-    CLASS,
-    LEVELS,
-    cloud_message,
-    detection_message,
-    detections_type,
-    status,
-)
+from vehicle_pf_tracker.ros import messages
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -70,7 +63,7 @@ def tracks_message(
         box, velocity = one.box, (part / frame_period for part in one.velocity)
         values = one.identity, *one.position, box.width, box.height, *velocity
         points[index] = *values, CODES[one.mode], one.confidence
-    return cloud_message(header, points)
+    return messages.cloud_message(header, points)
 
 
 def scalars(estimate: TrackEstimate) -> dict[str, object]:
@@ -97,8 +90,8 @@ def modes_message(
 ) -> DiagnosticArray:
     """Make the status of each vehicle, with every scalar of its estimate."""
     statuses = [
-        status(
-            LEVELS[one.mode.value],
+        messages.status(
+            messages.LEVELS[one.mode.value],
             f"{node}: vehicle {one.identity or one.mode.value.lower()}",
             one.mode.value,
             hardware_id,
@@ -171,7 +164,7 @@ def counts_message(
         The last crossing of each place, by the place's name.
     """
     statuses = [
-        status(
+        messages.status(
             DiagnosticStatus.OK,
             f"{node}: {place}",
             _words(counter, place, names),
@@ -216,11 +209,11 @@ would take 1.5 s, in which no image is answered."""
 def detections_message(header: Header, estimates: Iterable[TrackEstimate]) -> Any:
     """Make the detections of the vehicles that are seen or predicted, with their numbers."""
     found = [
-        detection_message(header, one, str(one.identity), one.label or CLASS)
+        messages.detection_message(header, one, str(one.identity), one.label or messages.CLASS)
         for one in estimates
         if one.mode in CONFIRMED
     ]
-    return detections_type()(header=header, detections=found)
+    return messages.detections_type()(header=header, detections=found)
 
 
 def read_stamp(message: bytes) -> int:
@@ -252,7 +245,7 @@ def read_serialized_detections(message: bytes) -> Detections:
             f"a message of detections has {len(message) / 1e6:.1f} MB, more than the "
             f"{LONGEST / 1e6:g} MB that are read; is the detector in order?"
         )
-    return read_detections(deserialize_message(message, detections_type()))
+    return read_detections(deserialize_message(message, messages.detections_type()))
 
 
 def read_detections(message: Any) -> Detections:
