@@ -27,15 +27,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 
 from vehicle_pf_tracker import __version__
-from vehicle_pf_tracker.cli.console import (
-    FAILED,
-    INTERRUPTED,
-    PIPE_CLOSED,
-    PROGRAM,
-    USAGE,
-    UsageError,
-    tell_error,
-)
+from vehicle_pf_tracker.cli import console
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
 from vehicle_pf_tracker.core.errors import InputError, suggestion
@@ -101,30 +93,30 @@ def main(argv: Sequence[str] | None = None) -> int:
         return SIGNALS_STATUS + ended.number  # not reached unless the signal is blocked
 
 
-def exit_status(action: Callable[[], int], program: str = PROGRAM) -> int:
+def exit_status(action: Callable[[], int], program: str = console.PROGRAM) -> int:
     """Return the status of `action`, or print the error that ended it in one line."""
     try:
         status = action()
         sys.stdout.flush()
-    except (InputError, UsageError, MemoryError) as error:
+    except (InputError, console.UsageError, MemoryError) as error:
         is_full = isinstance(error, MemoryError)
-        tell_error("there is not enough memory" if is_full else str(error), program)
-        return USAGE if isinstance(error, UsageError) else FAILED
+        console.tell_error("there is not enough memory" if is_full else str(error), program)
+        return console.USAGE if isinstance(error, console.UsageError) else console.FAILED
     except ModuleNotFoundError as error:
         if (error.name or "").startswith(__package__.partition(".")[0]):
             raise  # a fault of ours, not something that is left to install
-        tell_error(remedy(error.name or "of an unknown name"), program)
-        return FAILED
+        console.tell_error(remedy(error.name or "of an unknown name"), program)
+        return console.FAILED
     except KeyboardInterrupt:
-        return INTERRUPTED
+        return console.INTERRUPTED
     except BrokenPipeError:
         # Python flushes once more at exit, and would complain about it.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return PIPE_CLOSED
+        return console.PIPE_CLOSED
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
-        tell_error(f"{where}{error.strerror or error}", program)
-        return FAILED
+        console.tell_error(f"{where}{error.strerror or error}", program)
+        return console.FAILED
     return status
 
 
@@ -137,7 +129,7 @@ def _run(words: list[str]) -> int:
     try:
         args = make_parser(words).parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say
-        return ended.code if isinstance(ended.code, int) else USAGE
+        return ended.code if isinstance(ended.code, int) else console.USAGE
     status: int = args.module.run(request_of(args.module.Request, args))
     return status
 
@@ -150,16 +142,16 @@ def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     """
     asked = next((word for word in words or () if not word.startswith("-")), None)
     if asked is not None and asked not in VERBS:
-        raise UsageError(
+        raise console.UsageError(
             f"there is no verb {asked!r}{suggestion(asked, VERBS)}; the verbs are "
             f"{', '.join(VERBS)}"
         )
     parser = argparse.ArgumentParser(
-        prog=PROGRAM,
+        prog=console.PROGRAM,
         description="Follow vehicles in traffic video through occlusions.",
         epilog="`vehicle-pf-tracker VERB --help` has the options of a verb.",
     )
-    parser.add_argument("--version", action="version", version=f"{PROGRAM} {__version__}")
+    parser.add_argument("--version", action="version", version=f"{console.PROGRAM} {__version__}")
     verbs = parser.add_subparsers(metavar="VERB", required=True)
     for name, (module_name, line) in VERBS.items():
         description = f"{line[0].upper()}{line[1:]}."
@@ -168,7 +160,7 @@ def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
             _check_extra(name)
             module = importlib.import_module(f"vehicle_pf_tracker.cli.{module_name}")
             add_options(verb, module.Request)
-            verb.set_defaults(module=module, command=[PROGRAM, *(words or ())])
+            verb.set_defaults(module=module, command=[console.PROGRAM, *(words or ())])
     return parser
 
 

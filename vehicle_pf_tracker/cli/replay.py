@@ -23,12 +23,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli.console import (
-    UsageError,
-    shown_progress,
-    tell_notice,
-    tell_notices,
-)
+from vehicle_pf_tracker.cli.console import UsageError, shown_progress, tell_notice, tell_notices
 from vehicle_pf_tracker.cli.requests import (
     OverwriteOption,
     TopicOption,

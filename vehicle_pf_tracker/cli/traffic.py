@@ -24,13 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.requests import option, switch
-from vehicle_pf_tracker.cli.stopping import (
-    StillAtWork,
-    Stop,
-    cut_short,
-    numbered_part,
-    stopping,
-)
+from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, cut_short, numbered_part, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed

@@ -39,12 +39,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
-from vehicle_pf_tracker.image.spectra import (
-    PartialFourier,
-    Spectrum,
-    frequencies,
-    upsampled,
-)
+from vehicle_pf_tracker.image.spectra import PartialFourier, Spectrum, frequencies, upsampled
 
 Response: TypeAlias = npt.NDArray[np.float32]
 """Filter response by [y, x], its middle at the patch's centre; 1 is the ideal peak."""

@@ -26,13 +26,7 @@ import numpy as np
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import jpeg
-from vehicle_pf_tracker.offline.drawing import (
-    COLOURS,
-    Colour,
-    dashes,
-    estimate_words,
-    line_width_of,
-)
+from vehicle_pf_tracker.offline import drawing
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.reader import StampedFrame
@@ -69,10 +63,11 @@ def image_annotations(name: str, row: EstimateRow, size: tuple[int, int]) -> Any
     annotations = messages.message_class(messages.IMAGE_ANNOTATIONS)
     if box is None:
         return annotations(circles=[], points=[], texts=[])
-    width, stamp = line_width_of(size), messages.header(row.stamp_ns).stamp
-    height, colour = float(_LETTERS * width), _colour(COLOURS[row.mode])
+    width, stamp = drawing.line_width_of(size), messages.header(row.stamp_ns).stamp
+    height, colour = float(_LETTERS * width), _colour(drawing.COLOURS[row.mode])
     is_dashed = row.mode == Mode.OCCLUDED
-    ends = np.concatenate(list(dashes(box.corners, _DASH * width))) if is_dashed else box.corners
+    dashes = drawing.dashes(box.corners, _DASH * width)
+    ends = np.concatenate(list(dashes)) if is_dashed else box.corners
     outline = messages.message_class("foxglove_msgs/msg/PointsAnnotation")(
         timestamp=stamp,
         type=LINE_LIST if is_dashed else LINE_LOOP,
@@ -85,7 +80,7 @@ def image_annotations(name: str, row: EstimateRow, size: tuple[int, int]) -> Any
     words = messages.message_class("foxglove_msgs/msg/TextAnnotation")(
         timestamp=stamp,
         position=_point(max(box.x, 0.0), max(box.y - 2.0 * width, height)),
-        text=estimate_words(name, row),
+        text=drawing.estimate_words(name, row),
         font_size=height,
         text_color=colour,
         background_color=_colour((0, 0, 0), _GROUND_OPACITY),
@@ -97,7 +92,7 @@ def _point(x: float, y: float) -> Any:
     return messages.message_class("foxglove_msgs/msg/Point2")(x=float(x), y=float(y))
 
 
-def _colour(colour: Colour, opacity: float = 1.0) -> Any:
+def _colour(colour: drawing.Colour, opacity: float = 1.0) -> Any:
     red, green, blue = (value / 255 for value in colour)
     return messages.message_class("foxglove_msgs/msg/Color")(r=red, g=green, b=blue, a=opacity)
 

@@ -42,11 +42,7 @@ from vehicle_pf_tracker.image.window import Window, is_outside, keep_inside
 from vehicle_pf_tracker.parameters.table import specs, to_mapping
 from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
-from vehicle_pf_tracker.trackers.parameters import (
-    ParametersT,
-    ParticleParameters,
-    WindowParameters,
-)
+from vehicle_pf_tracker.trackers.parameters import ParametersT, ParticleParameters, WindowParameters
 
 _MARGIN = 64
 """Least margin kept around the target, in px, so that a wider window can still be measured: of

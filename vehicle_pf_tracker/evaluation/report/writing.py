@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.evaluation import tables
 from vehicle_pf_tracker.evaluation.columns import COLUMNS, NO_VALUE, PAPER
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, safe_name
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, aggregate
@@ -31,13 +32,6 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import (
     ScoredEvaluation,
     ScoredRun,
     score_folder,
-)
-from vehicle_pf_tracker.evaluation.tables import (
-    behind_table,
-    markdown,
-    overall_table,
-    recording_table,
-    starts_table,
 )
 from vehicle_pf_tracker.offline.output_files import csv_text, make_folder, write_json, write_text
 from vehicle_pf_tracker.trackers.estimate import Mode
@@ -54,22 +48,22 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     """Return the notes, the means, the differences and each recording as Markdown."""
     parts = [f"# {title(evaluation)}\n"]
     parts.append("".join(f"- {line}\n" for line in evaluation.notes))
-    starts = starts_table(aggregates)
-    tables = {
-        "Means over recordings": overall_table(aggregates),
-        "Differences to the first": behind_table(aggregates),
+    starts = tables.starts_table(aggregates)
+    shown = {
+        "Means over recordings": tables.overall_table(aggregates),
+        "Differences to the first": tables.behind_table(aggregates),
         **({"Shifted starts": starts} if starts else {}),
         **{
-            entry.name: recording_table(aggregates, entry.name, COLUMNS)
+            entry.name: tables.recording_table(aggregates, entry.name, COLUMNS)
             for entry in evaluation.recordings
         },
     }
-    for heading, table in tables.items():
-        parts.append(f"## {heading}\n\n{markdown(*table.texts())}")
+    for heading, table in shown.items():
+        parts.append(f"## {heading}\n\n{tables.markdown(*table.texts())}")
     if evaluation.failed:
         cells = [[c.system, c.recording, c.run, c.reason] for c in evaluation.failed]
         header = ["system", "recording", "seed", "reason"]
-        parts.append("## Failed cells\n\n" + markdown(header, cells))
+        parts.append("## Failed cells\n\n" + tables.markdown(header, cells))
     return "\n".join(parts)
 
 
@@ -91,7 +85,7 @@ def summary_csv(aggregates: Aggregates) -> str:
 
 def summary_tex(aggregates: Aggregates) -> str:
     """Return the main means as a LaTeX table; the best are bold."""
-    table = overall_table(aggregates, [column.key for column in PAPER])
+    table = tables.overall_table(aggregates, [column.key for column in PAPER])
     header, _ = table.texts()
     rows = [
         [_tex(label), *(rf"\textbf{{{_tex(c.text)}}}" if c.best else _tex(c.text) for c in cells)]

@@ -38,19 +38,13 @@ from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.ros import rclpy_internals
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
 from vehicle_pf_tracker.ros.node.image_input import ImageInput
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.ros.node.parameters import ParameterTable, take_overrides, unknown_overrides
-from vehicle_pf_tracker.ros.rclpy_internals import (
-    RCLError,
-    change_state_service,
-    destroy_state_machine,
-    missing,
-    state_label,
-)
 
 
 class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
@@ -87,7 +81,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         self.inputs: list[Subscription] = []
         self._requests: list[Service] = []
         self._polls: list[Timer] = []
-        service = change_state_service(self)
+        service = rclpy_internals.change_state_service(self)
         if service is not None:
             service.callback = partial(self._answer_change_state, service.callback)
 
@@ -107,7 +101,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
                 lambda: self.stream.facts if self.stream is not None else {},
                 lambda: self.stream.judge() if self.stream is not None else "",
             )
-            for loss in missing(self):
+            for loss in rclpy_internals.missing(self):
                 words = f"this release of rclpy is not one of those tried: {loss}"
                 self.get_logger().warning(words)
             self.warn_of(unknown_overrides(self, self.overrides, qos=False))
@@ -233,7 +227,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
     def destroy_node(self) -> None:
         """Destroy the node and its state machine, without which it would stay in the graph."""
         super().destroy_node()
-        destroy_state_machine(self)
+        rclpy_internals.destroy_state_machine(self)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """See `configure`."""
@@ -276,12 +270,12 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
     def _answer_change_state(
         self, answer: Callable[..., Any], request: ChangeState.Request, response: Any
     ) -> ChangeState.Response:
-        label, state_id = state_label(self), request.transition.id
+        label, state_id = rclpy_internals.state_label(self), request.transition.id
         wanted = request.transition.label or str(state_id)
         self.failure = "there is no such transition"
         try:
             response = answer(request, response)
-        except RCLError:
+        except rclpy_internals.RCLError:
             response.success = False
         if not response.success:
             self.get_logger().error(f"transition {wanted} from {label} failed: {self.failure}")
