@@ -56,29 +56,6 @@ def squared_strength(gx: npt.NDArray[Any], gy: npt.NDArray[Any]) -> Strengths:
     return np.asarray(gx * gx + gy * gy)
 
 
-def squared_limits(
-    peaks: Strengths | np.float32, threshold: float, floor: float = 0.0
-) -> Strengths:
-    """Least squared strength of edge points where the strongest has `peaks`.
-
-    Parameters
-    ----------
-    peaks : array
-        Squared strengths.
-    threshold : float
-        Share of the strongest gradient that makes an edge point.
-    floor : float
-        Gradient that an edge point has at least, whatever the strongest is.
-
-    Returns
-    -------
-    array
-        Infinite where there is no gradient at all: nothing is an edge point there.
-    """
-    limits = np.maximum(np.float32(threshold) ** 2 * peaks, np.float32(floor) ** 2)
-    return np.asarray(np.where(peaks > 0, limits, np.inf), np.float32)
-
-
 def direction_bins(
     gx: npt.NDArray[Any], gy: npt.NDArray[Any], *, signed: bool
 ) -> npt.NDArray[np.intp]:
@@ -145,8 +122,10 @@ class GradientDirections(CountedFeature):
                 strength, bins = of_frame[0][inside], of_frame[1][inside]
             else:
                 strength, bins = self._directions(grey[inside].copy())
-            edges = strength >= squared_limits(strength.max(), self.threshold, self.floor)
-            counts[row] = np.bincount(bins[edges], minlength=self.bins)
+            peak = strength.max()
+            if peak > 0:  # else nothing is an edge point
+                limit = max(np.float32(self.threshold) ** 2 * peak, np.float32(self.floor) ** 2)
+                counts[row] = np.bincount(bins[strength >= limit], minlength=self.bins)
         # The last digit of a sum depends on the layout: these keep estimates what they were.
         chosen = np.asarray(counts[:, active], order="C" if self.in_frame else "K")
         return Counted(chosen, counts.sum(axis=1))

@@ -126,7 +126,7 @@ def _count_window(
 def _limits_of(
     strengths: Strengths, middles: Rectangles, half: tuple[int, int], rule: tuple[float, float]
 ) -> Numbers:
-    """Least squared magnitude that counts in each window; see `gradients.squared_limits`."""
+    """Least squared magnitude that counts in each window; see `GradientDirections.counts`."""
     (share, least), (across, up) = rule, half
     height, width = strengths.shape
     limits = np.full(len(middles), _NEVER, np.int64)

@@ -20,7 +20,7 @@ import contextlib
 from dataclasses import dataclass
 from typing import Any
 
-from geometry_msgs.msg import Transform, TransformStamped
+from geometry_msgs.msg import TransformStamped
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
@@ -46,12 +46,6 @@ _THROTTLE = 30.0
 _NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _MOVING = QoSProfile(depth=100)
 _LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-
-def camera_info_topic(node: Node) -> str:
-    """Resolve the topic of CameraInfo: beside the images, as camera drivers publish it."""
-    folder = image_topic(node, "raw").rpartition("/")[0]
-    return str(node.resolve_topic_name(f"{folder}/camera_info"))
 
 
 class CameraInputs:
@@ -87,7 +81,9 @@ class CameraInputs:
         self._asked, self._rectified = asked, road.rectified
         subscribe = self._node.create_subscription
         if road.from_camera_info:
-            topic = camera_info_topic(self._node)
+            # Beside the images, as camera drivers publish it.
+            folder = image_topic(self._node, "raw").rpartition("/")[0]
+            topic = str(self._node.resolve_topic_name(f"{folder}/camera_info"))
             self._subscriptions.append(subscribe(CameraInfo, topic, self._on_info, _NEWEST))
         if road.from_tf and TFMessage is None:
             self._node.get_logger().error(
@@ -119,7 +115,8 @@ class CameraInputs:
 
     def _put(self, one: TransformStamped) -> None:
         try:
-            pose = pose_of_transform(one.transform)
+            at, turn = one.transform.translation, one.transform.rotation
+            pose = Pose.of((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))
         except InputError as error:
             self._warn(f"a transform of {one.child_frame_id} is ignored: {error}")
         else:
@@ -242,15 +239,3 @@ def _distortion(message: CameraInfo, *, rectified: bool) -> tuple[str, tuple[flo
 def _binned(centre: float, offset: int, factor: int) -> float:
     """Move a principal point to a part of the image, and bin it; pixels have corners."""
     return (centre + FIRST_PIXEL - offset) / factor - FIRST_PIXEL
-
-
-def pose_of_transform(transform: Transform) -> Pose:
-    """Read the pose of the child frame of a transform in its parent.
-
-    Raises
-    ------
-    InputError
-        If it is not a rigid transform.
-    """
-    at, turn = transform.translation, transform.rotation
-    return Pose.of((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))

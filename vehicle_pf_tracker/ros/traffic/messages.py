@@ -235,6 +235,9 @@ def read_stamp(message: bytes) -> int:
 def read_serialized_detections(message: bytes) -> Detections:
     """Read a vision_msgs/Detection2DArray in CDR, its encapsulation header included.
 
+    A turned box becomes the upright one around it. Score and class are those of the hypothesis with
+    the highest score; a detection without one has the score 1 and no class.
+
     Raises
     ------
     InputError
@@ -245,17 +248,9 @@ def read_serialized_detections(message: bytes) -> Detections:
             f"a message of detections has {len(message) / 1e6:.1f} MB, more than the "
             f"{LONGEST / 1e6:g} MB that are read; is the detector in order?"
         )
-    return read_detections(deserialize_message(message, messages.detections_type()))
-
-
-def read_detections(message: Any) -> Detections:
-    """Read a vision_msgs/Detection2DArray.
-
-    A turned box becomes the upright one around it. Score and class are those of the hypothesis with
-    the highest score; a detection without one has the score 1 and no class.
-    """
-    rows = [_row(one.bbox) for one in message.detections]
-    best = [_best(one.results) for one in message.detections]
+    found = deserialize_message(message, messages.detections_type()).detections
+    rows = [_row(one.bbox) for one in found]
+    best = [_best(one.results) for one in found]
     boxes = np.array(rows, dtype=np.float64).reshape(-1, 5)
     with np.errstate(invalid="ignore", over="ignore"):
         x, y, width, height, theta = boxes.T

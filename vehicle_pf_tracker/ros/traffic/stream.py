@@ -35,7 +35,7 @@ from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.offline.detectors import PacedDetector
 from vehicle_pf_tracker.offline.drawing import Colour, draw_box, line_width
 from vehicle_pf_tracker.offline.page_server import LivePage
-from vehicle_pf_tracker.parameters.configuration import Configuration, NodeParameters
+from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import WAITING, detections_type, image_message, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
@@ -79,15 +79,11 @@ class TrafficOutputs(Outputs):
         super().__init__(node, hardware_id, more)
 
     def publish_vehicles(
-        self,
-        header: Header,
-        estimates: Sequence[TrackEstimate],
-        own: NodeParameters,
-        frame_period: float,
+        self, header: Header, there: Header, estimates: Sequence[TrackEstimate], period: float
     ) -> None:
-        """Publish all vehicles; `frame_period` in s makes px/frame to px/s."""
-        name, there = self.node_name, in_pixels(header, own)
-        self.send("tracks", messages.tracks_message, there, estimates, frame_period)
+        """Publish all vehicles, in px under the header `there`; `period` is that of frames, s."""
+        name = self.node_name
+        self.send("tracks", messages.tracks_message, there, estimates, period)
         self.send("modes", messages.modes_message, header, name, self.hardware_id, estimates)
         self.send("detections", messages.detections_message, there, estimates)
         self.send("markers", messages.markers_message, there, estimates)
@@ -288,11 +284,12 @@ class TrafficStream(NodeStream):
             events += self.doubts(frame, vehicles.given.pop())
         period = vehicles.session.tracker.frame_period
         estimates, selected = vehicles.estimates, vehicles.selected
-        self._outputs.publish_vehicles(header, estimates, own, period)
+        there = in_pixels(header, own)
+        self._outputs.publish_vehicles(header, there, estimates, period)
         if vehicles.counter.plan.is_counting:
             self._outputs.publish_counts(header, vehicles.counter, vehicles.latest)
         if selected is not None:
-            self._outputs.publish_vehicle(in_pixels(header, own), selected, own, period)
+            self._outputs.publish_vehicle(there, selected, own, period)
         self._show(header, frame)
         chosen, mode = vehicles.selection.identity, WAITING
         reason = f"vehicle {chosen} is not followed any more" if chosen else "none is selected"
