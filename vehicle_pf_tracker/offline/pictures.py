@@ -158,7 +158,14 @@ class ContactSheet:
         if not thumbs:
             return False
         chosen = np.unique(np.linspace(0, len(thumbs) - 1, min(len(thumbs), _MOST)).round())
-        write_picture(path, _tiled([thumbs[int(index)] for index in chosen]))
+        shown = [thumbs[int(index)] for index in chosen]
+        height, columns = max(thumb.shape[0] for thumb in shown), min(_COLUMNS, len(shown))
+        rows = -(-len(shown) // columns)
+        sheet: Frame = np.full((rows * height, columns * THUMB_WIDTH, 3), 24, np.uint8)
+        for index, thumb in enumerate(shown):
+            top, left = index // columns * height, index % columns * THUMB_WIDTH
+            sheet[top : top + thumb.shape[0], left : left + THUMB_WIDTH] = thumb
+        write_picture(path, sheet)
         return True
 
 
@@ -166,17 +173,6 @@ def _thumb(picture: Frame) -> Frame:
     height = max(1, round(THUMB_WIDTH * picture.shape[0] / picture.shape[1]))
     thumb: Frame = cv2.resize(picture, (THUMB_WIDTH, height), interpolation=cv2.INTER_AREA)  # type: ignore[assignment]
     return thumb
-
-
-def _tiled(thumbs: list[Frame]) -> Frame:
-    height = max(thumb.shape[0] for thumb in thumbs)
-    columns = min(_COLUMNS, len(thumbs))
-    rows = -(-len(thumbs) // columns)
-    sheet: Frame = np.full((rows * height, columns * THUMB_WIDTH, 3), 24, np.uint8)
-    for index, thumb in enumerate(thumbs):
-        top, left = index // columns * height, index % columns * THUMB_WIDTH
-        sheet[top : top + thumb.shape[0], left : left + THUMB_WIDTH] = thumb
-    return sheet
 
 
 class Pictures:

@@ -70,7 +70,20 @@ def choose_image_topic(path: Path, topics: Sequence[TopicInfo], wanted: str | No
     """
     images = [topic for topic in topics if topic.is_image]
     if wanted is not None:
-        return _named_topic(path, topics, images, wanted)
+        found = next((topic for topic in topics if topic.name == wanted), None)
+        if found is None:
+            names = _listed(images)
+            raise InputError(
+                f"the recording {path} has no topic {wanted}; its image topics are: {names}"
+            )
+        if not found.is_image:
+            raise InputError(
+                f"the topic {wanted} of {path} carries {found.type_name or 'an unknown type'}, "
+                f"no images; the image topics are: {_listed(images)}"
+            )
+        if not found.message_count:
+            raise InputError(f"the image topic {wanted} of {path} has no messages")
+        return found
     filled = [topic for topic in images if topic.message_count]
     if not filled:
         names = _listed(topics)
@@ -81,25 +94,6 @@ def choose_image_topic(path: Path, topics: Sequence[TopicInfo], wanted: str | No
             f"{_listed(filled)}"
         )
     return filled[0]
-
-
-def _named_topic(
-    path: Path, topics: Sequence[TopicInfo], images: Sequence[TopicInfo], wanted: str
-) -> TopicInfo:
-    by_name = {topic.name: topic for topic in topics}
-    topic = by_name.get(wanted)
-    if topic is None:
-        raise InputError(
-            f"the recording {path} has no topic {wanted}; its image topics are: {_listed(images)}"
-        )
-    if not topic.is_image:
-        raise InputError(
-            f"the topic {wanted} of {path} carries {topic.type_name or 'an unknown type'}, "
-            f"no images; the image topics are: {_listed(images)}"
-        )
-    if not topic.message_count:
-        raise InputError(f"the image topic {wanted} of {path} has no messages")
-    return topic
 
 
 def _describe(index: McapIndex, channel: Channel) -> TopicInfo:

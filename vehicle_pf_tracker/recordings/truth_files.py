@@ -144,7 +144,15 @@ def read_truth(
             if number in rows:
                 raise InputError(f"{label.where} names frame {number} a second time")
             rows[number] = row
-    table = {n: row for n, row in _chosen(paths[0], targets, identity).items() if row is not None}
+    listed = ", ".join([*map(str, sorted(targets)[:_IDS_SHOWN]), "..."][: len(targets)])
+    if identity is None and len(targets) > 1:
+        raise UnreadTruthError(
+            f"{paths[0]} has the truth of {len(targets)} vehicles; choose one with --id: {listed}"
+        )
+    if identity is not None and identity not in targets:
+        raise InputError(f"the truth {paths[0]} has no target {identity}; it has {listed}")
+    chosen = next(iter(targets.values()), {}) if identity is None else targets[identity]
+    table = {number: row for number, row in chosen.items() if row is not None}
     if not table:
         raise UnreadTruthError(f"the truth {paths[0]} holds no box")
     return table, notices
@@ -170,17 +178,3 @@ def _row(label: Label) -> tuple[int, int, TruthRow | None]:
     is_box = all(map(math.isfinite, label.sides)) and min(label.sides[2:]) > 0
     row = TruthRow(Box(*label.sides), label.occlusion) if is_box else None
     return int(label.number), int(label.identity), row
-
-
-def _chosen(
-    path: Path, targets: dict[int, dict[int, TruthRow | None]], identity: int | None
-) -> dict[int, TruthRow | None]:
-    """Return the rows of the target, or of the only one."""
-    listed = ", ".join([*map(str, sorted(targets)[:_IDS_SHOWN]), "..."][: len(targets)])
-    if identity is None and len(targets) > 1:
-        raise UnreadTruthError(
-            f"{path} has the truth of {len(targets)} vehicles; choose one with --id: {listed}"
-        )
-    if identity is not None and identity not in targets:
-        raise InputError(f"the truth {path} has no target {identity}; it has {listed}")
-    return next(iter(targets.values()), {}) if identity is None else targets[identity]

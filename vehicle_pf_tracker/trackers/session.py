@@ -23,6 +23,7 @@ from __future__ import annotations
 import copy
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Generic, TypeVar
 
 from vehicle_pf_tracker.core.box import Box, check_target
@@ -220,21 +221,18 @@ class Session(StreamSession[BaseTracker[Any]]):
         """
         self.refusal, estimate = "", None
         for turn in self._admit(image, stamp_ns, is_tracking=self._is_tracking):
-            estimate = self._take(turn)
+            self.events += turn.events
+            if turn.corrects:
+                self._take_back()
+            kernels = self.tracker.kernels  # they have no state of their own, and need no copy
+            kept = {id(kernels): kernels}
+            self._backup = copy.deepcopy(self.tracker, kept) if turn.leaps else None
+            if turn.begins_anew:
+                self._seen = None
+                self._await_again(None)
+            self.tracker.frame_period = turn.period
+            estimate = self._attempt(partial(self._step, turn))
         return estimate
-
-    def _take(self, turn: Turn) -> Estimate | None:
-        self.events += turn.events
-        if turn.corrects:
-            self._take_back()
-        kernels = self.tracker.kernels  # they have no state of their own, and need no copy
-        kept = {id(kernels): kernels}
-        self._backup = copy.deepcopy(self.tracker, kept) if turn.leaps else None
-        if turn.begins_anew:
-            self._seen = None
-            self._await_again(None)
-        self.tracker.frame_period = turn.period
-        return self._attempt(lambda: self._step(turn))
 
     def _start_anew(self) -> None:
         self._await_again(self._seen)

@@ -79,10 +79,10 @@ class Selection:
         if inside:
             self.identity = min(inside, key=lambda one: (one.box.area, one.identity)).identity
             return
-        near = [one for one in shown if _distance(one.box, point) < one.box.diagonal]
+        near = [one for one in shown if math.dist(one.box.centre, point) < one.box.diagonal]
         if not near:
             raise InputError(f"there is no vehicle at {point[0]:g},{point[1]:g} px")
-        self.identity = min(near, key=lambda one: _distance(one.box, point)).identity
+        self.identity = min(near, key=lambda one: math.dist(one.box.centre, point)).identity
 
     def of(self, estimates: Sequence[TrackEstimate]) -> TrackEstimate | None:
         """Return the estimate of the selected vehicle, where there is one."""
@@ -93,10 +93,6 @@ class Selection:
 def _contains(box: Box, point: Position) -> bool:
     x, y = point
     return box.x <= x < box.x + box.width and box.y <= y < box.y + box.height
-
-
-def _distance(box: Box, point: Position) -> float:
-    return math.dist(box.centre, point)
 
 
 _MOST_TARGETS = 100
