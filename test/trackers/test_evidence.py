@@ -17,16 +17,14 @@ import pytest
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
-from vehicle_pf_tracker.trackers.parameters import EvidenceParameters
+from vehicle_pf_tracker.trackers.parameters import CommonParameters, EvidenceParameters
 
-PARAMETERS = EvidenceParameters(occluded_below=0.6, clear_above=0.8, minimum=0.2, level_rate=0.1)
+EVIDENCE = EvidenceParameters(occluded_below=0.6, clear_above=0.8, minimum=0.2, level_rate=0.1)
+PARAMETERS = CommonParameters(evidence=EVIDENCE, lost_after=3.0)
 
 
-def modes(judge, similarities, *, left_image=False, lost_after=3.0):
-    return [
-        judge.judge(s, 1.0, PARAMETERS, lost_after=lost_after, left_image=left_image)
-        for s in similarities
-    ]
+def modes(judge, similarities, *, left_image=False):
+    return [judge.judge(s, 1.0, PARAMETERS, left_image=left_image) for s in similarities]
 
 
 def test_the_clear_level_is_a_mean_at_first_and_then_follows():

@@ -229,13 +229,8 @@ class BaseTracker(ABC, Generic[ParametersT]):
         began = time.perf_counter()
         outcome = self._advance(check_frame(frame), elapsed)
         self._cloud = outcome.cloud
-        mode = self._judge.judge(
-            outcome.evidence,
-            elapsed * self.frame_period,
-            self.parameters.evidence,
-            lost_after=self.parameters.lost_after,
-            left_image=outcome.left_image,
-        )
+        seconds, left_image = elapsed * self.frame_period, outcome.left_image
+        mode = self._judge.judge(outcome.evidence, seconds, self.parameters, left_image=left_image)
         confidence = self._judge.confidence(outcome.evidence) if outcome.cloud.sound else 0.0
         return self._estimate(outcome, mode, confidence, began)
 

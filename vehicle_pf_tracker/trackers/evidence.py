@@ -22,7 +22,7 @@ vehicles and cameras. The regime of an algorithm takes no part in this.
 from __future__ import annotations
 
 from vehicle_pf_tracker.trackers.estimate import Mode
-from vehicle_pf_tracker.trackers.parameters import EvidenceParameters
+from vehicle_pf_tracker.trackers.parameters import CommonParameters
 
 FIRST_DEVIATION = 0.05
 """Deviation to start from. Colour similarities deviate by 0.02 to 0.08 on average in the first 30
@@ -77,13 +77,7 @@ class EvidenceJudge:
         return self._level.value
 
     def judge(
-        self,
-        similarity: float,
-        seconds: float,
-        parameters: EvidenceParameters,
-        *,
-        lost_after: float,
-        left_image: bool,
+        self, similarity: float, seconds: float, parameters: CommonParameters, *, left_image: bool
     ) -> Mode:
         """Take one frame's evidence and return the mode.
 
@@ -93,21 +87,21 @@ class EvidenceJudge:
             Similarity of the image at the estimate to the reference, 0 to 1.
         seconds : float
             Time since the previous frame, in s.
-        parameters : EvidenceParameters
-            Thresholds.
-        lost_after : float
-            Seconds without evidence after which the target counts as lost.
+        parameters : CommonParameters
+            Their thresholds count, and the time after which the target is lost.
         left_image : bool
             True where the cloud's mean crossed the border before it was clipped.
         """
         visible = self.mode is Mode.TRACKING
-        share = parameters.occluded_below if visible else parameters.clear_above
-        if similarity >= max(parameters.minimum, share * self.level):
+        evidence = parameters.evidence
+        share = evidence.occluded_below if visible else evidence.clear_above
+        if similarity >= max(evidence.minimum, share * self.level):
             self.mode, self.seconds_without = Mode.TRACKING, 0.0
-            self._level.add(similarity, parameters.level_rate)
+            self._level.add(similarity, evidence.level_rate)
             return self.mode
         self.seconds_without += seconds
-        lost = left_image or self.seconds_without >= lost_after or self.mode is Mode.LOST
+        is_long = self.seconds_without >= parameters.lost_after
+        lost = left_image or is_long or self.mode is Mode.LOST
         self.mode = Mode.LOST if lost else Mode.OCCLUDED
         return self.mode
 
