@@ -119,6 +119,12 @@ def _numbers(where: str, cells: Sequence[str]) -> list[float]:
     return [_number(where, f"number {place}", cell) for place, cell in enumerate(cells, start=1)]
 
 
+def _list(path: Path) -> list[float]:
+    """Read a file of numbers alone."""
+    cells = re.split(_GAP, read_text(path, "the truth").strip(", \t\r\n"))
+    return _numbers(f"the truth {path}", cells)
+
+
 _REQUIRED = ("frame", "x", "y", "w", "h")
 
 
@@ -163,10 +169,7 @@ def _flags(folder: Path) -> list[Occlusion | None]:
     columns = []
     for path, meaning in ((folder / name, meaning) for name, meaning in _FLAGS.items()):
         if path.is_file():
-            flags = _numbers(
-                f"the truth {path}", re.split(_GAP, read_text(path, "the truth").strip(", \r\n"))
-            )
-            columns.append([meaning.get(flag, Occlusion.NONE) for flag in flags])
+            columns.append([meaning.get(flag, Occlusion.NONE) for flag in _list(path)])
     states = (set(row) for row in zip_longest(*columns, fillvalue=Occlusion.NONE))
     return [None if None in state else max(state - {None}) for state in states]  # type: ignore[type-var]
 
@@ -183,9 +186,7 @@ def in_order(path: Path, text: str, images: Images) -> Iterator[Label]:
     first_px = 0 if (folder / "sequence").is_file() or any(folder.glob("*.tag")) else 1
     span = folder / path.name.replace("_gt.", "_frames.")
     if span != path and span.is_file():
-        first = _numbers(f"the truth {span}", re.split(_GAP, read_text(span, "the truth").strip()))[
-            0
-        ]
+        first = _list(span)[0]
         begin = images.numbers.index(int(first)) if first in images.numbers else 0
     ending = re.search(r"^groundtruth.*[._](\d+)$", path.stem)
     flags = _flags(folder)

@@ -35,7 +35,7 @@ from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Lookout, Spinner
 from vehicle_pf_tracker.ros.replay.publishing import make_publishers
 from vehicle_pf_tracker.ros.replay.replay_options import Progress, ReplayOptions, ReplayReport
-from vehicle_pf_tracker.ros.replay.tracker_link import Targets, TrackerLink, starting_target
+from vehicle_pf_tracker.ros.replay.tracker_link import Targets, TrackerLink, played, starting_target
 
 _ACKNOWLEDGEMENT_SLICE = Duration(seconds=0.05)
 
@@ -248,28 +248,23 @@ class Player:
         length_ns = max(self._recording.end_ns - begin_ns, 0)
         if options.playback_duration is not None:
             length_ns = min(length_ns, round(options.playback_duration * 1e9))
-        for message in self._recording.messages(
-            set(self._publishers), options.start_offset, options.playback_duration
-        ):
-            is_image = self._is_image(message)
+        for message in played(self._recording, options, set(self._publishers)):
+            is_image = message.topic == self._recording.image_topic
             if is_image:
                 targets.before(self._frame + 1)
             self._spinner.until_time(self._pace.due(message.log_time_ns))
-            if self._publish(message) and is_image:
+            if self._publish(message, is_image=is_image) and is_image:
                 self._follow(message)
             if is_image:
                 position = (message.log_time_ns - begin_ns) * 1e-9
                 self._on_progress(Progress(self._frames, position, length_ns * 1e-9))
 
-    def _is_image(self, message: RecordedMessage) -> bool:
-        return message.topic == self._recording.image_topic
-
-    def _publish(self, message: RecordedMessage) -> bool:
+    def _publish(self, message: RecordedMessage, *, is_image: bool) -> bool:
         """Publish a message; False if it cannot be converted."""
         if self._clock is not None and self._options.lockstep:
             self._clock.publish()
         try:
-            if self._is_image(message) and message.stamp_ns is None:
+            if is_image and message.stamp_ns is None:
                 raise InputError("it is too short for a header")
             publisher, convert = self._publishers[message.topic]
             publisher.publish(convert(message.data))

@@ -19,7 +19,7 @@ from __future__ import annotations
 import itertools
 import time
 from collections import deque
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -223,6 +223,13 @@ class TrackerLink:
         return future.result()
 
 
+def played(
+    recording: Recording, options: ReplayOptions, topics: set[str]
+) -> Iterator[RecordedMessage]:
+    """Read the messages of `topics` in the part that is played."""
+    return recording.messages(topics, options.start_offset, options.playback_duration)
+
+
 def starting_target(recording: Recording, options: ReplayOptions) -> tuple[Box, int] | None:
     """Choose the target: the one given, else the first true box of the part that is played.
 
@@ -247,9 +254,7 @@ def starting_target(recording: Recording, options: ReplayOptions) -> tuple[Box, 
         truth = next((item for item in recording.truth() if item.stamp_ns >= earliest_ns), None)
     if truth is None:
         return None
-    images = recording.messages(
-        {recording.image_topic}, options.start_offset, options.playback_duration
-    )
+    images = played(recording, options, {recording.image_topic})
     stamps = (image.stamp_ns for image in images if image.stamp_ns is not None)
     frame = nearest_frame(stamps, truth.stamp_ns, max_diff_ns(MAX_DIFF))
     if frame is None:
@@ -283,10 +288,7 @@ def first_image(recording: Recording, options: ReplayOptions) -> RecordedMessage
     InputError
         If there is none in it.
     """
-    images = recording.messages(
-        {recording.image_topic}, options.start_offset, options.playback_duration
-    )
-    first = next(images, None)
+    first = next(played(recording, options, {recording.image_topic}), None)
     if first is None:
         length = (recording.end_ns - recording.start_ns) * 1e-9
         raise InputError(
