@@ -37,18 +37,11 @@ from vehicle_pf_tracker.image.colour import Histogram, JointColour
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_similarity
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
+from vehicle_pf_tracker.trackers.papers import shared
 from vehicle_pf_tracker.trackers.papers.clear_level import (
     RELATIVE,
     ClearLevel,
     ClearLevelParameters,
-)
-from vehicle_pf_tracker.trackers.papers.shared import (
-    LikelihoodParameters,
-    MeanVelocity,
-    as_printed_switch,
-    histogram_bits_parameter,
-    log_likelihood,
-    resampling_parameter,
 )
 from vehicle_pf_tracker.trackers.parameters import ParticleParameters, share
 
@@ -154,11 +147,11 @@ class ApfVelocityParameters:
 class ApfParameters(ParticleParameters):
     """Parameters of `apf`."""
 
-    as_printed: bool = as_printed_switch(source="interpretations 1, 5, 6, 7, 11 and 27")
-    histogram_bits: int = histogram_bits_parameter()
-    resampling: str = resampling_parameter(source="P1 Algorithm 2")
+    as_printed: bool = shared.as_printed_switch(source="interpretations 1, 5, 6, 7, 11 and 27")
+    histogram_bits: int = shared.histogram_bits_parameter()
+    resampling: str = shared.resampling_parameter(source="P1 Algorithm 2")
     motion: ApfMotionParameters = group(ApfMotionParameters)
-    likelihood: LikelihoodParameters = group(LikelihoodParameters)
+    likelihood: shared.LikelihoodParameters = group(shared.LikelihoodParameters)
     reference: ApfReferenceParameters = group(ApfReferenceParameters)
     occlusion: ApfOcclusionParameters = group(ApfOcclusionParameters)
     velocity: ApfVelocityParameters = group(ApfVelocityParameters)
@@ -174,7 +167,7 @@ class ApfParameters(ParticleParameters):
             self,
             histogram_bits=3,
             resampling="multinomial",
-            likelihood=LikelihoodParameters(sigma_v=1.5, squared_distance=False),
+            likelihood=shared.LikelihoodParameters(sigma_v=1.5, squared_distance=False),
             motion=replace(self.motion, sigma_n=0.0, sigma_r=0.0, drift_from_velocity=False),
             reference=replace(self.reference, frozen_while_occluded=False),
             occlusion=replace(self.occlusion, rule="fixed", tau=0.8, raw_histogram=False),
@@ -191,7 +184,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         super().__init__(parameters)
         self._first: Histogram = np.zeros(0)
         self.reference = Reference(np.zeros(0))
-        self._velocity = MeanVelocity(0)
+        self._velocity = shared.MeanVelocity(0)
         self._position = (0.0, 0.0)
         self._pi = self._pi_up = 1.0
         self._levels = ClearLevel(), ClearLevel()
@@ -211,7 +204,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         settings = self._settings
         self._pi = self._pi_up = 1.0  # step 2
         self._levels = ClearLevel(), ClearLevel()
-        self._velocity = MeanVelocity(settings.velocity.window, settings.drift_delay)
+        self._velocity = shared.MeanVelocity(settings.velocity.window, settings.drift_delay)
         self._position = (0.0, 0.0) if settings.velocity.from_origin else centre
         moves = sample_normal(self._rng, settings.num_particles, settings.motion.sigma_w)
         return np.asarray(centre) + moves  # step 1
@@ -232,7 +225,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         particles, left_image = self._move(frame, parents, moves)
         feature = JointColour(bits)
         rho = self.kernels.similarity(feature, frame, particles, window, self.reference)
-        weights = from_log(log_likelihood(rho, settings.likelihood))  # steps 11 and 12
+        weights = from_log(shared.log_likelihood(rho, settings.likelihood))  # steps 11 and 12
         cloud = Cloud(particles, *weights)
         position = cloud.mean()  # step 13
         at = np.asarray([position])

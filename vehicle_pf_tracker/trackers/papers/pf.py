@@ -38,13 +38,7 @@ from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
-from vehicle_pf_tracker.trackers.papers.shared import (
-    LikelihoodParameters,
-    MeanVelocity,
-    histogram_bits_parameter,
-    log_likelihood,
-    resampling_parameter,
-)
+from vehicle_pf_tracker.trackers.papers import shared
 from vehicle_pf_tracker.trackers.parameters import ParticleParameters
 
 VELOCITY_WINDOW = 8
@@ -60,10 +54,10 @@ class ColourParameters(ParticleParameters):
         8.0, "About the vehicle's speed: less loses fast vehicles, more follows similar vehicles.",
         bounds=(0.01, 1000.0), unit="px/frame", source="P1 eq. 7", tuned=True,
     )  # fmt: skip
-    histogram_bits: int = histogram_bits_parameter(tuned=True)
-    resampling: str = resampling_parameter(source="P1 Algorithm 2")
+    histogram_bits: int = shared.histogram_bits_parameter(tuned=True)
+    resampling: str = shared.resampling_parameter(source="P1 Algorithm 2")
     # 0.158 is Perez's lambda of 20.
-    likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.158)
+    likelihood: shared.LikelihoodParameters = group(shared.LikelihoodParameters, sigma_v=0.158)
 
 
 ColourParametersT = TypeVar("ColourParametersT", bound=ColourParameters)
@@ -75,7 +69,7 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
     def __init__(self, parameters: ColourParametersT) -> None:
         super().__init__(parameters)
         self._reference = Reference(np.zeros(0))
-        self._velocity = MeanVelocity(VELOCITY_WINDOW)
+        self._velocity = shared.MeanVelocity(VELOCITY_WINDOW)
         self._position = (0.0, 0.0)
 
     def _learn(self) -> None:
@@ -83,7 +77,7 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
         self._reference = Reference(histogram)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
-        self._velocity, self._position = MeanVelocity(VELOCITY_WINDOW), centre
+        self._velocity, self._position = shared.MeanVelocity(VELOCITY_WINDOW), centre
         settings = self._settings
         return np.asarray(centre) + sample_normal(self._rng, settings.num_particles, settings.sigma)
 
@@ -164,5 +158,5 @@ class PfTracker(ColourTracker[PfParameters]):
         particles, left_image = self._diffuse(frame, expected, settings.sigma * elapsed)
         self._speeds = (particles - parents) / elapsed if elapsed > 0 else speeds
         rho = self.similarity(frame, particles)
-        cloud = Cloud(particles, *from_log(log_likelihood(rho, settings.likelihood)))
+        cloud = Cloud(particles, *from_log(shared.log_likelihood(rho, settings.likelihood)))
         return self._report(frame, cloud, elapsed, left_image=left_image)
