@@ -24,16 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle_pf_tracker.cli import report
-from vehicle_pf_tracker.cli.console import (
-    UsageError,
-    counting,
-    print_rows,
-    stages,
-    tell_error,
-    tell_notice,
-    tell_notices,
-)
+from vehicle_pf_tracker.cli import console, report
 from vehicle_pf_tracker.cli.report import ReportParts
 from vehicle_pf_tracker.cli.requests import (
     IdOption,
@@ -87,7 +78,7 @@ def check(request: TrafficRequest) -> None:
     for name in _GRID_ONLY if request.traffic else ("detections",):
         if getattr(request, name):
             option = "--" + name.replace("_", "-")
-            raise UsageError(
+            raise console.UsageError(
                 f"{option} does not go {'with' if request.traffic else 'without'} --traffic"
             )
 
@@ -108,7 +99,10 @@ def run_traffic(request: TrafficRequest) -> int:
     assigned = parse_assignments(specs(TRAFFIC.parameters), request.assignments)
     parameters = Configuration.of(TRAFFIC).updated(assigned).tracker
     seeds = request.some_seeds(FEW_SEEDS)
-    with TrafficWorker(request.baselines_python) as worker, counting("compared") as progress:
+    with (
+        TrafficWorker(request.baselines_python) as worker,
+        console.counting("compared") as progress,
+    ):
         run = comparison.compare(cases, worker, parameters, seeds, on_progress=progress)
         results = list(run)
         options = {
@@ -119,7 +113,7 @@ def run_traffic(request: TrafficRequest) -> int:
         }
     tables = comparison.write_traffic_report(results, request.output, options)
     for title, table in tables.items():
-        print_rows(*table, title)
+        console.print_rows(*table, title)
     print(f"the report is {request.output / comparison.NAME}.md")
     return 0
 
@@ -150,19 +144,19 @@ def run(request: Request) -> int:
             return run_traffic(request) if request.traffic else _run_grid(request, sources)
     except KeyboardInterrupt:
         if not request.traffic:
-            tell_notice("interrupted; run the same command to resume")
+            console.tell_notice("interrupted; run the same command to resume")
         raise
 
 
 def _run_grid(request: Request, sources: Sequence[str]) -> int:
     systems, notes = chosen(request)
-    with stages("evaluate") as on_stage:
+    with console.stages("evaluate") as on_stage:
         recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)
-    tell_notices(notes)
+    console.tell_notices(notes)
     shifted = shifted_starts() if request.shifted_starts else ()
     seeds, command = request.some_seeds(SEEDS), list(request.command)
     plan = Plan(dict(recordings), systems, seeds, command, request.max_diff, shifted)
-    with counting("evaluated", "runs") as on_progress:
+    with console.counting("evaluated", "runs") as on_progress:
         complete(plan, request.output, on_this_machine(request.workers), on_progress)
     return _judge(report.write(request.output, request), request.max_rmse)
 
@@ -173,21 +167,21 @@ def _judge(written: Report, limit: float | None) -> int:
 
     evaluation, aggregates = written.evaluation, written.aggregates
     for system, reason in dict.fromkeys((cell.system, cell.reason) for cell in evaluation.failed):
-        tell_notices([f"{system} did not run everywhere: {reason}"])
+        console.tell_notices([f"{system} did not run everywhere: {reason}"])
     if not evaluation.runs:
-        tell_error("no system could run; the report says why")
+        console.tell_error("no system could run; the report says why")
         return 1
-    print_rows(*overall_table(aggregates, _SHOWN).texts())
+    console.print_rows(*overall_table(aggregates, _SHOWN).texts())
     if starts := starts_table(aggregates):
-        print_rows(*starts.texts(), "shifted starts")
+        console.print_rows(*starts.texts(), "shifted starts")
     status = 0
     if failed := dict.fromkeys(cell.system for cell in evaluation.failed):
-        tell_error(f"not every run succeeded: {', '.join(failed)}; the report says why")
+        console.tell_error(f"not every run succeeded: {', '.join(failed)}; the report says why")
         status = 1
     means = {label: found["rmse_px"] for label, found in aggregates.overall.items()}
     beyond = [f"{label} {found.mean:.1f} px" for label, found in means.items()
               if limit is not None and found is not None and found.mean > limit]  # fmt: skip
     if beyond:
-        tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {', '.join(beyond)}")
+        console.tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {', '.join(beyond)}")
         status = 1
     return status

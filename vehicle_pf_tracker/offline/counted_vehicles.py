@@ -113,9 +113,7 @@ class CountedVehicles:
 
 
 def session_and_counter(
-    configuration: Configuration,
-    run: Run = call,
-    progress: Progress = silent,
+    configuration: Configuration, run: Run = call, progress: Progress = silent
 ) -> tuple[TrafficSession, Counter]:
     """Make what parameters of `TRAFFIC` ask for.
 

@@ -175,9 +175,8 @@ def specs(cls: type[object]) -> Mapping[str, ParameterSpec]:
     return _specs(key)
 
 
-@functools.cache
-def _hints(cls: Any) -> Mapping[str, Any]:
-    return get_type_hints(cls)  # would evaluate every annotation anew for each change
+_hints = functools.cache(get_type_hints)
+"""The types of a class's fields, which else would be evaluated anew for each change."""
 
 
 @functools.cache

@@ -83,9 +83,7 @@ def profile_variable() -> str:
 
 @contextmanager
 def image_transport(
-    image_bytes: int,
-    middleware: str,
-    environment: MutableMapping[str, str] = os.environ,
+    image_bytes: int, middleware: str, environment: MutableMapping[str, str] = os.environ
 ) -> Iterator[list[str]]:
     """Give the participants that are made meanwhile a segment that fits the images.
 

@@ -164,10 +164,7 @@ class Diagnostics:
     """
 
     def __init__(
-        self,
-        node: Node,
-        facts: Callable[[], Mapping[str, object]],
-        judge: Callable[[], str],
+        self, node: Node, facts: Callable[[], Mapping[str, object]], judge: Callable[[], str]
     ) -> None:
         self._node, self._facts, self._judge_stream = node, facts, judge
         self.health = Health()

@@ -104,20 +104,14 @@ class Outputs:
             self._publishers[name].publish(make(*arguments))
 
     def publish_vehicle(
-        self,
-        header: Header,
-        estimate: Estimate | TrackEstimate,
-        own: NodeParameters,
-        frame_period: float,
+        self, header: Header, estimate: Estimate | TrackEstimate, own: NodeParameters, period: float
     ) -> None:
-        """Publish where a vehicle is; `frame_period` in s makes px/frame to px/s."""
+        """Publish where a vehicle is; the frame `period` in s makes px/frame to px/s."""
         self.send("position", messages.point_message, header, estimate.position)
         if own.publish.box:
             self.send("box", messages.box_message, header, estimate.box)
         if own.publish.velocity:
-            self.send(
-                "velocity", messages.velocity_message, header, estimate.velocity, frame_period
-            )
+            self.send("velocity", messages.velocity_message, header, estimate.velocity, period)
 
     def publish_mode(
         self, header: Header, mode: str, values: Mapping[str, object], level: bytes | None = None
@@ -171,15 +165,15 @@ class TrackerOutputs(Outputs):
         estimate: Estimate,
         own: NodeParameters,
         localisation: Localisation,
-        frame_period: float,
+        period: float,
     ) -> None:
-        """Publish where the vehicle is; `frame_period` in s makes px/frame to px/s."""
+        """Publish where the vehicle is; the frame `period` in s makes px/frame to px/s."""
         if estimate.regime == START:
             self._track += 1
             self._annotator.follow(None)  # a new path
         self._annotator.follow(estimate)
         header = in_pixels(header, own)
-        self.publish_vehicle(header, estimate, own, frame_period)
+        self.publish_vehicle(header, estimate, own, period)
         if own.publish.particles:
             self.send("particles", messages.particles_message, header, estimate)
         self.send("detection", messages.detection_message, header, estimate, str(self._track))

@@ -144,11 +144,7 @@ def _marker(header: Header, estimate: TrackEstimate, namespace: str, kind: int) 
 
 
 def counts_message(
-    header: Header,
-    node: str,
-    hardware_id: str,
-    counter: Counter,
-    latest: Mapping[str, Crossing],
+    header: Header, node: str, hardware_id: str, counter: Counter, latest: Mapping[str, Crossing]
 ) -> DiagnosticArray:
     """Make the status of each line and zone.
 
