@@ -245,10 +245,8 @@ class Baseline(Worker):
         InputError
             If the baseline refuses the box, or has died.
         """
-        left, top = round(box.x), round(box.y)
-        return self._track(
-            frame, box=[left, top, max(round(box.width), 1), max(round(box.height), 1)]
-        )
+        width, height = max(round(box.width), 1), max(round(box.height), 1)
+        return self._track(frame, box=[round(box.x), round(box.y), width, height])
 
     def step(self, frame: Frame) -> BaselineAnswer:
         """Follow the target into the next frame, which is (H, W, 3) RGB.
@@ -264,8 +262,8 @@ class Baseline(Worker):
 
     def _track(self, frame: Frame, **request: object) -> BaselineAnswer:
         width, height = frame_size(frame)
-        size = {"height": height, "width": width}
-        answer = self._ask({**size, **request}, np.ascontiguousarray(frame))
+        pixels = np.ascontiguousarray(frame)
+        answer = self._ask({"height": height, "width": width, **request}, pixels)
         found = answer["box"] is not None
         self._box = Box(*answer["box"]) if found else self._box
         assert self._box is not None  # a start answers with a box

@@ -37,6 +37,7 @@ from vehicle_pf_tracker.evaluation.scores import (
     OcclusionScore,
     Scores,
     count_failures,
+    errors_of,
     score_occlusions,
 )
 from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING
@@ -205,7 +206,7 @@ def measure(scores: Scores) -> Metrics:
     visible = [frame for frame in counted if not frame.hidden]
     hidden = [frame for frame in counted if frame.hidden]
     occluded = [frame for frame in counted if frame.row.mode == Mode.OCCLUDED]
-    errors = _errors(counted)
+    errors = errors_of(counted)
     precision, success, normalised = map(found.get, ("precision", "success", "normalised"))
     times = [frame.row.step_ms for frame in scores.frames if frame.row.step_ms is not None]
     modes = Counter(frame.row.mode for frame in scores.frames)
@@ -217,7 +218,7 @@ def measure(scores: Scores) -> Metrics:
         truths_unmatched=scores.truths_unmatched,
         frames_standing=sum(frame.stands_still for frame in counted),
         rmse_px=_rms(errors),
-        rmse_visible_px=_rms(_errors(visible)),
+        rmse_visible_px=_rms(errors_of(visible)),
         median_px=_quantile(errors, 0.5),
         p95_px=_quantile(errors, 0.95),
         max_px=_quantile(errors, 1.0),
@@ -251,10 +252,6 @@ def is_on_target(frame: FrameScore) -> bool:
 
 def _is_occluded(frame: FrameScore) -> bool:
     return frame.truth is not None and frame.truth.occlusion is not Occlusion.NONE
-
-
-def _errors(frames: Sequence[FrameScore]) -> list[float]:
-    return [frame.error for frame in frames if frame.error is not None]
 
 
 def _rms(values: Sequence[float]) -> float | None:

@@ -252,10 +252,9 @@ def _hidden_stretches(counted: Sequence[FrameScore]) -> Iterator[tuple[int, int]
 def _judge(hidden: Sequence[FrameScore], seen: Sequence[FrameScore]) -> OcclusionScore:
     last = hidden[-1].row.frame
     judged = [f for f in seen if f.row.frame >= last + SETTLING_FRAMES and f.error is not None]
-    after, limit = _mean_error(judged), None
+    after = _mean_error(judged)
+    limit = statistics.fmean(map(threshold, judged)) if judged else None
     recovered: bool | None = None
-    if judged:
-        limit = statistics.fmean(map(threshold, judged))
     if after is not None and limit is not None and len(judged) >= FEWEST_JUDGED:
         recovered = after < limit
     return OcclusionScore(
@@ -280,8 +279,13 @@ def _frames_to_recover(last_hidden: int, seen: Sequence[FrameScore]) -> int | No
     return None
 
 
+def errors_of(frames: Sequence[FrameScore]) -> list[float]:
+    """Return the errors in px of the frames that have one."""
+    return [frame.error for frame in frames if frame.error is not None]
+
+
 def _mean_error(frames: Sequence[FrameScore]) -> float | None:
-    errors = [frame.error for frame in frames if frame.error is not None]
+    errors = errors_of(frames)
     return statistics.fmean(errors) if errors else None
 
 

@@ -230,7 +230,7 @@ class Localisation:
         self._follower: RoadFollower | None = None
         self.road: RoadEstimate | None = None
         self.objection = ""
-        self._make_follower()
+        self._take_plane()
 
     @property
     def has_road(self) -> bool:
@@ -244,7 +244,8 @@ class Localisation:
             self._lens = parameters.lens
         if not (before.from_tf and parameters.from_tf):
             self._pose = parameters.pose
-        self._make_follower()
+        self._follower, self.road, self.objection = None, None, ""
+        self._take_plane()
 
     def set_lens(self, lens: Lens) -> None:
         """Take the lens from outside, where the parameters ask for that."""
@@ -271,10 +272,6 @@ class Localisation:
         """Covariance (2, 2) of the last estimate's position, px²."""
         assert self._estimate is not None
         return self._uncertainty.covariance(self._estimate, self._period)
-
-    def _make_follower(self) -> None:
-        self._follower, self.road, self.objection = None, None, ""
-        self._take_plane()
 
     def _take_plane(self) -> None:
         """Make the plane as soon as all that it needs is there."""

@@ -229,13 +229,14 @@ class Session(StreamSession[BaseTracker[Any]]):
             self._backup = copy.deepcopy(self.tracker, kept) if turn.leaps else None
             if turn.begins_anew:
                 self._seen = None
-                self._await_again(None)
+                self._start_anew()
             self.tracker.frame_period = turn.period
             estimate = self._attempt(partial(self._step, turn))
         return estimate
 
     def _start_anew(self) -> None:
-        self._await_again(self._seen)
+        # Where it was seen last, or on the configured target; a box that was just set is newer.
+        self._pending = self._pending or self._seen or self.settings.target.box
 
     def _take_back(self) -> None:
         """Go back to before the last image, whose stamp was ahead, unless it started the target."""
@@ -271,7 +272,3 @@ class Session(StreamSession[BaseTracker[Any]]):
             self.events.append(f"target refused: {error}")
             return False
         return True
-
-    def _await_again(self, box: Box | None) -> None:
-        """Start again on `box`, or on the configured one; a box that was just set is newer."""
-        self._pending = self._pending or box or self.settings.target.box

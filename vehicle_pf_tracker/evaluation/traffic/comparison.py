@@ -38,7 +38,7 @@ from vehicle_pf_tracker.evaluation.traffic.scoring import (
     kept_identities,
 )
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
-from vehicle_pf_tracker.offline.output_files import csv_text, make_folder, write_json, write_text
+from vehicle_pf_tracker.offline.output_files import make_folder, write_csv, write_json, write_text
 from vehicle_pf_tracker.offline.run_folder import versions
 from vehicle_pf_tracker.offline.traffic_results import IN_TRACKS, Backdating, Frames
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
@@ -292,12 +292,8 @@ def write_traffic_report(
         for line in lines
     ]  # fmt: skip
     header = ["scene", "detections", "system", "runs", *COLUMNS, "occlusions", "true"]
-    texts = {
-        "md": "\n".join(["# Many vehicles\n", RULES, *parts]),
-        "csv": csv_text(header, rows),
-    }
-    for suffix, text in texts.items():
-        write_text(folder / f"{NAME}.{suffix}", text)
+    write_text(folder / f"{NAME}.md", "\n".join(["# Many vehicles\n", RULES, *parts]))
+    write_csv(folder / f"{NAME}.csv", header, rows)
     document = {
         "options": dict(options),
         "versions": versions(),
