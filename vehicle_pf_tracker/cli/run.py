@@ -49,11 +49,9 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
     """Request of `run`."""
 
     variant: str = option(
-        default="fusion",
-        choices=Names(VARIANTS),
-        metavar="NAME",
+        default="fusion", choices=Names(VARIANTS), metavar="NAME",
         help=f"one of: {', '.join(VARIANTS)}, or a plug-in (default: fusion)",
-    )
+    )  # fmt: skip
     output: Path | None = option(
         "-o", metavar="DIR",
         help="folder for estimates.csv, run.json, summary.png, and metrics.json where there is "

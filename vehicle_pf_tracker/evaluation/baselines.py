@@ -114,12 +114,8 @@ class Worker:
         self._subject, self._python = subject, str(baseline_python(python))
         self._log = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process
         try:
-            self._process = subprocess.Popen(
-                [self._python, "-I", str(WORKER), *words],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=self._log,
-            )
+            command, pipe = [self._python, "-I", str(WORKER), *words], subprocess.PIPE
+            self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=self._log)
         except OSError as error:
             self._log.close()
             raise InputError(f"cannot run {self._python}: {error.strerror}") from error

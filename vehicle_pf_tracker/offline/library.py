@@ -184,12 +184,9 @@ def track(
         if len(target) != len(fields(Box)):
             raise InputError(f"the target {target} is not left, top, width and height in px")
         target = Box(*target)
-    tracker = OfflineTracker(
-        found,
-        from_mapping(found.parameters, parameters),
-        first_truth=None if target else truth,
-        targets={1: target} if target else {},
-    )
+    given, targets = from_mapping(found.parameters, parameters), {1: target} if target else {}
+    first_truth = None if target else truth
+    tracker = OfflineTracker(found, given, first_truth=first_truth, targets=targets)
     rows, estimates = [], []
     for row in tracker.rows((one.stamp_ns, one.frame) for one in opened.frames()):
         rows.append(row)

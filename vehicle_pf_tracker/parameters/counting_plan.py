@@ -195,12 +195,8 @@ def _line(name: str, body: Any) -> CountingLine:
     for key in ("from", "to"):
         if key not in keys:
             raise InputError(f"{what} lacks the point {key!r}, as {key}: [12, 340]")
-    line = CountingLine(
-        name,
-        _point(keys["from"], what),
-        _point(keys["to"], what),
-        _directions(keys.get("directions", list(_DEFAULT_DIRECTIONS)), what),
-    )
+    directions = _directions(keys.get("directions", list(_DEFAULT_DIRECTIONS)), what)
+    line = CountingLine(name, _point(keys["from"], what), _point(keys["to"], what), directions)
     if line.length < 1:
         raise InputError(f"{what} is shorter than a pixel; give two points that differ")
     return line

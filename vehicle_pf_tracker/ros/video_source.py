@@ -27,7 +27,6 @@ from typing import Any
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
@@ -165,12 +164,8 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         if not self._source_name:
             raise InputError("give a source: `video_source SOURCE`, or -p source:=SOURCE")
         self._settings = settings
-        self._image = self.create_publisher(
-            Image,
-            "image",
-            QoSProfile(depth=_DEPTH),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-        )
+        options = QoSOverridingOptions.with_default_policies()
+        self._image = self.create_publisher(Image, "image", _DEPTH, qos_overriding_options=options)
         self._is_live = False
         self._stop = threading.Event()
         self._pace = Pace(self._now, self._stop)

@@ -191,11 +191,8 @@ def follow(
     sequence, source = case
     recorder = _Recorder()
     given = None if source == MOTION else sequence.detections[source]
-    session = TrafficSession(
-        make(parameters),
-        (lambda: recorder) if given is None else None,
-        frame_rate=sequence.frame_rate,
-    )
+    detector = (lambda: recorder) if given is None else None
+    session = TrafficSession(make(parameters), detector, frame_rate=sequence.frame_rate)
     tracks: list[list[float]] = []
     backdating = Backdating()
     seconds = 0.0

@@ -213,12 +213,8 @@ def lens_of_info(message: CameraInfo, *, rectified: bool) -> ImageLens:
     across, down = max(message.binning_x, 1), max(message.binning_y, 1)
     left, top = message.roi.x_offset, message.roi.y_offset
     model, coefficients = _distortion(message, rectified=rectified)
-    lens = Lens(
-        (fx / across, fy / down),
-        (_binned(cx, left, across), _binned(cy, top, down)),
-        model,
-        coefficients,
-    )
+    centre = _binned(cx, left, across), _binned(cy, top, down)
+    lens = Lens((fx / across, fy / down), centre, model, coefficients)
     width, height = message.roi.width or message.width, message.roi.height or message.height
     return ImageLens(lens, (width // across, height // down))
 

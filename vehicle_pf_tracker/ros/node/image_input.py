@@ -101,13 +101,8 @@ class ImageInput:
         self._transport = transport
         self._kind = Image if transport == "raw" else CompressedImage
         self.topic = image_topic(node, transport)
-        self._subscription = subscribe(
-            node,
-            self._kind,
-            self.topic,
-            callback,
-            QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT),
-        )
+        qos = QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._subscription = subscribe(node, self._kind, self.topic, callback, qos)
 
     @property
     def publisher_count(self) -> int:

@@ -112,13 +112,9 @@ def _ros_node(
 
 
 def _initialise(context: Context, options: ReplayOptions) -> None:
-    arguments = ["--ros-args", *options.ros_args] if options.ros_args else []
+    words = [NODE_NAME, "--ros-args", *options.ros_args]
     try:
-        rclpy.init(
-            args=[NODE_NAME, *arguments],
-            context=context,
-            signal_handler_options=SignalHandlerOptions.NO,
-        )
+        rclpy.init(args=words, context=context, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
         reason = str(error).splitlines()[0]
         raise InputError(f"the words after --ros-args are not understood: {reason}") from error

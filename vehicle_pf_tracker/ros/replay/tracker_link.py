@@ -26,7 +26,6 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import QoSProfile
 from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.box import Box
@@ -107,7 +106,8 @@ class Answers:
         return tuple(self._rows.values())
 
 
-_DEEP = QoSProfile(depth=1000)
+_DEPTH = 1000
+"""Answers that may wait."""
 _AGAIN = 0.2
 """Seconds until a node that is not ready is asked again."""
 
@@ -138,7 +138,7 @@ class TrackerLink:
         self._spinner = spinner
         self._timeout = max(timeout, DISCOVERY)
         self._mode = node.create_subscription(
-            DiagnosticArray, f"{name}/mode", self.answers.receive, _DEEP
+            DiagnosticArray, f"{name}/mode", self.answers.receive, _DEPTH
         )
         self._get = node.create_client(GetParameters, f"{name}/get_parameters")
         self._set = node.create_client(SetParametersAtomically, f"{name}/set_parameters_atomically")
