@@ -30,7 +30,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 
 Bytes: TypeAlias = npt.NDArray[np.uint8]
 Buffer: TypeAlias = "bytes | bytearray | memoryview | array.array[int] | Bytes"
@@ -108,6 +108,13 @@ def frame_of_message(message: Any) -> Frame:
         message.encoding, message.height, message.width, message.step, message.is_bigendian,
         message.data,
     )  # fmt: skip
+
+
+def fields_of_frame(frame: Frame) -> dict[str, Any]:
+    """Return what a `sensor_msgs/Image` says of its data, a contiguous RGB frame."""
+    width, height = frame_size(frame)
+    size = {"height": height, "width": width, "step": 3 * width}
+    return {**size, "encoding": "rgb8", "is_bigendian": 0}
 
 
 def flat_bytes(data: Buffer) -> Bytes:

@@ -39,6 +39,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.image.encodings import fields_of_frame
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 
 IMAGE_TOPIC = "/camera/image_raw"
@@ -164,16 +165,8 @@ def stamp_ns(message: Any) -> int:
 
 def image(stamp_ns: int, frame: Frame) -> Any:
     """Make an `rgb8` image; the data are `frame` itself where it is contiguous."""
-    height, width = check_frame(frame).shape[:2]
-    return message_class(IMAGE)(
-        header=header(stamp_ns),
-        height=height,
-        width=width,
-        encoding="rgb8",
-        is_bigendian=0,
-        step=3 * width,
-        data=np.ascontiguousarray(frame).reshape(-1),
-    )
+    data = np.ascontiguousarray(check_frame(frame)).reshape(-1)
+    return message_class(IMAGE)(header=header(stamp_ns), **fields_of_frame(frame), data=data)
 
 
 def compressed_image(stamp_ns: int, image_format: str, data: bytes) -> Any:

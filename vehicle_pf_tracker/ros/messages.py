@@ -41,7 +41,8 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.encodings import fields_of_frame
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 if TYPE_CHECKING:  # a node imports the code of its own variant only
@@ -198,16 +199,7 @@ def pose_message(header: Header, position: Array, covariance: Array) -> PoseWith
 
 def image_message(header: Header, frame: Frame) -> Image:
     """Make an rgb8 image of a contiguous frame."""
-    width, height = frame_size(frame)
-    return Image(
-        header=header,
-        height=height,
-        width=width,
-        encoding="rgb8",
-        is_bigendian=0,
-        step=3 * width,
-        data=packed(frame),
-    )
+    return Image(header=header, **fields_of_frame(frame), data=packed(frame))
 
 
 def packed(values: npt.NDArray[Any]) -> array.array[int]:
