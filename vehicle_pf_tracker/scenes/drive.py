@@ -135,8 +135,12 @@ class Drive:
     @property
     def frame_count(self) -> int:
         """Number of frames until the target gets near the edge of the image it leaves by."""
-        last = self.width - MARGIN - FREE - self.target.size[0] / 2 - 2  # place of its middle
-        return int(self.frame_at(last)) + 1
+        return int(self.frame_at(self._end)) + 1
+
+    @property
+    def _end(self) -> float:
+        """Place of the target's middle in the last frame; another where the drive has a turn."""
+        return self.width - MARGIN - FREE - self.target.size[0] / 2 - 2
 
     @property
     def row(self) -> float:
