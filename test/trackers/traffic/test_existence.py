@@ -22,10 +22,10 @@ from traffic_samples import DRIVE, track
 
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections, birth_odds
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
-from vehicle_pf_tracker.trackers.traffic.detections import DetectionEvidence, Detections
+from vehicle_pf_tracker.trackers.traffic.detections import CERTAIN, DetectionEvidence, Detections
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import predict
+from vehicle_pf_tracker.trackers.traffic.track import FEW, predict
 
 SIZE = (320, 240)
 SCORE = 0.8
@@ -89,7 +89,7 @@ def test_a_detector_that_finds_one_vehicle_in_three_is_known_to():
     one = track(1, 100.0, confirmed=True, has_driven=True)
     for frame in range(300):
         one.undetected, one.log_odds = float(frame % 3 > 0), 5.0
-        existence.fade([one, track(2, 200.0, confirmed=True)], 1.0)
+        existence.fade([one, track(2, 200.0, confirmed=True)], 1.0, SIZE)
     assert existence.detection_rate == pytest.approx(1 / 3, abs=0.05)
 
 
@@ -105,7 +105,7 @@ def missed(undetected, *, seen=()):
         )
         for identity, periods in enumerate(undetected, start=1)
     ]
-    Existence(TrafficParameters(), DetectionEvidence()).fade(tracks, 1.0)
+    Existence(TrafficParameters(), DetectionEvidence()).fade(tracks, 1.0, SIZE)
     return [5.0 - one.log_odds for one in tracks]
 
 
@@ -122,6 +122,60 @@ def test_a_detector_that_misses_all_vehicles_at_once_has_failed():
 
 def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
     assert min(missed([200.0, 200.0])) > 0
+
+
+def vanish(existence, left):
+    """Return a vehicle that the detector missed several times in plain sight."""
+    one = track(1, left, confirmed=True, has_driven=True, log_odds=CERTAIN, undetected=1.0)
+    for _ in range(FEW):
+        existence.fade([one], 1.0, SIZE)
+        existence.survivors([one], SIZE, 1 / 30)
+    return one
+
+
+def end(existence, left):
+    """Let a vehicle vanish and never come back."""
+    one = vanish(existence, left)
+    one.unseen = 1e3
+    assert existence.survivors([one], SIZE, 1 / 30) == []
+
+
+def come_back(existence, left):
+    """Let a vehicle vanish and be found again."""
+    existence.found_again(vanish(existence, left))
+
+
+def test_what_vanished_where_vehicles_come_back_is_occluded_and_elsewhere_lost():
+    existence = Existence(TrafficParameters(), DetectionEvidence())
+    assert not vanish(existence, 100.0).lost  # nothing is known
+    for _ in range(3):
+        come_back(existence, 20.0)
+        end(existence, 200.0)
+    assert not vanish(existence, 20.0).lost
+    assert vanish(existence, 200.0).lost
+    come_back(existence, 20.0)
+    assert not vanish(existence, 120.0).lost  # most came back, wherever that was
+
+
+def test_the_share_of_a_place_is_a_beta_binomial_estimate():
+    existence = Existence(TrafficParameters(), DetectionEvidence())
+    end(existence, 20.0)
+    end(existence, 20.0)
+    come_back(existence, 200.0)
+    usual = (1 + 1) / (3 + 2)
+    shares = [
+        existence.reappearances.share(vanish(existence, left).vanished) for left in (20.0, 200.0)
+    ]
+    assert shares == pytest.approx([2 * usual / 4, (1 + 2 * usual) / 3])
+
+
+def test_one_that_was_given_by_hand_stays_where_others_do_not_come_back():
+    existence = Existence(TrafficParameters(), DetectionEvidence())
+    end(existence, 100.0)
+    one = vanish(existence, 100.0)
+    one.given = True
+    existence.survivors([one], SIZE, 1 / 30)
+    assert not one.lost
 
 
 def evidence_of(fit, *, drives=True):

@@ -32,7 +32,7 @@ BOX = np.array([100.0, 100, 140, 130])
 def track():
     """A vehicle whose box has been measured often."""
     one = Track(1, VehicleState(BOX, np.full(4, 0.3), -1e4, DRIVE), matches=20)
-    one.sides = BOX[2:] - BOX[:2]
+    one.shown = np.ones(2)
     return one
 
 
@@ -79,6 +79,14 @@ def test_an_edge_cut_by_the_border_is_not_measured():
     one = Track(1, VehicleState(below, np.full(4, 0.3), -1e4, DRIVE), matches=20)
     measured(one, np.array([100.0, 215, 140, 240]))
     assert one.state.edges[Edge.BOTTOM] == pytest.approx(250, abs=0.2)
+
+
+def test_what_was_shown_of_a_vehicle_grows_with_it(track):
+    settings = DetectionParameters(edge_noise=0.1)  # no edge jumps by a fifth of the height
+    twice = np.array([80.0, 80, 160, 140])
+    track.state.resize(twice)
+    part = np.array([twice - (0, 0, 0, 12)])
+    assert not measure([track], part, settings, SIZE, part)[0]
 
 
 def test_no_edge_stays_covered_for_ever(track):

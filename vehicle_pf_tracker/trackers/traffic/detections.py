@@ -37,6 +37,8 @@ from vehicle_pf_tracker.parameters.counting_plan import Region
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import SETTLED_AFTER
 
 IntArray: TypeAlias = npt.NDArray[np.intp]
+Place: TypeAlias = tuple[int, int]
+"""Row and column of a grid over the image."""
 
 MOST_DETECTIONS = 300
 """Detections of a frame that are looked at, the highest scores first. No camera shows as many
@@ -166,7 +168,7 @@ _NEIGHBOURS = 40
 """Detections of about the same score, by rank, that a probability is taken from."""
 _PRIOR = 2.0
 """Weight of the prior on each side, in detections."""
-_GRID = 16
+GRID = 16
 """Places along each side of the image."""
 _FALSE_ALARMS = 1.0
 """False alarms per image that are expected before any is seen; this, and the mean of all places for
@@ -180,7 +182,14 @@ class Sample(NamedTuple):
     """Score and place of a detection whose outcome is to be learnt."""
 
     score: float
-    place: tuple[int, int]
+    place: Place
+
+
+def places_of(edges: Array, size: tuple[int, int]) -> list[Place]:
+    """Rows and columns, in a grid over the image, of boxes (N, 4) in px."""
+    centres = (edges[:, :2] + edges[:, 2:]) / 2
+    cells = np.clip(centres / size * GRID, 0, GRID - 1).astype(int)
+    return [(row, column) for column, row in cells.tolist()]
 
 
 class DetectionEvidence:
@@ -192,8 +201,8 @@ class DetectionEvidence:
         self._sorted = np.empty(0)
         self._sums = np.zeros(1)
         self._images = 0.0
-        self._false = np.zeros((_GRID, _GRID))
-        self._places = np.full((2, _GRID, _GRID), _PRIOR)
+        self._false = np.zeros((GRID, GRID))
+        self._places = np.full((2, GRID, GRID), _PRIOR)
 
     def look(self) -> None:
         """Note that the detector has looked at another image."""
@@ -211,12 +220,8 @@ class DetectionEvidence:
 
     def samples(self, edges: Array, scores: Array, size: tuple[int, int]) -> list[Sample]:
         """Describe detections by their edges (N, 4) in px and their scores."""
-        centres = (edges[:, :2] + edges[:, 2:]) / 2
-        places = np.clip(centres / size * _GRID, 0, _GRID - 1).astype(int).tolist()
-        return [
-            Sample(score, (row, column))
-            for score, (column, row) in zip(scores.tolist(), places, strict=True)
-        ]
+        places = places_of(edges, size)
+        return [Sample(*one) for one in zip(scores.tolist(), places, strict=True)]
 
     @property
     def cluttered(self) -> int:
@@ -264,7 +269,7 @@ class DetectionEvidence:
         _, rows, columns = _columns(samples)
         images = self._images + SETTLED_AFTER
         usual = (self._false.sum() + _FALSE_ALARMS * SETTLED_AFTER) / images
-        seen = self._false[rows, columns] * _GRID**2 + SETTLED_AFTER * usual
+        seen = self._false[rows, columns] * GRID**2 + SETTLED_AFTER * usual
         return np.asarray(np.log(seen / images))
 
     def _by_score(self, scores: Array) -> Array:

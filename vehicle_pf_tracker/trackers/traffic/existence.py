@@ -19,13 +19,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections
 from vehicle_pf_tracker.trackers.traffic.detections import (
     CERTAIN,
+    GRID,
     HALF,
     LITTLE,
     DetectionEvidence,
+    Place,
     inside_image,
+    places_of,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.track import (
@@ -59,11 +64,39 @@ vehicles' detections have lower ones: a spot that looks like a vehicle does so e
 such scores are worth one."""
 _PRIOR = 10.0
 """Vehicles in plain sight that were detected, and that were missed, before any was seen."""
+_ALIKE = 2.0
+"""Vehicles that vanished in a place and have the same outcome, for it to be another place than
+all: with one before it, the share anywhere moves by a sixth."""
 _BLIND_FROM = 2
 """Least vehicles in sight, all missed in one image, for the detector to have failed:
 they did not all vanish at once."""
 _BLIND_FOR = 150.0
 """Nominal periods after which a vehicle that no detector sees is doubted even so: 5 s at 30 Hz."""
+
+
+class Reappearances:
+    """How many of the vehicles that vanished in plain sight were found again, by place.
+
+    Below a bridge nearly all are, elsewhere hardly any: what vanished was no vehicle, or its
+    detections went to another. The share in one place is a beta-binomial estimate, with the share
+    everywhere, worth `_ALIKE` vehicles, as its prior; that of all places begins at a half.
+    """
+
+    def __init__(self) -> None:
+        self._counts = np.zeros((2, GRID, GRID))
+
+    def learn(self, place: Place, *, found: bool) -> None:
+        """Add the outcome of one vehicle."""
+        row, column = place
+        self._counts[int(found), row, column] += 1
+
+    def share(self, place: Place) -> float:
+        """Share of them that are found again."""
+        ended, found = self._counts.sum(axis=(1, 2)).tolist()
+        usual = (found + 1) / (ended + found + 2)
+        row, column = place
+        ended, found = self._counts[:, row, column].tolist()
+        return float((found + _ALIKE * usual) / (ended + found + _ALIKE))
 
 
 class Existence:
@@ -75,12 +108,18 @@ class Existence:
         Parameters.
     evidence : DetectionEvidence
         Learns what becomes of detections.
+
+    Attributes
+    ----------
+    reappearances : Reappearances
+        What became of vehicles that vanished in plain sight.
     """
 
     def __init__(self, parameters: TrafficParameters, evidence: DetectionEvidence) -> None:
         self.parameters = parameters
         self._evidence = evidence
         self._detected, self._asked = _PRIOR, 2 * _PRIOR
+        self.reappearances = Reappearances()
 
     @property
     def detection_rate(self) -> float:
@@ -110,9 +149,15 @@ class Existence:
         stands = track.has_driven and track.state.speed_ratio < FAR
         return self._add(track, found, index, 0.0 if track.confirmed and stands else fit)
 
+    def found_again(self, track: Track) -> None:
+        """Learn that a vehicle is back, if it had vanished."""
+        if track.vanished is not None:
+            self.reappearances.learn(track.vanished, found=True)
+
     def _add(self, track: Track, found: FrameDetections, index: int, fit: float) -> bool:
         sample, log_odds = found.samples[index], float(found.log_odds[index])
         gain = log_odds if track.confirmed else float(found.gains[index])
+        self.found_again(track)
         track.add_evidence(found.edges[index], min(max(gain, -_SCORE_DOUBT), _MOST), fit)
         doubted = min(max(log_odds - _SCORE_DOUBT, -_SCORE_DOUBT), _MOST)
         if track.way < _STILL and found.ranks[index] < HALF:
@@ -145,7 +190,7 @@ class Existence:
         needed = self.parameters.birth.displacement * (1 + HALF * doubt)
         return track.way > needed and evidence > CERTAIN
 
-    def fade(self, tracks: Sequence[Track], elapsed: float) -> None:
+    def fade(self, tracks: Sequence[Track], elapsed: float, size: tuple[int, int]) -> None:
         """Take off evidence from tracks that a detector has not seen.
 
         Parameters
@@ -154,18 +199,21 @@ class Existence:
             All, after detections were given to them.
         elapsed : float
             Nominal periods since the last frame.
+        size : (int, int)
+            Width and height of the image.
         """
         is_blind = not any(one.confirmed and one.undetected == 0 for one in tracks)
         if is_blind and _in_sight(tracks) >= _BLIND_FROM:
             return
-        for track in tracks:
+        places = places_of(edges_of(tracks), size)
+        for track, place in zip(tracks, places, strict=True):
             if track.has_driven and track.in_sight and track.unseen < SEEN_WITHIN:
                 self._detected += track.undetected == 0
                 self._asked += 1
             if track.undetected == 0 or (track.given and track.unseen < SEEN_WITHIN):
                 continue
             if track.in_sight:
-                track.miss(elapsed * self._missed(track))
+                track.miss(elapsed * self._missed(track), place)
 
     def _missed(self, track: Track) -> float:
         return _MISSED if track.confirmed else -math.log(1 - self.detection_rate)
@@ -188,17 +236,27 @@ class Existence:
         shares = inside_image(edges_of(tracks), size).tolist()
         for track, inside in zip(tracks, shares, strict=True):
             unseen = track.unseen * period
-            track.lose(unseen > self.parameters.lost_after or track.log_odds < 0)
+            track.lose(unseen > self.parameters.lost_after or self._is_doubtful(track))
             if self._goes_on(track, unseen, inside):
                 kept.append(track)
                 continue
             if track.confirmed:
+                if track.vanished is not None and inside > LITTLE:
+                    self.reappearances.learn(track.vanished, found=False)
                 continue
             # What drove may have been a vehicle, and tells nothing about its detections.
             if track.matches < FEW or not self._drives(track):
                 for sample in track.samples:
                     self._evidence.learn(sample, False)
         return kept
+
+    def _is_doubtful(self, track: Track) -> bool:
+        """Test whether a vehicle is rather not there, by what is known of it or of its place."""
+        if track.log_odds < 0:
+            return True
+        if track.given or track.vanished is None:
+            return False
+        return self.reappearances.share(track.vanished) < HALF
 
     def _goes_on(self, track: Track, unseen: float, inside: float) -> bool:
         if not track.confirmed:

@@ -124,8 +124,9 @@ def measure(
     opposite = normal[:, _OPPOSITE]
     unknown = cut_edges(edges, size) & cut_edges(predicted, size)
     sides = edges[:, 2:] - edges[:, :2]
-    latest = np.maximum(sides, np.array([track.sides for track in tracks]))
-    shrunk = sides < _WHOLE * np.minimum(predicted[:, 2:] - predicted[:, :2], latest)
+    own = predicted[:, 2:] - predicted[:, :2]
+    latest = np.maximum(sides, own * np.array([track.shown for track in tracks]))
+    shrunk = sides < _WHOLE * np.minimum(own, latest)
     jumped = (normal > FAR) & (opposite > 0)  # a vehicle that brakes pushes it out
     crept = np.tile(shrunk, 2) & (normal > np.maximum(opposite, 0.0))
     recede = _recede(tracks, edges, settings.edge_noise) & ~unknown.any(axis=1)
@@ -137,8 +138,8 @@ def measure(
     states.measure(edges, np.where(left_out, np.inf, spread))
     states.give_back([track.state for track in tracks])
     whole = ~covered.any(axis=1)
-    for track, own, drift, is_whole in zip(tracks, latest, drifts, whole.tolist(), strict=True):
-        track.measured(own, drift, is_whole=is_whole)
+    for track, shown, drift, is_whole in zip(tracks, latest, drifts, whole.tolist(), strict=True):
+        track.measured(shown, drift, is_whole=is_whole)
     return np.asarray(whole)
 
 

@@ -24,10 +24,10 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.colours import BINS
-from vehicle_pf_tracker.trackers.traffic.detections import CERTAIN, HALF, NOTHING, Sample
+from vehicle_pf_tracker.trackers.traffic.detections import CERTAIN, HALF, NOTHING, Place, Sample
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import ACROSS, Drive, VehicleState, W
 
 SEEN_WITHIN = 2.0
 """Nominal periods within which a vehicle counts as seen: one frame may fail."""
@@ -64,10 +64,14 @@ class Track:
         Log odds against a vehicle by these scores; never below zero.
     matches, partial : int
         Number of its detections, and of the latest in a row that showed only a part of it.
+    missed : int
+        Number of the latest looks of the detector, in a row, that missed it in plain sight.
+    vanished : Place or None
+        Where it was missed several times in a row.
     crowded : int
         Number of its latest detections in a row that had another one beside them in its box.
-    sides : (2,) array
-        Largest width and height of its latest detections, px.
+    shown : (2,) array
+        Largest width and height of its latest detections, of its own.
     lost : bool
         It has been hidden for too long to be predicted.
     has_driven : bool
@@ -108,8 +112,10 @@ class Track:
     doubt: float = 0.0
     matches: int = 0
     partial: int = 0
+    missed: int = 0
+    vanished: Place | None = None
     crowded: int = 0
-    sides: Array = field(default_factory=lambda: np.zeros(2))
+    shown: Array = field(default_factory=lambda: np.zeros(2))
     lost: bool = False
     has_driven: bool = False
     given: bool = False
@@ -171,10 +177,10 @@ class Track:
         for label, votes in track.votes.items():
             self.votes[label] = self.votes.get(label, 0) + votes
         self.has_driven = self.has_driven or track.has_driven
-        self.unseen = self.undetected = 0.0
+        self._be_found()
         self.log_odds = max(self.log_odds, track.log_odds)
         self.show(track.visible, track.inside, track.covers, None)
-        self.sides, self.partial = track.sides, track.partial
+        self.shown, self.partial = track.shown, track.partial
 
     def name(self, label: str, score: float) -> None:
         """Take score and class of its detection in this frame."""
@@ -184,7 +190,7 @@ class Track:
 
     def measured(self, sides: Array, drift: Array, *, is_whole: bool) -> None:
         """Take its largest sides (2,) in px, drift (4,), and if a detection showed all of it."""
-        self.sides, self.drift = sides, drift
+        self.shown, self.drift = sides / self.state.mean[W:ACROSS], drift
         self.partial = 0 if is_whole else self.partial + 1
 
     def crowd(self, *, crowded: bool) -> int:
@@ -195,7 +201,7 @@ class Track:
     def fill(self, edges: Array) -> None:
         """Be as large as a box (4,), and there."""
         self.crowded = 0
-        self.sides = edges[2:] - edges[:2]
+        self.shown = np.ones(2)
         self.state.resize(edges)
 
     def hold(self, edges: Array, deviations: Array) -> None:
@@ -226,7 +232,7 @@ class Track:
         score, fit : float
             Log odds by its score, and by where it is.
         """
-        self.unseen = self.undetected = 0.0
+        self._be_found()
         self.hidden_by = None
         self.matches += 1
         self.doubt = max(self.doubt - score, 0.0)
@@ -274,9 +280,16 @@ class Track:
         taken, self.samples = self.samples[:count], self.samples[count:]
         return taken
 
-    def miss(self, log_odds: float) -> None:
-        """Take evidence against it: it was not detected."""
+    def miss(self, log_odds: float, place: Place) -> None:
+        """Take evidence against it: it was not detected, in this place."""
         self.log_odds -= log_odds
+        self.missed += 1
+        if self.confirmed and self.missed == FEW:
+            self.vanished = place
+
+    def _be_found(self) -> None:
+        self.unseen = self.undetected = 0.0
+        self.missed, self.vanished = 0, None
 
     def lose(self, lost: bool) -> None:
         """Be predicted no longer, or again."""
