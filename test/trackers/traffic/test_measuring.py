@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.trackers.traffic.detections import overlaps
-from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure
+from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure, outgrown
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
 from vehicle_pf_tracker.trackers.traffic.track import FEW, Track, predict
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
@@ -82,9 +82,11 @@ def test_an_edge_cut_by_the_border_is_not_measured():
 
 
 def test_what_was_shown_of_a_vehicle_grows_with_it(track):
+    settings = DetectionParameters(edge_noise=0.1)  # no edge jumps by a fifth of the height
     twice = np.array([80.0, 80, 160, 140])
     track.state.resize(twice)
-    assert not measured(track, twice - (0, 0, 0, 12))
+    part = np.array([twice - (0, 0, 0, 12)])
+    assert not measure([track], part, settings, SIZE, part)[0]
 
 
 def test_no_edge_stays_covered_for_ever(track):
@@ -125,6 +127,34 @@ def test_a_part_without_another_detection_is_not_taken_for_several(track):
     for _ in range(3):
         measured(track, own)
     assert track.state.edges[Edge.RIGHT] == pytest.approx(140, abs=1)
+
+
+WHOLE = np.array([[90.0, 96, 150, 134]])
+
+
+def missed(left=100.0, *, matches=6):
+    """A confirmed vehicle that no detection was given to."""
+    box = BOX + np.array([left - 100, 0, left - 100, 0])
+    return Track(
+        1, VehicleState(box, np.full(4, 0.3), -1e4, DRIVE), 1, matches=matches, undetected=1.0
+    )
+
+
+def test_boxes_of_the_whole_vehicle_replace_a_part_that_was_seen_first():
+    track = missed()
+    found = [outgrown([track], WHOLE) for _ in range(FEW)]
+    assert found == [[]] * (FEW - 1) + [[track]]
+    assert track.state.edges == pytest.approx(WHOLE[0])
+
+
+def test_two_vehicles_in_one_box_stay_two():
+    tracks = [missed(), missed(125.0)]
+    assert not any(outgrown(tracks, WHOLE) for _ in range(20))
+
+
+def test_a_vehicle_that_was_often_seen_alone_does_not_soon_become_a_box_of_two():
+    track = missed(matches=40)
+    assert not any(outgrown([track], WHOLE) for _ in range(15))
 
 
 @pytest.mark.parametrize("rate", [0.94, 0.97])

@@ -28,10 +28,11 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import INWARD, cut_edges, deviations
-from vehicle_pf_tracker.trackers.traffic.detections import INSIDE, LITTLE, areas
+from vehicle_pf_tracker.trackers.traffic.detections import HALF, INSIDE, LITTLE, areas
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
 from vehicle_pf_tracker.trackers.traffic.track import FEW, RATE, Track, edges_of
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
+    FAR,
     SETTLED_AFTER,
     Drive,
     Edge,
@@ -126,9 +127,10 @@ def measure(
     own = predicted[:, 2:] - predicted[:, :2]
     latest = np.maximum(sides, own * np.array([track.shown for track in tracks]))
     shrunk = sides < _WHOLE * np.minimum(own, latest)
-    drawn_in = np.tile(shrunk, 2) & (normal > np.maximum(opposite, 0.0))
+    jumped = (normal > FAR) & (opposite > 0)  # a vehicle that brakes pushes it out
+    crept = np.tile(shrunk, 2) & (normal > np.maximum(opposite, 0.0))
     recede = _recede(tracks, edges, settings.edge_noise) & ~unknown.any(axis=1)
-    covered = drawn_in & ~unknown & ~recede[:, np.newaxis]
+    covered = (jumped | crept) & ~unknown & ~recede[:, np.newaxis]
     patient = np.array([one.matches >= FEW and one.partial < SETTLED_AFTER for one in tracks])
     left_out = unknown | (covered & patient[:, np.newaxis])
     residuals = np.where(left_out, 0.0, (predicted - edges) * INWARD)
@@ -226,3 +228,33 @@ def _divide(tracks: Sequence[Track], edges: Array, others: Array) -> None:
     for track, box, crowded in zip(tracks, edges, (known & beside).tolist(), strict=True):
         if track.crowd(crowded=crowded) >= FEW:
             track.fill(box)
+
+
+def outgrown(tracks: Sequence[Track], edges: Array) -> list[Track]:
+    """Find those that were known by a part only, and make each as large as the box around it.
+
+    Where something hides a vehicle at first, or the background has its colour, it is followed by
+    what is seen; a box of all of it then is too large to be its own.
+
+    Parameters
+    ----------
+    tracks : sequence of N Track
+        All vehicles.
+    edges : (M, 4) array
+        Edges of the detections that are no vehicle's.
+    """
+    boxes = edges_of(tracks)
+    common = intersections(edges[:, np.newaxis], boxes)
+    alone = (common > 0).sum(axis=1, keepdims=True) == 1
+    found = []
+    for row, column in np.argwhere(alone & (common > INSIDE * areas(boxes))).tolist():
+        track = tracks[column]
+        # Two that drive side by side are one for a while, too: boxes of it alone have to be few.
+        if (
+            track.undetected
+            and track.in_sight
+            and track.crowd(crowded=True) >= max(FEW, HALF * track.matches)
+        ):
+            track.fill(edges[row])
+            found.append(track)
+    return found

@@ -47,7 +47,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
-from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure
+from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure, outgrown
 from vehicle_pf_tracker.trackers.traffic.occlusion import cover, nearest_first
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.pixel_hold import PixelHold
@@ -220,6 +220,8 @@ class TrafficTracker:
             self._drop_inside([one for one in confirmed if not one.undetected], found)
         self._match_tentative([one for one in self._tracks if not one.confirmed], found)
         self._merge_twins()
+        confirmed = [one for one in self._tracks if one.confirmed]
+        self._match(outgrown(confirmed, found.edges[found.free]), found, -math.inf)
         self._existence.fade(self._tracks, elapsed, self._size)
         self._drop_inside([one for one in self._tracks if one.confirmed], found, either=True)
         for index in found.free:
