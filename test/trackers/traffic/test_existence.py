@@ -169,6 +169,15 @@ def test_the_share_of_a_place_is_a_beta_binomial_estimate():
     assert shares == pytest.approx([2 * usual / 4, (1 + 2 * usual) / 3])
 
 
+def test_a_place_is_learnt_anew():
+    existence = Existence(TrafficParameters(), DetectionEvidence())
+    for _ in range(500):
+        come_back(existence, 100.0)
+    for _ in range(40):
+        end(existence, 100.0)
+    assert vanish(existence, 100.0).lost
+
+
 def test_one_that_was_given_by_hand_stays_where_others_do_not_come_back():
     existence = Existence(TrafficParameters(), DetectionEvidence())
     end(existence, 100.0)

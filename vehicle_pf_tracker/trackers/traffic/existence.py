@@ -89,6 +89,8 @@ class Reappearances:
         """Add the outcome of one vehicle."""
         row, column = place
         self._counts[int(found), row, column] += 1
+        if self._counts[:, row, column].sum() > SETTLED_AFTER:
+            self._counts[:, row, column] /= 2  # leaves and road works come and go
 
     def share(self, place: Place) -> float:
         """Share of them that are found again."""
