@@ -29,7 +29,7 @@ class TrackMode(str, Enum):
     """Claim about a vehicle.
 
     `TENTATIVE` has too little evidence yet; `TRACKING` is seen; `OCCLUDED` is taken to be hidden
-    and is predicted; `LOST` has been hidden for too long to be predicted.
+    and is predicted; `LOST` has been hidden for too long to be predicted, or is rather not there.
     """
 
     TENTATIVE = "TENTATIVE"
