@@ -84,6 +84,14 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
     def _make_features(self) -> Mapping[str, WindowFeature]:
         """Make the features by name from the effective parameters."""
 
+    @property
+    def _is_joint(self) -> bool:
+        return True
+
+    @property
+    def _updates_unused(self) -> bool:
+        return False
+
     def reconfigure(self, parameters: FilterParametersT) -> None:
         """Take new parameters; see `BaseTracker.reconfigure`."""
         if parameters.num_particles != self.parameters.num_particles:
@@ -245,7 +253,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             self._predicted_for = 0.0
             self._velocity.add(self._position, position, elapsed)
             for number, (first, found) in enumerate(zip(self._first, histograms, strict=True)):
-                if weighting.factors[number] > 0 or getattr(settings, "update_unused", False):
+                if weighting.factors[number] > 0 or self._updates_unused:
                     weight = settings.reference_weight
                     self.references[number] = Reference(weight * first + (1 - weight) * found)
         self._searching = weighting.full_occlusion
@@ -261,7 +269,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         if effective_sample_size(cloud.weights) >= limit:
             return 0
         self._ancestors = self._draw(cloud.weights, settings.resampling)
-        if not getattr(settings, "joint_resampling", True):  # a choice of several features' filter
+        if not self._is_joint:
             sets = [self._draw(own, settings.resampling) for own in weights]
             count = len(self._ancestors)
             self._ancestors = common_survivors(sets, count, otherwise=self._ancestors)
@@ -284,6 +292,14 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
 class MfpfTracker(FeatureFilter[MfpfParameters]):
     """Colour, edges and texture together."""
+
+    @property
+    def _is_joint(self) -> bool:
+        return self._settings.joint_resampling
+
+    @property
+    def _updates_unused(self) -> bool:
+        return self._settings.update_unused
 
     def _make_features(self) -> Mapping[str, WindowFeature]:
         settings = self._settings
