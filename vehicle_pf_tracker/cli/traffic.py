@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass
 from importlib import metadata
@@ -153,14 +154,19 @@ def _follow(
 
 
 def _document(
-    request: Request, configuration: Configuration, tracking: TrafficRun, *source: Any
+    request: Request,
+    configuration: Configuration,
+    tracking: TrafficRun,
+    topic: str,
+    notices: Sequence[str],
 ) -> dict[str, Any]:
-    """Return the content of `run.json`; `source` is the topic of the images, and the notices."""
+    """Return the content of `run.json`; `topic` is that of the images."""
     kind = configuration.tracker.detector.kind
     document = describe(
         request.command,
         request.source,
-        *source,
+        topic,
+        notices,
         variant=TRAFFIC.name,
         seed=tracking.session.tracker.seed,
         parameters={**to_mapping(configuration.tracker), **to_mapping(configuration.session)},

@@ -70,7 +70,7 @@ def recorded_images(recording: Recording) -> RecordedImages:
 
 
 class TopicPublisher(NamedTuple):
-    """What publishes the messages of one recorded topic.
+    """Publisher of one recorded topic, and the conversion of its messages.
 
     Attributes
     ----------
