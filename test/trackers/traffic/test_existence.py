@@ -124,9 +124,10 @@ def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
     assert min(missed([200.0, 200.0])) > 0
 
 
-def vanish(existence, left):
+def vanish(existence, left, *, given=False):
     """Return a vehicle that the detector missed several times in plain sight."""
-    one = track(1, left, confirmed=True, has_driven=True, log_odds=CERTAIN, undetected=1.0)
+    facts = {"confirmed": True, "has_driven": True, "given": given}
+    one = track(1, left, **facts, log_odds=CERTAIN, undetected=1.0)
     for _ in range(FEW):
         existence.fade([one], 1.0, SIZE)
         existence.survivors([one], SIZE, 1 / 30)
@@ -142,7 +143,7 @@ def end(existence, left):
 
 def come_back(existence, left):
     """Let a vehicle vanish and be found again."""
-    existence.found_again(vanish(existence, left))
+    existence.resume(vanish(existence, left), track(2, left))
 
 
 def test_what_vanished_where_vehicles_come_back_is_occluded_and_elsewhere_lost():
@@ -178,13 +179,12 @@ def test_a_place_is_learnt_anew():
     assert vanish(existence, 100.0).lost
 
 
-def test_one_that_was_given_by_hand_stays_where_others_do_not_come_back():
+def test_one_that_was_given_by_hand_stays_and_teaches_nothing():
     existence = Existence(TrafficParameters(), DetectionEvidence())
     end(existence, 100.0)
-    one = vanish(existence, 100.0)
-    one.given = True
-    existence.survivors([one], SIZE, 1 / 30)
+    one = vanish(existence, 100.0, given=True)
     assert not one.lost
+    assert one.vanished is None
 
 
 def evidence_of(fit, *, drives=True):

@@ -21,6 +21,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections
 from vehicle_pf_tracker.trackers.traffic.detections import (
     CERTAIN,
@@ -64,9 +65,8 @@ vehicles' detections have lower ones: a spot that looks like a vehicle does so e
 such scores are worth one."""
 _PRIOR = 10.0
 """Vehicles in plain sight that were detected, and that were missed, before any was seen."""
-_ALIKE = 2.0
-"""Vehicles that vanished in a place and have the same outcome, for it to be another place than
-all: with one before it, the share anywhere moves by a sixth."""
+_UNIFORM = 2.0
+"""Outcomes that a prior is worth: as many as a uniform one."""
 _BLIND_FROM = 2
 """Least vehicles in sight, all missed in one image, for the detector to have failed:
 they did not all vanish at once."""
@@ -78,8 +78,8 @@ class Reappearances:
     """How many of the vehicles that vanished in plain sight were found again, by place.
 
     Below a bridge nearly all are, elsewhere hardly any: what vanished was no vehicle, or its
-    detections went to another. The share in one place is a beta-binomial estimate, with the share
-    everywhere, worth `_ALIKE` vehicles, as its prior; that of all places begins at a half.
+    detections went to another. The share in one place is a beta-binomial estimate, whose prior is
+    the share everywhere; that begins at a half.
     """
 
     def __init__(self) -> None:
@@ -94,11 +94,15 @@ class Reappearances:
 
     def share(self, place: Place) -> float:
         """Share of them that are found again."""
-        ended, found = self._counts.sum(axis=(1, 2)).tolist()
-        usual = (found + 1) / (ended + found + 2)
         row, column = place
-        ended, found = self._counts[:, row, column].tolist()
-        return float((found + _ALIKE * usual) / (ended + found + _ALIKE))
+        everywhere = _estimated(self._counts.sum(axis=(1, 2)), HALF)
+        return _estimated(self._counts[:, row, column], everywhere)
+
+
+def _estimated(outcomes: Array, prior: float) -> float:
+    """Posterior mean of a share, of the numbers without and with it."""
+    without, found = outcomes.tolist()
+    return float((found + _UNIFORM * prior) / (without + found + _UNIFORM))
 
 
 class Existence:
@@ -151,15 +155,19 @@ class Existence:
         stands = track.has_driven and track.state.speed_ratio < FAR
         return self._add(track, found, index, 0.0 if track.confirmed and stands else fit)
 
-    def found_again(self, track: Track) -> None:
-        """Learn that a vehicle is back, if it had vanished."""
+    def resume(self, hidden: Track, track: Track) -> None:
+        """Let a hidden vehicle go on as the new track that it turned out to be."""
+        self._note_found(hidden)
+        hidden.resume(track)
+
+    def _note_found(self, track: Track) -> None:
         if track.vanished is not None:
             self.reappearances.learn(track.vanished, found=True)
 
     def _add(self, track: Track, found: FrameDetections, index: int, fit: float) -> bool:
         sample, log_odds = found.samples[index], float(found.log_odds[index])
         gain = log_odds if track.confirmed else float(found.gains[index])
-        self.found_again(track)
+        self._note_found(track)
         track.add_evidence(found.edges[index], min(max(gain, -_SCORE_DOUBT), _MOST), fit)
         doubted = min(max(log_odds - _SCORE_DOUBT, -_SCORE_DOUBT), _MOST)
         if track.way < _STILL and found.ranks[index] < HALF:
@@ -254,11 +262,9 @@ class Existence:
 
     def _is_doubtful(self, track: Track) -> bool:
         """Test whether a vehicle is rather not there, by what is known of it or of its place."""
-        if track.log_odds < 0:
-            return True
-        if track.given or track.vanished is None:
-            return False
-        return self.reappearances.share(track.vanished) < HALF
+        if track.vanished is None:
+            return track.log_odds < 0
+        return track.log_odds < 0 or self.reappearances.share(track.vanished) < HALF
 
     def _goes_on(self, track: Track, unseen: float, inside: float) -> bool:
         if not track.confirmed:

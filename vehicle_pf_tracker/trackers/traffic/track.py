@@ -73,7 +73,7 @@ class Track:
     shown : (2,) array
         Largest width and height of its latest detections, of its own.
     lost : bool
-        It has been hidden for too long to be predicted.
+        It has been hidden for too long to be predicted, or is rather not there.
     has_driven : bool
         Its way shows that it is no part of the scene.
     given : bool
@@ -284,7 +284,7 @@ class Track:
         """Take evidence against it: it was not detected, in this place."""
         self.log_odds -= log_odds
         self.missed += 1
-        if self.confirmed and self.missed == FEW:
+        if self.confirmed and not self.given and self.missed == FEW:
             self.vanished = place
 
     def _be_found(self) -> None:

@@ -207,8 +207,8 @@ class TrafficTracker:
     def _look_for_horizon(self) -> None:
         """Estimate the horizon, and move that of the vehicles which are followed."""
         growths = (track.growth for track in self._tracks if track.confirmed)
-        motion = self.parameters.motion
-        self._row = self._horizon.look(motion.horizon, growths, self._size, self.road)
+        assumed = self.parameters.motion.horizon
+        self._row = self._horizon.look(assumed, growths, self._size, self.road)
 
     def _take(self, detections: Detections, elapsed: float) -> None:
         """Give the detections to the tracks; what is left over may be new vehicles."""
@@ -273,30 +273,26 @@ class TrafficTracker:
     def _merge_twins(self) -> None:
         """Merge vehicles that were born a second time with the ones that they are."""
         missed = [one for one in self._tracks if one.confirmed and one.undetected]
-        longest = max((one.undetected for one in missed), default=0.0)
-        if not self.parameters.returning:
+        if not (missed and self.parameters.returning):
             return
+        longest = max(one.undetected for one in missed)
         for track in self._tracks.copy():
             if not track.confirmed or track.undetected or track.age >= longest or track.given:
                 continue
             if (twin := former(track, missed)) is not None:
-                self._resume(twin, track)
+                self._existence.resume(twin, track)
+                self._tracks.remove(track)
                 missed.remove(twin)
 
     def _confirm(self, track: Track, *, given: bool = False) -> None:
         """Give a new vehicle its number, unless it is one that was hidden."""
         may_return = self.parameters.returning and not given
         if may_return and (hidden := former(track, self._tracks)) is not None:
-            self._resume(hidden, track)
-        else:
-            self.last_identity += 1
-            track.confirm(self.last_identity, given=given)
-
-    def _resume(self, hidden: Track, track: Track) -> None:
-        """Let a hidden vehicle go on as the track that it turned out to be."""
-        self._existence.found_again(hidden)
-        hidden.resume(track)
-        self._tracks.remove(track)
+            self._existence.resume(hidden, track)
+            self._tracks.remove(track)
+            return
+        self.last_identity += 1
+        track.confirm(self.last_identity, given=given)
 
     def _drop_inside(
         self, tracks: Sequence[Track], found: FrameDetections, *, either: bool = False
