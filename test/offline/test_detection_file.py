@@ -46,7 +46,7 @@ def test_rows_are_given_by_frame_in_their_order(read):
 
 def test_blank_lines_comments_spaces_and_windows_files_are_read(read):
     found = read(
-        b"\xef\xbb\xbf# frame, id\r\n\r\n 1, -1, 10, 20, 30, 40, 0.5\r\n1.0,-1,1,2,3,4\r\n"
+        b"\xef\xbb\xbf# frame, id\r\n\r\n 1, -1, 10, 20, 30, 40, 0.5\r\n1.0 -1 1 2 3 4\r\n"
     )
     assert found.of(1).boxes.tolist() == [[10, 20, 30, 40], [1, 2, 3, 4]]
     assert found.of(1).scores.tolist() == [0.5, 1.0]  # without a score: 1
@@ -60,23 +60,23 @@ def test_an_empty_file_sees_nothing(read):
 @pytest.mark.parametrize(
     ("row", "said"),
     [
-        ("1,-1,10,20,30", "is not frame,id,left,top,width,height,score: '1,-1,10,20,30'"),
-        ("1,-1,10,20,thirty,40,1", "has a word that is no number"),
-        ("frame,id,left,top,width,height,score", "has a word that is no number"),
+        ("1,-1,10,20,30", "has 5 cells, of at least 6"),
+        ("1,-1,10,20,thirty,40,1", "has 'thirty' as number 5, which is not a number"),
+        ("frame,id,left,top,width,height,score", "has 'frame' as number 1, which is not a number"),
         ("0,-1,10,20,30,40,1", "has the frame 0; frames are integers from 1"),
         ("-3,-1,10,20,30,40,1", "has the frame -3;"),
         ("1.5,-1,10,20,30,40,1", "has the frame 1.5;"),
         ("nan,-1,10,20,30,40,1", "has the frame nan;"),
         ("inf,-1,10,20,30,40,1", "has the frame inf;"),
-        ("1e300,-1,10,20,30,40,1", "has the frame 1e300;"),
-        ("9" * 100_000, "is not frame,id,left"),
-        ("1 -1 10 20 30 40 1", "is not frame,id,left"),
+        ("1e300,-1,10,20,30,40,1", "has the frame 1e+300;"),
+        ("9" * 100_000, "has 1 cells, of at least 6"),
+        (",".join("x" * 100_000 for _ in range(6)), "which is not a number"),
     ],
 )
 def test_a_bad_row_is_named_by_its_number(read, row, said):
     with pytest.raises(InputError) as error:
         read(f"1,-1,10,20,30,40,0.5,-1,-1,-1\n\n{row}\n")
-    assert "row 3 of the detections" in str(error.value)
+    assert "line 3 of the detections" in str(error.value)
     assert said in str(error.value)
     assert len(str(error.value)) < 400
 

@@ -28,9 +28,9 @@ from recording_samples import PERIOD_NS, frame_of, stamp_of, truth_of
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
+from vehicle_pf_tracker.core.clock import header_stamp_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import mcap_blocks, messages
-from vehicle_pf_tracker.recordings.messages import header_stamp_ns
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 

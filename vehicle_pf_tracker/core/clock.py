@@ -17,7 +17,8 @@
 Trackers count in nominal frame periods, so that a dropped frame or a slow camera does not change
 speeds in px per second.
 
-Association of truth and estimates: by stamp, nearest first, one to one.
+Stamps of serialized messages. Association of truth and estimates: by stamp, nearest first, one to
+one.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ import bisect
 import heapq
 import math
 import statistics
+import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -115,6 +117,14 @@ class StampClock:
         self._intervals.append(seconds)
         if len(self._intervals) == _LEARNING_INTERVALS:
             self._learned = statistics.median(self._intervals)
+
+
+def header_stamp_ns(data: bytes | memoryview) -> int | None:
+    """Read the stamp of a message in CDR that begins with a header, ns; None if it is too short."""
+    if len(data) < 12:
+        return None
+    seconds, nanoseconds = struct.unpack_from("<iI" if data[1] & 1 else ">iI", data, 4)
+    return int(seconds * 1_000_000_000 + nanoseconds)
 
 
 MAX_DIFF = 0.01

@@ -31,6 +31,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.offline.model_files import Progress, model_file, silent
+from vehicle_pf_tracker.recordings.truth_formats import numbers_in, table_rows
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
@@ -164,13 +165,8 @@ class PacedDetector:
             self.every = min(max(least, 1), most)
 
 
-_COLUMNS = ("frame", "id", "left", "top", "width", "height", "score")
-_REQUIRED = 6
-"""Columns that a row must have; without a seventh, all detections score 1."""
 _LAST_FRAME = 10**9
 """Largest number of a frame: a year of video."""
-_SHOWN = 60
-"""Letters of a bad row that an error shows."""
 
 
 class DetectionFile:
@@ -180,7 +176,8 @@ class DetectionFile:
     ----------
     path : Path
         Text file with a row per detection: frame from 1, id (not used), left, top, width and height
-        in px, score; columns after these are not used. Rows may be in any order.
+        in px, score (1 where it is missing); columns after these are not used. Rows may be in any
+        order.
 
     Attributes
     ----------
@@ -195,9 +192,12 @@ class DetectionFile:
 
     def __init__(self, path: Path) -> None:
         numbers = array("d")  # 48 bytes per row: a list of a million rows would take ten times that
-        for number, line in enumerate(read_text(path, "the detections").splitlines(), start=1):
-            if line.strip() and not line.lstrip().startswith("#"):
-                numbers.extend(_row(line, f"row {number} of the detections {path}"))
+        text = read_text(path, "the detections")
+        for where, cells in table_rows(path, text, 6, "the detections"):
+            frame, _, *box = numbers_in(where, cells[:7])
+            if not (1 <= frame <= _LAST_FRAME and frame.is_integer()):
+                raise InputError(f"{where} has the frame {frame:g}; frames are integers from 1")
+            numbers.extend((frame, *box[:4], box[4] if len(box) > 4 else 1.0))
         rows: Array = np.frombuffer(numbers, np.float64).reshape(-1, 6)
         frames = rows[:, 0].astype(np.int64)
         order = np.argsort(frames, kind="stable")
@@ -214,21 +214,3 @@ class DetectionFile:
         """Return the detections of a frame; one without rows is one without vehicles."""
         begin, end = np.searchsorted(self._frames, [frame, frame + 1])
         return Detections.make(self._rows[begin:end, :4], self._rows[begin:end, 4])
-
-
-def _row(line: str, what: str) -> tuple[float, ...]:
-    """Return frame, left, top, width, height and score."""
-    words = line.split(",")
-    if len(words) < _REQUIRED:
-        raise InputError(f"{what} is not {','.join(_COLUMNS)}: {line.strip()[:_SHOWN]!r}")
-    try:
-        values = [float(word) for word in words[: len(_COLUMNS)]]
-    except ValueError:
-        raise InputError(
-            f"{what} has a word that is no number: {line.strip()[:_SHOWN]!r}"
-        ) from None
-    frame = values[0]
-    if not (math.isfinite(frame) and frame.is_integer() and 1 <= frame <= _LAST_FRAME):
-        raise InputError(f"{what} has the frame {words[0].strip()}; frames are integers from 1")
-    score = values[6] if len(values) > _REQUIRED else 1.0
-    return (frame, *values[2:6], score)

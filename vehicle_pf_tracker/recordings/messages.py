@@ -132,14 +132,6 @@ def type_hash(type_name: str) -> str:
     return _store().hash_rihs01(type_name)
 
 
-def header_stamp_ns(data: memoryview) -> int | None:
-    """Read the stamp of a serialized message that begins with a header; None if it is too short."""
-    if len(data) < 12:
-        return None
-    seconds, nanoseconds = struct.unpack_from("<iI" if data[1] & 1 else ">iI", data, 4)
-    return int(seconds * 1_000_000_000 + nanoseconds)
-
-
 def as_token(name: str) -> str:
     """Return `name` as a part of a topic: letters, digits and underscores, no digit first."""
     token = "".join(c if c.isascii() and c.isalnum() else "_" for c in name)

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from vehicle_pf_tracker.core.clock import header_stamp_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
@@ -31,7 +32,7 @@ from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.mcap_blocks import Message
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex, merged_messages, read_index
-from vehicle_pf_tracker.recordings.messages import deserialize, header_stamp_ns
+from vehicle_pf_tracker.recordings.messages import deserialize
 from vehicle_pf_tracker.recordings.topic_table import (
     ReadNotices,
     TopicInfo,

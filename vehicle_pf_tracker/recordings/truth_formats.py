@@ -39,6 +39,8 @@ from vehicle_pf_tracker.core.truth import Occlusion
 Sides: TypeAlias = tuple[float, float, float, float]
 ABSENT: Sides = (math.nan, math.nan, math.nan, math.nan)
 _GAP = r"\s*[,;\s]\s*"
+_SHOWN = 60
+"""Letters of a bad cell that an error shows."""
 
 
 class UnreadTruthError(InputError):
@@ -102,27 +104,36 @@ def _number(where: str, name: str, cell: str | None) -> float:
     try:
         return float(cell)
     except ValueError:
-        raise InputError(f"{where} has {cell!r} as {name}, which is not a number") from None
+        raise InputError(
+            f"{where} has {cell[:_SHOWN]!r} as {name}, which is not a number"
+        ) from None
 
 
-def _rows(path: Path, text: str, least: int) -> Iterator[tuple[str, list[str]]]:
-    """Yield the place and the cells, at least so many, of each line that is not empty."""
+def table_rows(
+    path: Path, text: str, least: int, what: str = "the truth"
+) -> Iterator[tuple[str, list[str]]]:
+    """Yield the place and the cells, at least so many, of each line but comments and empty ones.
+
+    Cells are apart by commas, semicolons or spaces; a comment begins with ``#``.
+    """
     for number, line in enumerate(text.splitlines(), start=1):
-        if line.strip():
-            cells, where = re.split(_GAP, line.strip(" \t,;")), f"line {number} of the truth {path}"
+        words = line.strip(" \t,;")
+        if words and not words.startswith("#"):
+            cells, where = re.split(_GAP, words), f"line {number} of {what} {path}"
             if len(cells) < least:
                 raise InputError(f"{where} has {len(cells)} cells, of at least {least}")
             yield where, cells
 
 
-def _numbers(where: str, cells: Sequence[str]) -> list[float]:
+def numbers_in(where: str, cells: Sequence[str]) -> list[float]:
+    """Read cells; an empty one is NaN."""
     return [_number(where, f"number {place}", cell) for place, cell in enumerate(cells, start=1)]
 
 
 def _list(path: Path) -> list[float]:
     """Read a file of numbers alone."""
     cells = re.split(_GAP, read_text(path, "the truth").strip(", \t\r\n"))
-    return _numbers(f"the truth {path}", cells)
+    return numbers_in(f"the truth {path}", cells)
 
 
 _REQUIRED = ("frame", "x", "y", "w", "h")
@@ -190,8 +201,8 @@ def in_order(path: Path, text: str, images: Images) -> Iterator[Label]:
         begin = images.numbers.index(int(first)) if first in images.numbers else 0
     ending = re.search(r"^groundtruth.*[._](\d+)$", path.stem)
     flags = _flags(folder)
-    for index, (where, cells) in enumerate(_rows(path, text, 1)):
-        values = _numbers(where, cells)
+    for index, (where, cells) in enumerate(table_rows(path, text, 1)):
+        values = numbers_in(where, cells)
         state = flags[index] if index < len(flags) else Occlusion.NONE
         if len(values) not in (1, 4, 8):
             raise InputError(f"{where} has {len(values)} numbers; a box has 4, a polygon 8")
@@ -216,8 +227,8 @@ def _mot(path: Path, text: str, _: Images) -> Iterator[Label]:
     others = [path.with_name(name) for name in ("labels.txt", "occluders.csv")]
     first_px = 0 if any(one.is_file() for one in others) else 1
     is_uavdt = path.stem.endswith("_gt_whole")
-    for where, cells in _rows(path, text, 6):
-        number, identity, x, y, w, h, *rest = _numbers(where, cells)
+    for where, cells in table_rows(path, text, 6):
+        number, identity, x, y, w, h, *rest = numbers_in(where, cells)
         visible = rest[2] if len(rest) > 2 else 1.0
         if is_uavdt:
             occlusion = Occlusion.PARTIAL if rest[1:2] > [1.0] else Occlusion.NONE
@@ -232,8 +243,8 @@ def _kitti(path: Path, text: str, _: Images) -> Iterator[Label]:
     Frames and pixels count from 0; occluded is 0 no, 1 partly, 2 largely, 3 unknown; the id of
     ``DontCare`` is -1 (readme of its development kit).
     """
-    for where, (number, identity, _type, *cells) in _rows(path, text, 10):
-        values = _numbers(where, [number, identity, *cells[:7]])
+    for where, (number, identity, _type, *cells) in table_rows(path, text, 10):
+        values = numbers_in(where, [number, identity, *cells[:7]])
         left, top, right, bottom = values[5:]
         if values[1] >= 0:
             occlusion = Occlusion.PARTIAL if values[3] in (1, 2) else Occlusion.NONE

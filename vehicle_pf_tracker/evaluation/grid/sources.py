@@ -30,6 +30,7 @@ from vehicle_pf_tracker.recordings.footage import Footage as RecordedFootage
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder, image_files
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.source import open_source
+from vehicle_pf_tracker.recordings.video import is_recording
 
 _MAKE = "make a recording of it first: `vehicle-pf-tracker import {} OUT`"
 _VIDEOS = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm"})
@@ -50,26 +51,20 @@ def find_recordings(locations: Sequence[str]) -> list[str]:
 def _at_path(path: Path) -> list[str]:
     if not path.exists():
         raise InputError(f"there is no recording {path}")
-    if _is_recording(path):
+    if is_recording(path):
         return [str(path)]
     if path.is_file() and path.suffix.lower() in _VIDEOS:
         raise InputError(f"{path} is a video; {_MAKE.format(path)}")
     if path.is_file():
         raise InputError(f"{path} is not a recording: give a rosbag2 folder or an MCAP file")
     children = sorted(path.iterdir())
-    inside = [child for child in children if _is_recording(child)]
+    inside = [child for child in children if is_recording(child)]
     if not inside and image_files(path):
         return [str(path)]
     inside = inside or [child for child in children if image_files(child)]
     if not inside:
         raise InputError(f"the folder {path} is not a recording and holds none")
     return [str(child) for child in inside]
-
-
-def _is_recording(path: Path) -> bool:
-    if not path.is_dir():
-        return path.suffix == ".mcap"
-    return any(one.suffix == ".mcap" or one.name == "metadata.yaml" for one in path.iterdir())
 
 
 FRAMES_BYTES = 1 << 30

@@ -17,11 +17,8 @@
 from __future__ import annotations
 
 import configparser
-import math
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import takewhile
 from pathlib import Path
 
 import cv2
@@ -29,17 +26,15 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.recordings.truth_formats import numbers_in, table_rows
 
 TOTAL_OCCLUSION = 0.1
 """Visible share below which a vehicle counts as totally hidden, where no flags say so."""
 
 EVERY_FRAME = 0
 """Frame number of a region to ignore in all frames."""
-
-_INFO = ("seqLength", "frameRate", "imWidth", "imHeight")
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +95,19 @@ def read_sequence(folder: Path) -> TrafficSequence:
     InputError
         If a file is missing or cannot be read.
     """
-    info = _read_info(folder / "seqinfo.ini")
-    truth = read_table(folder / "gt" / "gt.txt", 6)
+    info = folder / "seqinfo.ini"
+    if not info.is_file():
+        raise InputError(f"{folder} is not a MOTChallenge folder: it has no {info.name}")
+    parser = configparser.ConfigParser(interpolation=None)
+    try:
+        parser.read_string(read_text(info, "the file"))
+        frame_rate = parser.getfloat("Sequence", "frameRate")
+        frame_count, width, height = (
+            parser.getint("Sequence", name) for name in ("seqLength", "imWidth", "imHeight")
+        )
+    except (configparser.Error, ValueError) as error:
+        raise InputError(f"{info} does not describe a sequence: {error}") from None
+    truth = read_table(folder / "gt" / "gt.txt", 6, 9)
     detections = {
         path.stem: read_table(path, 7)[:, [0, 2, 3, 4, 5, 6]]
         for path in sorted((folder / "det").glob("*.txt"))
@@ -109,56 +115,31 @@ def read_sequence(folder: Path) -> TrafficSequence:
     ignored = folder / "ignore.txt"
     return TrafficSequence(
         folder=folder,
-        frame_count=int(info["seqLength"]),
-        frame_rate=info["frameRate"],
-        size=(int(info["imWidth"]), int(info["imHeight"])),
+        frame_count=frame_count,
+        frame_rate=frame_rate,
+        size=(width, height),
         truth=truth[:, :6],
         hidden=_hidden(folder, truth),
-        ignored=read_table(ignored, 5)[:, :5] if ignored.is_file() else np.empty((0, 5)),
+        ignored=read_table(ignored, 5) if ignored.is_file() else np.empty((0, 5)),
         detections=detections,
     )
 
 
-def _read_info(path: Path) -> dict[str, float]:
-    parser = configparser.ConfigParser()
-    if not path.is_file():
-        raise InputError(f"{path.parent} is not a MOTChallenge folder: it has no {path.name}")
-    parser.read(path, encoding="utf-8")
-    info = {}
-    for key in _INFO:
-        text = parser.get("Sequence", key, fallback="")
-        if not _NUMBER.fullmatch(text):
-            fault = f"gives a {key} that is not a number: {text}" if text else f"gives no {key}"
-            raise InputError(f"{path} {fault}")
-        info[key] = float(text)
-    return info
-
-
-def read_table(path: Path, columns: int) -> Array:
-    """Read lines of comma-separated numbers of at least `columns` each; text behind them is left.
+def read_table(path: Path, least: int, most: int = 0) -> Array:
+    """Read lines of `least` numbers, or up to `most` where all have them; the rest is passed over.
 
     Raises
     ------
     InputError
         If there is no such file, or a line has too few numbers.
     """
-    if not path.is_file():
-        raise InputError(f"there is no file {path}")
-    lines = enumerate(path.read_text(encoding="utf-8").splitlines(), start=1)
-    rows = [
-        _numbers(line, columns, f"{path}, line {number}")
-        for number, line in lines
-        if line.strip() and not line.startswith("#")
-    ]
-    width = min(map(len, rows), default=columns)
-    return np.array([row[:width] for row in rows], dtype=np.float64).reshape(-1, width)
-
-
-def _numbers(line: str, columns: int, where: str) -> list[float]:
-    numbers = list(map(float, takewhile(_NUMBER.fullmatch, map(str.strip, line.split(",")))))
-    if len(numbers) < columns or not all(map(math.isfinite, numbers[:columns])):
-        raise InputError(f"{where} does not begin with {columns} finite numbers: {line[:60]}")
-    return numbers
+    lines = table_rows(path, read_text(path, "the table"), least, "the table")
+    rows = [numbers_in(where, cells[: max(least, most)]) for where, cells in lines]
+    width = min(map(len, rows), default=least)
+    table = np.array([row[:width] for row in rows], dtype=np.float64).reshape(-1, width)
+    if not np.isfinite(table).all():
+        raise InputError(f"the table {path} has a number that is not finite, or an empty cell")
+    return table
 
 
 def _hidden(folder: Path, truth: Array) -> npt.NDArray[np.bool_]:

@@ -19,7 +19,6 @@ Detections come in and go out only where vision_msgs is installed.
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
@@ -195,8 +194,6 @@ def _values(
     return values
 
 
-_BODY = 4
-"""Bytes before the message."""
 LONGEST = 1_000_000
 """Longest message in bytes that is read: 2300 detections, which take rclpy 0.3 s. Ten thousand
 would take 1.5 s, in which no image is answered."""
@@ -210,22 +207,6 @@ def detections_message(header: Header, estimates: Iterable[TrackEstimate]) -> An
         if one.mode in CONFIRMED
     ]
     return messages.detections_type()(header=header, detections=found)
-
-
-def read_stamp(message: bytes) -> int:
-    """Return the stamp in ns at the head of a serialized message.
-
-    Raises
-    ------
-    InputError
-        If it is cut off.
-    """
-    try:
-        order = "<" if message[1] & 1 else ">"
-        seconds, nanoseconds = struct.unpack_from(f"{order}iI", message, _BODY)
-    except (struct.error, IndexError):
-        raise InputError("a message of detections is cut off before its stamp") from None
-    return int(seconds) * 1_000_000_000 + int(nanoseconds)
 
 
 def read_serialized_detections(message: bytes) -> Detections:

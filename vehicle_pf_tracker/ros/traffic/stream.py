@@ -29,6 +29,7 @@ from std_msgs.msg import Header
 from visualization_msgs.msg import MarkerArray
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import header_stamp_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.compressed_image import CodedImage
@@ -189,10 +190,9 @@ class TrafficStream(NodeStream):
         """Take a serialized vision_msgs/Detection2DArray."""
         every = self._configuration.tracker.detector.every
         late, unmatched = self._waiting.late, self._waiting.unmatched
-        try:
-            stamp = messages.read_stamp(message)
-        except InputError as error:
-            self.warnings.say("flood", str(error))
+        stamp = header_stamp_ns(message)
+        if stamp is None:
+            self.warnings.say("flood", "a message of detections is cut off before its stamp")
             return
         self._waiting.add_detections(stamp, self._read(message), every)
         if self._waiting.late > late:
