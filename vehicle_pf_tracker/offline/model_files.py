@@ -22,7 +22,7 @@ import re
 from collections.abc import Callable, Iterator
 from http.client import HTTPException
 from pathlib import Path, PurePosixPath
-from typing import Any, TypeAlias
+from typing import TypeAlias
 from urllib.error import HTTPError
 from urllib.parse import unquote, urldefrag, urlsplit
 from urllib.request import urlopen
@@ -104,19 +104,23 @@ def _check(url: str, found: str, demanded: str, remedy: str) -> None:
 def _fetch(url: str, path: Path, demanded: str, progress: Progress) -> None:
     """Fetch a file, which is there when it is whole and has the sum demanded."""
     make_folder(path.parent)
-    digest = hashlib.sha256()
-    with replacing(path) as partial, partial.open("wb") as file:
-        for chunk, share in _chunks(url):
-            file.write(chunk)
-            digest.update(chunk)
-            progress(f"fetching {url}", share)
-        _check(url, digest.hexdigest(), demanded, "it is not kept")
+    with replacing(path) as partial:
+        with partial.open("wb") as file:
+            for chunk, share in _chunks(url):
+                file.write(chunk)
+                progress(f"fetching {url}", share)
+        _check(url, _sum_of(partial), demanded, "it is not kept")
 
 
 def _chunks(url: str) -> Iterator[tuple[bytes, float | None]]:
     """Yield the parts of a file, with the share of it that is there by then."""
+    done = 0
     try:
-        answer: Any = urlopen(url, timeout=_SECONDS)  # noqa: S310 - the scheme was checked
+        with urlopen(url, timeout=_SECONDS) as answer:  # noqa: S310 - the scheme was checked
+            length = int(answer.headers.get("Content-Length") or 0)
+            while chunk := answer.read(_CHUNK):
+                done += len(chunk)
+                yield chunk, done / length if length else None
     except HTTPError as error:
         raise InputError(
             f"the network {url}: the server answers {error.code} {error.reason}"
@@ -127,16 +131,5 @@ def _chunks(url: str) -> Iterator[tuple[bytes, float | None]]:
             f"the network {url} cannot be fetched: {reason}; without a network connection, name a "
             "file"
         ) from None
-    with answer:
-        length, done = int(answer.headers.get("Content-Length") or 0), 0
-        while True:
-            try:
-                chunk = answer.read(_CHUNK)
-            except (OSError, HTTPException):
-                chunk = b""
-            if not chunk:
-                break
-            done += len(chunk)
-            yield chunk, done / length if length else None
-        if done < length or not done:
-            raise InputError(f"the network {url} broke off after {done} bytes; try again")
+    if done < length or not done:
+        raise InputError(f"the network {url} broke off after {done} bytes; try again")
