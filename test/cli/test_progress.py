@@ -24,7 +24,6 @@ import pytest
 from vehicle_pf_tracker.cli import console
 from vehicle_pf_tracker.cli.console import counting, stages
 from vehicle_pf_tracker.cli.replay import shown_replay
-from vehicle_pf_tracker.ros.replay import replay_options
 
 
 class Terminal(io.StringIO):
@@ -56,7 +55,7 @@ report_stages = partial(stages, "report")
 
 def replayed(*moments):
     """Reports of a replay that lasts 20 s at (time, frames, position)."""
-    return [(at, (replay_options.Progress(n, where, 20.0),)) for at, n, where in moments]
+    return [(at, (n, where / 20 if where else None)) for at, n, where in moments]
 
 
 def test_plain_lines_come_after_two_seconds_and_every_five(lines):
@@ -96,7 +95,7 @@ def test_a_recording_of_one_moment_has_no_end_to_wait_for(lines):
         (frames, (3, 12), "tracked 3 of 12 frames"),
         (runs, (1, 2), "evaluated 1 of 2 runs"),
         (report_stages, ("drawing [a] page",), "report: drawing [a] page"),
-        (shown_replay, (replay_options.Progress(41, 10.0, 20.0),), "41 frames"),
+        (shown_replay, (41, 0.5), "41 frames"),
     ],
 )
 def test_a_terminal_shows_a_bar(monkeypatch, view, report, shown):

@@ -43,17 +43,13 @@ from vehicle_pf_tracker.recordings.reader import Recording
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions, ReplayReport
-    from vehicle_pf_tracker.ros.replay.replay_options import Progress as ReplayProgress
 
 
 @contextmanager
-def shown_replay() -> Iterator[Callable[[ReplayProgress], None]]:
+def shown_replay() -> Iterator[Callable[[int, float | None], None]]:
     """Return a function that shows a replay's progress."""
     with shown_progress() as show:
-        yield lambda now: show(
-            f"played {now.frames} frame{'s' * (now.frames > 1)}",
-            now.position / now.length if now.position else None,
-        )
+        yield lambda frames, share: show(f"played {frames} frame{'s' * (frames > 1)}", share)
 
 
 ANSWERS = ("estimates.csv", "*/estimates.csv")

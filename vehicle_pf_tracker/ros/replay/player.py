@@ -34,7 +34,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Lookout, Spinner
 from vehicle_pf_tracker.ros.replay.publishing import make_publishers
-from vehicle_pf_tracker.ros.replay.replay_options import Progress, ReplayOptions, ReplayReport
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, ReplayReport
 from vehicle_pf_tracker.ros.replay.tracker_link import Targets, TrackerLink, played, starting_target
 
 _ACKNOWLEDGEMENT_SLICE = Duration(seconds=0.05)
@@ -130,7 +130,8 @@ class Player:
     options : ReplayOptions
         Options of the replay.
     on_progress : callable
-        Called after each image.
+        Called after each image with the number published, and the share of the recording that was
+        played; None while that is not known.
     tell : callable
         Called with sentences for the user while it is getting ready.
     """
@@ -141,7 +142,7 @@ class Player:
         spinner: Spinner,
         recording: Recording,
         options: ReplayOptions,
-        on_progress: Callable[[Progress], None],
+        on_progress: Callable[[int, float | None], None],
         tell: Callable[[str], None],
     ) -> None:
         self._frames = self._messages = 0
@@ -256,8 +257,8 @@ class Player:
             if self._publish(message, is_image=is_image) and is_image:
                 self._follow(message)
             if is_image:
-                position = (message.log_time_ns - begin_ns) * 1e-9
-                self._on_progress(Progress(self._frames, position, length_ns * 1e-9))
+                position_ns = message.log_time_ns - begin_ns
+                self._on_progress(self._frames, position_ns / length_ns if position_ns else None)
 
     def _publish(self, message: RecordedMessage, *, is_image: bool) -> bool:
         """Publish a message; False if it cannot be converted."""

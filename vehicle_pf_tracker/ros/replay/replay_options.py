@@ -84,15 +84,6 @@ class ReplayOptions:
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
-    """How far a replay has come: images published, and s of the recording played, of how many."""
-
-    frames: int
-    position: float
-    length: float
-
-
-@dataclass(frozen=True, slots=True)
 class NodeReport:
     """Answers of one node to the images.
 

@@ -32,7 +32,7 @@ from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.ros.replay.discovery import Spinner
 from vehicle_pf_tracker.ros.replay.player import Player
 from vehicle_pf_tracker.ros.replay.publishing import decompressed
-from vehicle_pf_tracker.ros.replay.replay_options import Progress, ReplayOptions, ReplayReport
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, ReplayReport
 from vehicle_pf_tracker.ros.replay.tracker_link import first_image
 from vehicle_pf_tracker.ros.transport import image_transport
 
@@ -56,7 +56,7 @@ NODE_NAME = "bag_replay"
 def replay(
     recording: Recording,
     options: ReplayOptions,
-    on_progress: Callable[[Progress], None] = lambda progress: None,
+    on_progress: Callable[[int, float | None], None] = lambda frames, share: None,
     tell: Callable[[str], None] = lambda sentence: None,
 ) -> ReplayReport:
     """Play a recording to tracker nodes and collect what they answer.
@@ -71,7 +71,7 @@ def replay(
     options : ReplayOptions
         Options of the replay.
     on_progress : callable
-        Called after each image.
+        As `Player` calls it.
     tell : callable
         Called with sentences for the user while it is getting ready.
 

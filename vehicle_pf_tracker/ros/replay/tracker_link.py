@@ -57,12 +57,11 @@ class Answers:
         self.count = 0
         self._waiting: dict[int, deque[int]] = {}
         self._rows: dict[int, EstimateRow] = {}
-        self._answered: set[int] = set()
-        self._on_road: dict[int, Mapping[str, str]] = {}
+        self._answers: dict[int, Mapping[str, str]] = {}
 
     def begin_pass(self) -> None:
         """Discard earlier frames; a loop begins again with their stamps."""
-        for kept in (self._waiting, self._rows, self._answered, self._on_road):
+        for kept in (self._waiting, self._rows, self._answers):
             kept.clear()
 
     def expect(self, frame: int, stamp_ns: int) -> None:
@@ -82,20 +81,18 @@ class Answers:
         status = message.status[0]
         scalars = {"mode": status.message, **{pair.key: pair.value for pair in status.values}}
         self._rows[frame] = EstimateRow.from_scalars(frame, stamp, scalars)
-        self._answered.add(frame)
-        if "road" in scalars:
-            self._on_road[frame] = scalars
+        self._answers[frame] = scalars
         self.count += 1
 
     def has(self, frame: int) -> bool:
         """Return whether image number `frame` of this pass was answered."""
-        return frame in self._answered
+        return frame in self._answers
 
     def road_columns(self) -> dict[str, list[float | None]]:
         """Return places and speeds on the road, a value for each of `rows`; none without a road."""
-        if not self._on_road:
+        answers = [self._answers.get(frame, {}) for frame in self._rows]
+        if not any("road" in one for one in answers):
             return {}
-        answers = [self._on_road.get(frame, {}) for frame in self._rows]
         return {
             name: [float(one[name]) if name in one else None for one in answers]
             for name in ROAD_COLUMNS
