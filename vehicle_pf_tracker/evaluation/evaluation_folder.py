@@ -25,7 +25,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Mapping
 from dataclasses import astuple, dataclass
@@ -37,7 +36,7 @@ from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
-from vehicle_pf_tracker.offline.output_files import write_csv
+from vehicle_pf_tracker.offline.output_files import read_csv, write_csv
 from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 
@@ -103,20 +102,15 @@ def read_truth(path: Path) -> dict[int, Truth]:
     InputError
         If there is no such file, or a line of it is not as `write_truth` writes it.
     """
-    lines = csv.DictReader(read_text(path, "the truth").splitlines())
-    if lines.fieldnames is None or tuple(lines.fieldnames) != COLUMNS:
-        raise InputError(f"the truth {path} must begin with the line {','.join(COLUMNS)}")
-    try:
-        return {int(line["frame"]): _truth(line) for line in lines}
-    except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"line {lines.line_num} of the truth {path} is broken: {error}") from error
+    return dict(read_csv(path, "the truth", COLUMNS, _row))
 
 
-def _truth(line: Mapping[str, str]) -> Truth:
+def _row(line: Mapping[str, str]) -> tuple[int, Truth]:
     box = Box(*(float(line[name]) for name in ("x", "y", "width", "height")))
     if not all(abs(value) <= LARGEST_PX for value in astuple(box)):
         raise ValueError(f"a box beyond {LARGEST_PX:.0f} px")
-    return Truth(int(line["stamp_ns"]), box, Occlusion[line["occlusion"].upper()])
+    truth = Truth(int(line["stamp_ns"]), box, Occlusion[line["occlusion"].upper()])
+    return int(line["frame"]), truth
 
 
 @dataclass(frozen=True, slots=True)

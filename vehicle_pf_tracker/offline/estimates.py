@@ -16,8 +16,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from itertools import groupby
@@ -25,8 +23,8 @@ from pathlib import Path
 from types import MappingProxyType
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError, read_text
-from vehicle_pf_tracker.offline.output_files import write_csv
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.offline.output_files import read_csv, write_csv
 from vehicle_pf_tracker.trackers.estimate import Mode
 
 
@@ -153,20 +151,11 @@ def read_estimates(path: Path) -> list[EstimateRow]:
     InputError
         If there is no such file, or a line of it is not as `write_estimates` writes it.
     """
-    text = read_text(Path(path), "the estimates")
-    header, *lines = list(csv.reader(io.StringIO(text))) or [[]]
-    if tuple(header[: len(COLUMNS)]) != COLUMNS:
-        raise InputError(f"the estimates {path} must begin with the line {','.join(COLUMNS)}")
-    return [_read_row(path, number, header, line) for number, line in enumerate(lines, start=2)]
+    return read_csv(path, "the estimates", COLUMNS, _row)
 
 
-def _read_row(path: Path, number: int, header: list[str], line: list[str]) -> EstimateRow:
-    try:
-        named = dict(zip(header, line, strict=True))
-        named = {name: named[name] for name in COLUMNS}
-        return EstimateRow.from_scalars(int(named["frame"]), int(named["stamp_ns"]), named)
-    except ValueError as error:
-        raise InputError(f"line {number} of the estimates {path} is broken: {error}") from error
+def _row(line: Mapping[str, str]) -> EstimateRow:
+    return EstimateRow.from_scalars(int(line["frame"]), int(line["stamp_ns"]), line)
 
 
 def _number(name: str, value: float | str) -> float | None:

@@ -20,16 +20,18 @@ import csv
 import io
 import json
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import cv2
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import output_errors
+
+RowT = TypeVar("RowT")
 
 PICTURES = (".png", ".jpg", ".jpeg")
 """Endings of pictures that are written."""
@@ -89,6 +91,27 @@ def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
 def write_csv(path: Path, header: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
     """Write a table in one go; see `csv_text`."""
     write_text(path, csv_text(header, rows))
+
+
+def read_csv(
+    path: Path, what: str, header: Sequence[str], row: Callable[[Mapping[str, str]], RowT]
+) -> list[RowT]:
+    """Read a table that begins with the columns `header`, and make a `row` of each line.
+
+    `what` names it in errors, as ``the truth``.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it begins with other columns, or a line of it makes no row.
+    """
+    lines = csv.DictReader(read_text(path, what).splitlines())
+    if tuple(lines.fieldnames or ())[: len(header)] != tuple(header):
+        raise InputError(f"{what} {path} must begin with the line {','.join(header)}")
+    try:
+        return [row(line) for line in lines]
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise InputError(f"line {lines.line_num} of {what} {path} is broken: {error}") from error
 
 
 def write_picture(path: Path, picture: Frame) -> None:
