@@ -14,19 +14,21 @@
 
 """Segments that were drawn, and lengths and directions by hand."""
 
+from functools import partial
+
 import cv2
 import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image.lines import (
-    LineDetector,
     direction_shares,
+    find_lines,
     lengths_inside,
     line_histograms,
 )
 from vehicle_pf_tracker.image.window import Bounds
 
-DETECTOR = LineDetector(edge_threshold=150.0, shortest=6)
+found_in = partial(find_lines, edge_threshold=150.0, shortest=6)
 
 
 def windows(*rectangles):
@@ -79,7 +81,7 @@ def test_finds_a_drawn_rectangle():
     frame = drawn()
     frame[20:40, 10:50] = 200
     rectangle = windows((0, 0, 80, 60))
-    found = line_histograms(DETECTOR.detect(frame, rectangle), rectangle, 4)[0]
+    found = line_histograms(found_in(frame, rectangle), rectangle, 4)[0]
     # 40 px against 20 px on each side: two thirds horizontal.
     assert found[0] == pytest.approx(2 / 3, abs=0.1)
     assert found[2] == pytest.approx(1 / 3, abs=0.1)
@@ -87,21 +89,21 @@ def test_finds_a_drawn_rectangle():
 
 def test_a_blank_frame_has_no_lines():
     rectangle = windows((0, 0, 80, 60))
-    segments = DETECTOR.detect(drawn(), rectangle)
+    segments = found_in(drawn(), rectangle)
     assert segments.shape == (0, 4)
     assert not line_histograms(segments, rectangle, 8).any()
 
 
 def test_a_short_line_is_left_out():
     frame, rectangle = drawn(((20, 20), (31, 20))), windows((0, 0, 80, 60))
-    assert len(DETECTOR.detect(frame, rectangle)) > 0
-    assert len(LineDetector(150.0, 20).detect(frame, rectangle)) == 0
+    assert len(found_in(frame, rectangle)) > 0
+    assert len(found_in(frame, rectangle, shortest=20)) == 0
 
 
 def test_segments_go_through_the_centres_of_pixels():
     frame = np.zeros((60, 80, 3), np.uint8)
     frame[:, 40:] = 255  # the gradient is largest in the columns 39 and 40
-    segments = DETECTOR.detect(frame, windows((10, 10, 70, 50)))
+    segments = found_in(frame, windows((10, 10, 70, 50)))
     assert len(segments)
     assert np.all(segments % 1 == 0.5)
     assert set(segments[:, [0, 2]].ravel()) <= {39.5, 40.5}
@@ -110,8 +112,8 @@ def test_segments_go_through_the_centres_of_pixels():
 def test_segments_are_in_the_frames_coordinates():
     frame = drawn()
     frame[30:, :] = 255  # an edge at y = 30
-    whole = DETECTOR.detect(frame, windows((0, 0, 80, 60)))
-    part = DETECTOR.detect(frame, windows((40, 20, 70, 40), (45, 25, 75, 45)))
+    whole = found_in(frame, windows((0, 0, 80, 60)))
+    part = found_in(frame, windows((40, 20, 70, 40), (45, 25, 75, 45)))
     assert whole[:, [1, 3]] == pytest.approx(30, abs=1.0)
     assert part[:, [1, 3]] == pytest.approx(30, abs=1.0)
     assert part[:, [0, 2]].min() == pytest.approx(40, abs=4)

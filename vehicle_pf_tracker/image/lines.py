@@ -20,8 +20,6 @@ window is then computed by clipping, exactly and for all windows at once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import cv2
 import numpy as np
 import numpy.typing as npt
@@ -41,48 +39,35 @@ _ANGLE_STEP = np.pi / 36
 eight direction bins."""
 
 
-@dataclass(frozen=True, slots=True)
-class LineDetector:
-    """Settings of Canny's edges and the probabilistic Hough transform.
+def find_lines(frame: Frame, windows: Bounds, edge_threshold: float, shortest: int) -> Segments:
+    """Find the segments in the region that `windows` cover: Canny's edges, probabilistic Hough.
 
-    Attributes
+    Parameters
     ----------
+    frame : (H, W, 3) array
+        RGB.
+    windows : Bounds
+        Pixel rectangles, arrays of shape (N,).
     edge_threshold : float
         Gradient (levels of 255, 3x3 Sobel) at which an edge starts; it continues down to a third.
     shortest : int
         Least length of a segment, in px.
+
+    Returns
+    -------
+    (S, 4) array
+        Segments in the frame's coordinates; S may be 0.
     """
-
-    edge_threshold: float
-    shortest: int
-
-    def detect(self, frame: Frame, windows: Bounds) -> Segments:
-        """Find the segments in the region that `windows` cover.
-
-        Parameters
-        ----------
-        frame : (H, W, 3) array
-            RGB.
-        windows : Bounds
-            Pixel rectangles, arrays of shape (N,).
-
-        Returns
-        -------
-        (S, 4) array
-            Segments in the frame's coordinates; S may be 0.
-        """
-        left = max(int(windows.left.min()) - _MARGIN, 0)
-        top = max(int(windows.top.min()) - _MARGIN, 0)
-        right, bottom = int(windows.right.max()) + _MARGIN, int(windows.bottom.max()) + _MARGIN
-        grey = cv2.cvtColor(frame[top:bottom, left:right], cv2.COLOR_RGB2GRAY)
-        edges = cv2.Canny(grey, self.edge_threshold / 3, self.edge_threshold)
-        found = cv2.HoughLinesP(
-            edges, 1, _ANGLE_STEP, self.shortest, minLineLength=self.shortest, maxLineGap=1
-        )
-        if found is None:
-            return np.zeros((0, 4))
-        # Hough names pixels; their centres lie half a pixel further. OpenCV 4 nests the rows.
-        return np.asarray(np.reshape(found, (-1, 4)) + np.array([left, top, left, top]) + 0.5)
+    left = max(int(windows.left.min()) - _MARGIN, 0)
+    top = max(int(windows.top.min()) - _MARGIN, 0)
+    right, bottom = int(windows.right.max()) + _MARGIN, int(windows.bottom.max()) + _MARGIN
+    grey = cv2.cvtColor(frame[top:bottom, left:right], cv2.COLOR_RGB2GRAY)
+    edges = cv2.Canny(grey, edge_threshold / 3, edge_threshold)
+    found = cv2.HoughLinesP(edges, 1, _ANGLE_STEP, shortest, minLineLength=shortest, maxLineGap=1)
+    if found is None:
+        return np.zeros((0, 4))
+    # Hough names pixels; their centres lie half a pixel further. OpenCV 4 nests the rows.
+    return np.asarray(np.reshape(found, (-1, 4)) + np.array([left, top, left, top]) + 0.5)
 
 
 def lengths_inside(segments: Segments, windows: Bounds) -> Array:
@@ -91,7 +76,7 @@ def lengths_inside(segments: Segments, windows: Bounds) -> Array:
     Parameters
     ----------
     segments : (S, 4) array
-        As from `LineDetector.detect`.
+        As from `find_lines`.
     windows : Bounds
         Pixel rectangles, arrays of shape (N,).
 

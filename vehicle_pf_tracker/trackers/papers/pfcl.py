@@ -28,7 +28,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import from_log
-from vehicle_pf_tracker.image.lines import LineDetector, line_histograms
+from vehicle_pf_tracker.image.lines import find_lines, line_histograms
 from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient
 from vehicle_pf_tracker.image.window import bounds
 from vehicle_pf_tracker.parameters.table import group, parameter
@@ -98,5 +98,5 @@ class PfclTracker(ColourTracker[PfclParameters]):
 
     def _line_histograms(self, frame: Frame, positions: Array) -> Array:
         settings, windows = self.parameters.lines, bounds(frame, positions, self.window)
-        detector = LineDetector(settings.edge_threshold, settings.shortest)
-        return line_histograms(detector.detect(frame, windows), windows, settings.bins)
+        segments = find_lines(frame, windows, settings.edge_threshold, settings.shortest)
+        return line_histograms(segments, windows, settings.bins)
