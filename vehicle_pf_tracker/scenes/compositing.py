@@ -134,13 +134,13 @@ class Sprite:
         rows, columns = integral.shape[0] - 1, integral.shape[1] - 1
         x = (np.arange(window.left, window.right + 1) - box.x) * (columns / box.width)
         y = (np.arange(window.top, window.bottom + 1) - box.y) * (rows / box.height)
-        corners = _interpolate(integral, y.clip(0, rows), x.clip(0, columns))
+        corners = interpolate(integral, y.clip(0, rows), x.clip(0, columns))
         sums: Array = np.diff(np.diff(corners, axis=0), axis=1)
         sums *= box.area / (rows * columns)
         return sums
 
 
-def _interpolate(grid: Array, y: Array, x: Array) -> Array:
+def interpolate(grid: Array, y: Array, x: Array) -> Array:
     """Bilinear values of `grid` at every (y, x), which is exact for an integral of cells."""
     row = np.minimum(y.astype(np.intp), grid.shape[0] - 2)[:, np.newaxis]
     column = np.minimum(x.astype(np.intp), grid.shape[1] - 2)

@@ -23,7 +23,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite
+from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, interpolate
 from vehicle_pf_tracker.scenes.models import standing
 from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.solids import SHADE
@@ -57,11 +57,7 @@ def value_noise(
     down = np.arange(shape[0]) / cell[0]
     right = np.arange(shape[1]) / cell[1]
     grid = rng.uniform(-1, 1, (int(down[-1]) + 2, int(right[-1]) + 2))
-    row, column = down.astype(np.intp), right.astype(np.intp)
-    fy, fx = (down - row)[:, np.newaxis], right - column
-    rows: Array = grid[row] * (1 - fy) + grid[row + 1] * fy
-    result: Array = rows[:, column] * (1 - fx) + rows[:, column + 1] * fx
-    return result
+    return interpolate(grid, down, right)
 
 
 def _tinted(base: Colour, shade: Array) -> Image:
