@@ -131,6 +131,14 @@ MAX_DIFF = 0.01
 """Largest difference of associated stamps, s: well below a frame period at 30 Hz, 0.033 s."""
 
 
+def is_nearest(stamp_ns: int, following_ns: int | None, moment_ns: int, limit_ns: int) -> bool:
+    """Return whether a moment, at most `limit_ns` away, is no nearer to the stamp that follows."""
+    distance = abs(stamp_ns - moment_ns)
+    return distance <= limit_ns and (
+        following_ns is None or abs(following_ns - moment_ns) >= distance
+    )
+
+
 def associate(first_ns: Sequence[int], second_ns: Sequence[int], max_diff: float) -> dict[int, int]:
     """Pair stamps of two lists.
 

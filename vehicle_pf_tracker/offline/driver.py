@@ -25,7 +25,7 @@ from types import MappingProxyType
 from typing import Any, TypeVar
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
+from vehicle_pf_tracker.core.clock import MAX_DIFF, is_nearest, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
@@ -112,7 +112,7 @@ class OfflineTracker:
             If the target is invalid in the first frame, or no frame belongs to the first truth.
         """
         stamped = (StampedFrame(*one) for one in frames)
-        for number, (found, following) in enumerate(_with_next(stamped), start=first):
+        for number, (found, following) in enumerate(with_next(stamped), start=first):
             yield self.row(number, found, following, is_first=number == first)
         self.check_started()
 
@@ -124,12 +124,9 @@ class OfflineTracker:
         next_ns = None if following is None else following.stamp_ns
         self._on_road.append({})
         truth = self._first_truth
-        if truth is not None:
-            distance = abs(stamp_ns - truth.stamp_ns)
-            is_nearest = next_ns is None or abs(next_ns - truth.stamp_ns) >= distance
-            if is_nearest and distance <= self._limit_ns:
-                self._configure_target(truth.box)
-                self._first_truth = None
+        if truth and is_nearest(stamp_ns, next_ns, truth.stamp_ns, self._limit_ns):
+            self._configure_target(truth.box)
+            self._first_truth = None
         if (box := self._targets.get(number)) is not None:
             if is_first:
                 self._configure_target(box)
@@ -247,7 +244,7 @@ def follow(
         for name in trackers
     ]
     with pictures.drawing(frames) as (take, all_frames):
-        for (number, found), later in _with_next(all_frames):
+        for (number, found), later in with_next(all_frames):
             following, is_first = later and later[1], start_ns is None
             start_ns = found.stamp_ns if start_ns is None else start_ns
             of_frame = {
@@ -270,7 +267,7 @@ def follow(
     return rows
 
 
-def _with_next(items: Iterable[ItemT]) -> Iterator[tuple[ItemT, ItemT | None]]:
+def with_next(items: Iterable[ItemT]) -> Iterator[tuple[ItemT, ItemT | None]]:
     """Yield each item with the one after it; None after the last."""
     for current, following in itertools.pairwise(itertools.chain(items, [None])):
         assert current is not None

@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import itertools
 import time
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -29,8 +28,9 @@ from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
+from vehicle_pf_tracker.core.clock import MAX_DIFF, is_nearest, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.offline.driver import with_next
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.messages import NOT_READY, stamp_ns
@@ -265,14 +265,8 @@ def nearest_frame(stamps: Iterable[int], stamp_ns: int, limit_ns: int) -> int | 
 
     Reads no further than one stamp beyond it; None if it is more than `limit_ns` away.
     """
-    followed = itertools.pairwise(itertools.chain(stamps, [None]))
-    for number, (current, following) in enumerate(followed, start=1):
-        assert current is not None
-        distance = abs(current - stamp_ns)
-        is_nearest = following is None or abs(following - stamp_ns) >= distance
-        if is_nearest and distance <= limit_ns:
-            return number
-    return None
+    numbered = enumerate(with_next(stamps), start=1)
+    return next((n for n, pair in numbered if is_nearest(*pair, stamp_ns, limit_ns)), None)
 
 
 def first_image(recording: Recording, options: ReplayOptions) -> RecordedMessage:
