@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -25,25 +25,6 @@ from vehicle_pf_tracker.core.errors import InputError
 
 Frame: TypeAlias = npt.NDArray[np.uint8]
 """RGB image, shape (height, width, 3) of uint8; contiguous or a strided view, never written to."""
-
-
-class CodedFrame(Protocol):
-    """A compressed frame that is decoded only when it is needed."""
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height in px, from its header."""
-        ...
-
-    def decode(self) -> Frame:
-        """Decode it.
-
-        Raises
-        ------
-        InputError
-            If it is damaged.
-        """
-        ...
 
 
 def check_frame(frame: Frame) -> Frame:

@@ -20,7 +20,8 @@ import time
 from collections import Counter as Tally
 from pathlib import Path
 
-from vehicle_pf_tracker.core.frame import CodedFrame, Frame
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.offline.detectors import PacedDetector, Run, call, detector_maker
 from vehicle_pf_tracker.offline.model_files import Progress, silent
 from vehicle_pf_tracker.offline.traffic_drawing import Trails, annotated
@@ -65,7 +66,7 @@ class CountedVehicles:
         return self.session.estimates
 
     def follow(
-        self, image: Frame | CodedFrame, stamp_ns: int, detections: Detections | None
+        self, image: Frame | CodedImage, stamp_ns: int, detections: Detections | None
     ) -> tuple[Crossing, ...]:
         """Take the next image, and return what is counted with it.
 

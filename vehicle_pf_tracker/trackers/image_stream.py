@@ -35,7 +35,8 @@ import numpy as np
 
 from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD, StampClock, StampEvent, Tick
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import CodedFrame, Frame, check_frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.image.compressed_image import CodedImage
 
 Size = tuple[int, int]
 
@@ -237,7 +238,7 @@ class ImageStream:
         self._clock = StampClock(self._frame_rate)
         self._clock_before: StampClock | None = None
         self._continuity = Continuity()
-        self._aside: tuple[Frame | CodedFrame, int] | None = None
+        self._aside: tuple[Frame | CodedImage, int] | None = None
         self._last_size: Size | None = None
 
     def reconfigure(self, frame_rate: float, reset_on_time_jump: bool) -> None:
@@ -248,13 +249,13 @@ class ImageStream:
                 clock.set_frame_rate(frame_rate)
 
     def admit(
-        self, image: Frame | CodedFrame, stamp_ns: int, *, is_tracking: bool = True
+        self, image: Frame | CodedImage, stamp_ns: int, *, is_tracking: bool = True
     ) -> list[Turn]:
         """Return the images to track in now: this one, after the one kept aside if it confirms it.
 
         Parameters
         ----------
-        image : (H, W, 3) array or CodedFrame
+        image : (H, W, 3) array or CodedImage
             RGB; not written to, and copied where it has to be kept. A coded one is decoded only if
             its size is expected, or the next one agrees with it.
         stamp_ns : int
@@ -317,9 +318,9 @@ class ImageStream:
         return Turn(frame, tick.elapsed, period, tuple(events), begins_anew, leaps, corrects)
 
 
-def _size(image: Frame | CodedFrame) -> Size:
+def _size(image: Frame | CodedImage) -> Size:
     return frame_size(image) if isinstance(image, np.ndarray) else image.size
 
 
-def _decoded(image: Frame | CodedFrame) -> Frame:
+def _decoded(image: Frame | CodedImage) -> Frame:
     return image if isinstance(image, np.ndarray) else image.decode()

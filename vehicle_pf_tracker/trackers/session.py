@@ -28,7 +28,8 @@ from typing import Any, Generic, TypeVar
 
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import CodedFrame, Frame, frame_size
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.trackers.base import BaseTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
@@ -101,7 +102,7 @@ class StreamSession(ABC, Generic[TrackerT]):
         return self._stream.size
 
     def _admit(
-        self, image: Frame | CodedFrame, stamp_ns: int, *, is_tracking: bool = True
+        self, image: Frame | CodedImage, stamp_ns: int, *, is_tracking: bool = True
     ) -> list[Turn]:
         """Return the images to track in now; see `ImageStream.admit`."""
         self.events, self.recovered = [], False
@@ -196,12 +197,12 @@ class Session(StreamSession[BaseTracker[Any]]):
         self.tracker.reconfigure(parameters)
         self._stream.reconfigure(parameters.frame_rate, settings.reset_on_time_jump)
 
-    def feed(self, image: Frame | CodedFrame, stamp_ns: int) -> Estimate | None:
+    def feed(self, image: Frame | CodedImage, stamp_ns: int) -> Estimate | None:
         """Take the next image; None while there is no target.
 
         Parameters
         ----------
-        image : (H, W, 3) array or CodedFrame
+        image : (H, W, 3) array or CodedImage
             RGB; not written to, and copied where it has to be kept. A coded one is decoded only if
             it continues the stream, or the next one agrees with it.
         stamp_ns : int

@@ -25,7 +25,8 @@ from collections.abc import Sequence
 
 from vehicle_pf_tracker.core.box import Box, Position, check_target
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import CodedFrame, Frame
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.parameters.configuration import Configuration
@@ -144,7 +145,7 @@ class Vehicles(CountedVehicles):
         return self.selection.of(self.estimates)
 
     def feed(
-        self, image: Frame | CodedFrame, stamp_ns: int, detections: Detections | None
+        self, image: Frame | CodedImage, stamp_ns: int, detections: Detections | None
     ) -> list[str]:
         """Take the next image; returns its events, a sentence each.
 

@@ -28,7 +28,8 @@ from typing import Protocol
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import CodedFrame, Frame
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.counting_plan import Region
 from vehicle_pf_tracker.trackers.image_stream import Turn
 from vehicle_pf_tracker.trackers.session import StreamSession
@@ -161,13 +162,13 @@ class TrafficSession(StreamSession[TrafficTracker]):
         self._stream.reconfigure(frame_rate, reset_on_time_jump)
 
     def feed(
-        self, image: Frame | CodedFrame, stamp_ns: int, detections: Detections | None = None
+        self, image: Frame | CodedImage, stamp_ns: int, detections: Detections | None = None
     ) -> tuple[TrackEstimate, ...]:
         """Take the next image.
 
         Parameters
         ----------
-        image : Frame or CodedFrame
+        image : Frame or CodedImage
             RGB image, not written to; a coded one is decoded only if it continues the stream.
         stamp_ns : int
             Its stamp in ns.
