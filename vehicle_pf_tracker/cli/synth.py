@@ -22,11 +22,10 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import UsageError, counting
 from vehicle_pf_tracker.cli.requests import Names, OverwriteOption, option, positional, switch
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.image.compressed_image import jpeg
-from vehicle_pf_tracker.offline.output_files import replacing
+from vehicle_pf_tracker.offline.output_files import write_csv
 from vehicle_pf_tracker.offline.pictures import SUFFIX, video_writer
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.recordings.importing import FORMATS
@@ -83,9 +82,9 @@ def run(request: Request) -> int:
         return 0
     if request.format:
         raise UsageError("--format is for recordings; a video is H.264")
-    truth, box = _film(scene, request.out, overwrite=request.overwrite)
-    target = ",".join(f"{value:.0f}" for value in astuple(box))
-    print(f"{facts}; the truth is in {truth}, and begins with --target {target}")
+    table = _film(scene, request.out, overwrite=request.overwrite)
+    target = ",".join(f"{value:.0f}" for value in astuple(scene.truth(0).box))
+    print(f"{facts}; the truth is in {table}, and begins with --target {target}")
     return 0
 
 
@@ -107,26 +106,19 @@ def record_scene(scene: Scene, out: Path, form: str = "raw", *, overwrite: bool 
             progress(number, scene.frame_count)
 
 
-def _film(scene: Scene, out: Path, *, overwrite: bool) -> tuple[Path, Box]:
-    """Render `scene` into a video, and its truth into a table; return the table and first box."""
-    table = out.with_suffix(".csv")
-    lines, boxes = ["frame,x,y,w,h,occ"], []
-    size = scene.width, scene.height
-    with (
-        claimed([out, table], [], overwrite=overwrite),
-        replacing(table) as partial,
-        video_writer(out, size, scene.frame_rate) as write,
-        counting("rendered") as progress,
-    ):
-        for number, rendered in enumerate(scene.frames(), start=1):
-            write(rendered.frame, (number - 1) / scene.frame_rate)
-            box = rendered.truth.box
-            boxes.append(box)
-            cells = (f"{value:.3f}" for value in astuple(box))
-            lines.append(f"{number},{','.join(cells)},{rendered.truth.occlusion.value}")
-            progress(number, scene.frame_count)
-        partial.write_text("\n".join([*lines, ""]), encoding="utf-8", newline="\n")
-    return table, boxes[0]
+def _film(scene: Scene, out: Path, *, overwrite: bool) -> Path:
+    """Render `scene` into a video, and its truth into a table, whose path is returned."""
+    table, size = out.with_suffix(".csv"), (scene.width, scene.height)
+    rows = []
+    with claimed([out, table], [], overwrite=overwrite):
+        with video_writer(out, size, scene.frame_rate) as write, counting("rendered") as progress:
+            for number, rendered in enumerate(scene.frames(), start=1):
+                write(rendered.frame, (number - 1) / scene.frame_rate)
+                sides = (f"{value:.3f}" for value in astuple(rendered.truth.box))
+                rows.append([number, *sides, rendered.truth.occlusion.value])
+                progress(number, scene.frame_count)
+        write_csv(table, ("frame", "x", "y", "w", "h", "occ"), rows)
+    return table
 
 
 def _listing() -> Iterator[str]:
