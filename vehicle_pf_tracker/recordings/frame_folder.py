@@ -84,7 +84,7 @@ class FrameFolder(Footage):
         identity: int | None = None,
     ) -> None:
         self._folder = folder
-        self.images = _numbered_images(folder)
+        self.images = numbered_images(folder)
         self.frame_count = len(self.images)
         stated = _frame_rate(folder) if fps is None else check_fps(fps, "--fps")
         self._is_assumed = stated is None
@@ -109,7 +109,7 @@ class FrameFolder(Footage):
     def frames(self) -> Iterator[Picture]:
         """Yield the images by their numbers."""
         for (number, path), stamp in zip(self.images.items(), self.stamps, strict=True):
-            yield _picture(path, stamp, self.rows.get(number))
+            yield read_picture(path, stamp, self.rows.get(number))
 
     def truth(self) -> list[Truth]:
         """Return the truth of all images, in order."""
@@ -117,7 +117,7 @@ class FrameFolder(Footage):
         return [self.rows[n].at(stamp) for n, stamp in stamps.items() if n in self.rows]
 
     def _size(self) -> tuple[int, int]:
-        return frame_size(_picture(next(iter(self.images.values())), 0, None).frame)
+        return frame_size(read_picture(next(iter(self.images.values()))).frame)
 
     @property
     def notices(self) -> list[str]:
@@ -141,8 +141,14 @@ def image_files(folder: Path) -> list[Path]:
     return []
 
 
-def _numbered_images(folder: Path) -> dict[int, Path]:
-    """Return images by number: their name, else its last digits, else their order."""
+def numbered_images(folder: Path) -> dict[int, Path]:
+    """Return images by number: their name, else its last digits, else their order.
+
+    Raises
+    ------
+    InputError
+        If there are none, or two have one number.
+    """
     paths = image_files(folder)
     if not paths:
         raise InputError(f"the folder {folder} has no images img/000001.jpg, ... (jpg or png)")
@@ -197,7 +203,14 @@ def _of_ini(text: str) -> float:
     return float(parser["Sequence"]["frameRate"])
 
 
-def _picture(path: Path, stamp_ns: int, row: TruthRow | None) -> Picture:
+def read_picture(path: Path, stamp_ns: int = 0, row: TruthRow | None = None) -> Picture:
+    """Read an image, which has this stamp and truth.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
     coded_format = FORMATS[path.suffix.lower()]
     try:
         coded = path.read_bytes()

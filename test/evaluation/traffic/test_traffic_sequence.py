@@ -67,8 +67,11 @@ def test_images_are_rgb(folder):
 
 
 def test_a_missing_image_is_named(folder):
-    with pytest.raises(InputError, match="no readable image 000001"):
+    with pytest.raises(InputError, match="has no images"):
         next(read_sequence(folder).frames())
+    cv2.imwrite(str(folder / "img1" / "000001.png"), np.zeros((30, 40, 3), np.uint8))
+    with pytest.raises(InputError, match="tiny has no image 2"):
+        list(read_sequence(folder).frames())
 
 
 def test_what_is_no_such_folder_is_told(tmp_path, folder):

@@ -21,13 +21,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.recordings.frame_folder import numbered_images, read_picture
 from vehicle_pf_tracker.recordings.truth_formats import numbers_in, table_rows
 
 TOTAL_OCCLUSION = 0.1
@@ -75,13 +75,11 @@ class TrafficSequence:
 
     def frames(self) -> Iterator[Frame]:
         """Read the images, in order."""
-        folder = self.folder / "img1"
+        images = numbered_images(self.folder)
         for number in range(1, self.frame_count + 1):
-            path = next(iter(sorted(folder.glob(f"{number:06d}.*"))), None)
-            image = cv2.imread(str(path)) if path else None
-            if image is None:
-                raise InputError(f"{folder} has no readable image {number:06d}")
-            yield np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB), dtype=np.uint8)
+            if number not in images:
+                raise InputError(f"{self.folder} has no image {number}")
+            yield read_picture(images[number]).frame
 
 
 def read_sequence(folder: Path) -> TrafficSequence:
