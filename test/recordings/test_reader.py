@@ -87,7 +87,7 @@ def test_raw_frames_are_views_that_cannot_be_written_to(record):
 
 def test_a_single_frame_is_a_recording(record):
     recording = Recording(record(1))
-    assert recording.end_ns == recording.start_ns
+    assert recording.duration_ns == 0
     assert stamps(recording) == [stamp_of(0)]
     assert len(recording.truth()) == 1
 
@@ -103,12 +103,14 @@ def test_truth_has_the_stamps_of_the_images_and_its_numbers(record):
         assert found.box.height == pytest.approx(expected.box.height, abs=1e-5)
         assert found.occlusion is expected.occlusion
         assert found.visible_fraction == expected.visible_fraction
+    assert recording.first_truth() == truth[0]
 
 
 def test_no_truth_topics_are_no_truth(tmp_path):
     with RecordingWriter(tmp_path / "bag") as writer:
         writer.write_image(stamp_of(0), frame_of(0))
     assert Recording(tmp_path / "bag").truth() == ()
+    assert Recording(tmp_path / "bag").first_truth() is None
 
 
 def test_a_bare_file_reads_like_its_folder(record):
@@ -239,7 +241,7 @@ def test_a_split_recording_is_one(record, tmp_path):
     assert recording.frame_count == 12
     assert stamps(recording) == [stamp_of(index) for index in range(12)]
     assert len(recording.truth()) == 12
-    assert recording.end_ns - recording.start_ns == 11 * PERIOD_NS
+    assert recording.duration_ns == 11 * PERIOD_NS
 
 
 def test_a_folder_without_usable_metadata_is_read_by_its_files(record, tmp_path):
@@ -315,6 +317,9 @@ def test_seeking_reads_only_what_is_wanted(record, monkeypatch):
         stamp_of(index) for index in range(56, 60)
     ]
     assert 0 < sum(read) < total / 4
+    read.clear()
+    assert recording.first_truth() is not None
+    assert sum(read) < total / 2
 
 
 @pytest.mark.parametrize("chunked", [True, False])

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -118,6 +118,11 @@ class Recording:
         self._notices = ReadNotices(self.path, self.image_topic, found, self.files)
 
     @property
+    def duration_ns(self) -> int:
+        """Time from the first to the last message in ns."""
+        return self.end_ns - self.start_ns
+
+    @property
     def notices(self) -> list[str]:
         """Irregularities, a sentence each; the list grows while reading."""
         return self._notices.sentences
@@ -169,16 +174,21 @@ class Recording:
         """
         if not self._has_truth():
             return ()
+        return self._assemble(self._select(messages.TRUTH_TOPICS))
 
-        def received() -> Iterator[tuple[str, Any]]:
-            for index, message in self._select(messages.TRUTH_TOPICS):
-                topic = index.channels[message.channel_id].topic
-                yield topic, deserialize(message.data, messages.TRUTH_TYPES[topic])
-
-        try:
-            return messages.truth_from_messages(received(), self.files[-1].is_truncated)
-        except InputError as error:
-            raise InputError(f"the truth of {self.path} is broken: {error}") from error
+    def first_truth(self) -> Truth | None:
+        """Read the earliest truth alone, without reading the whole recording."""
+        if not self._has_truth():
+            return None
+        early: list[tuple[McapIndex, Message]] = []
+        for found in self._select(messages.TRUTH_TOPICS):
+            # Topics of one stamp may be recorded some time apart.
+            if early and found[1].log_time_ns > early[0][1].log_time_ns + 500_000_000:
+                break
+            early.append(found)
+        stamps = [header_stamp_ns(message.data) or 0 for _, message in early]
+        first = [found for found, stamp in zip(early, stamps, strict=True) if stamp == min(stamps)]
+        return next(iter(self._assemble(first)), None)
 
     def messages(
         self,
@@ -247,6 +257,17 @@ class Recording:
         if found and not any(info.message_count for info in found):
             raise InputError(f"the truth topics of {self.path} are empty")
         return bool(found)
+
+    def _assemble(self, found: Iterable[tuple[McapIndex, Message]]) -> tuple[Truth, ...]:
+        def received() -> Iterator[tuple[str, Any]]:
+            for index, message in found:
+                topic = index.channels[message.channel_id].topic
+                yield topic, deserialize(message.data, messages.TRUTH_TYPES[topic])
+
+        try:
+            return messages.truth_from_messages(received(), self.files[-1].is_truncated)
+        except InputError as error:
+            raise InputError(f"the truth of {self.path} is broken: {error}") from error
 
     def _check_readable(self) -> None:
         if any(index.blocks for index in self.files):

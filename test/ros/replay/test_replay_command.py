@@ -66,7 +66,7 @@ def numbers(rows):
 def track_offline(variant, recording):
     kind = find_variant(variant)
     parameters = from_mapping(kind.parameters, {"seed": 5})
-    tracker = OfflineTracker(kind, parameters, first_truth=recording.truth()[0])
+    tracker = OfflineTracker(kind, parameters, first_truth=recording.first_truth())
     return list(tracker.rows((item.stamp_ns, item.frame) for item in recording.frames()))
 
 

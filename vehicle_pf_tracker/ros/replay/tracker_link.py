@@ -246,7 +246,9 @@ def starting_target(recording: Recording, options: ReplayOptions) -> tuple[Box, 
     if options.target is not None:
         return options.target, 1
     earliest_ns = (first_image(recording, options).stamp_ns or 0) - max_diff_ns(MAX_DIFF)
-    truth = next((item for item in recording.truth() if item.stamp_ns >= earliest_ns), None)
+    truth = recording.first_truth()
+    if truth is not None and truth.stamp_ns < earliest_ns:
+        truth = next((item for item in recording.truth() if item.stamp_ns >= earliest_ns), None)
     if truth is None:
         return None
     images = played(recording, options, {recording.image_topic})
