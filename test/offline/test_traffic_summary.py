@@ -25,21 +25,24 @@ from vehicle_pf_tracker.offline.traffic_drawing import HeatPicture, PathPicture,
 from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate, TrackMode
 
 MODES = {
     "t": TrackMode.TENTATIVE,
     "T": TrackMode.TRACKING,
     "O": TrackMode.OCCLUDED,
     "L": TrackMode.LOST,
+    "B": TrackMode.LOST,
 }
+"""B: beyond the border."""
 
 NOWHERE = Counter(CountingPlan())
 
 
 def estimate(identity, mode, box=None, label=""):
+    hider = BORDER if mode == "B" else None
     return TrackEstimate(
-        identity, box or Box(0, 0, 9, 9), (0, 0), MODES[mode], 0.9, label, 0.5, 1.0, None
+        identity, box or Box(0, 0, 9, 9), (0, 0), MODES[mode], 0.9, label, 0.5, 1.0, hider
     )
 
 
@@ -58,6 +61,12 @@ def test_occlusions_survived_are_counted():
     assert summary.ended_hidden == 1
     assert len(summary.vehicles) == 3
     assert summary.most_at_once == 3
+
+
+def test_leaving_is_no_occlusion_and_ends_none():
+    summary = summed("TTTTTTBB", "TTTOOOBB", "TTTTBBTT")
+    assert summary.survived == 0
+    assert summary.ended_hidden == 1
 
 
 def test_a_vehicle_that_is_never_confirmed_is_none():

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.watches import ENTRY, EXIT
 
 
@@ -37,7 +37,7 @@ class VehicleLog:
     survived : int
         Occlusions after which it was visible under the same number.
     is_hidden : bool
-        True from the beginning of an occlusion until it is visible again.
+        True from the beginning of an occlusion until it is visible again; leaving is none.
     """
 
     label: str = ""
@@ -87,7 +87,8 @@ class TrafficSummary:
         if is_visible:
             vehicle.survived += vehicle.is_hidden
             vehicle.label = one.label or vehicle.label
-        vehicle.is_hidden = not is_visible
+        if is_visible or one.hidden_by != BORDER:
+            vehicle.is_hidden = not is_visible
 
     @property
     def survived(self) -> int:

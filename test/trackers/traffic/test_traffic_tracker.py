@@ -24,7 +24,7 @@ from hypothesis import strategies as st
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
@@ -92,6 +92,19 @@ def test_a_vehicle_behind_something_is_occluded_and_comes_back_under_its_number(
     assert set(numbers) == {1}
     assert set(modes) == {(TrackMode.OCCLUDED, SCENE)}
     assert estimates[0].mode is TrackMode.TRACKING
+
+
+def test_a_vehicle_that_leaves_is_lost_and_the_border_hides_it():
+    tracker = TrafficTracker(replace(FLAT, pixels=False))
+    left, modes = -20, []
+    for index in range(65):
+        place = 200 - 4 * index
+        seen = [(max(place, 0), 100, 40 + min(place, 0), 30)] if place > left else []
+        estimates = tracker.step(GROUND, Detections.make(np.reshape(seen, (-1, 4))))
+        modes += [(one.mode, one.hidden_by) for one in estimates if one.identity]
+    assert modes[-1] == (TrackMode.LOST, BORDER)
+    assert {mode for mode, _ in modes} == {TrackMode.TRACKING, TrackMode.LOST}
+    assert not estimates
 
 
 def test_a_hidden_vehicle_is_lost_and_forgotten_by_seconds():

@@ -23,13 +23,16 @@ from vehicle_pf_tracker.core.box import Box, Position
 
 SCENE = "scene"
 """Occluder of a track that nothing followed hides: a sign, a bridge, the unknown."""
+BORDER = "border"
+"""The same of a track that is mostly outside the image: it leaves."""
 
 
 class TrackMode(str, Enum):
     """Claim about a vehicle.
 
     `TENTATIVE` has too little evidence yet; `TRACKING` is seen; `OCCLUDED` is taken to be hidden
-    and is predicted; `LOST` has been hidden for too long to be predicted, or is rather not there.
+    and is predicted; `LOST` has been hidden for too long to be predicted, has left the
+    image, or is rather not there.
     """
 
     TENTATIVE = "TENTATIVE"
@@ -61,8 +64,8 @@ class TrackEstimate:
         Score of the detection that it was matched with in this frame; NaN without one.
     age : float
         Time since it was first seen, in nominal frame periods.
-    hidden_by : int or "scene" or None
-        Identity of the vehicle that hides it, `SCENE`, or None where it is in sight.
+    hidden_by : int or "scene" or "border" or None
+        Identity of the vehicle that hides it, `SCENE`, `BORDER`, or None where it is in sight.
     serial : int
         Number of its track, the same before and after it is confirmed.
     joined : int

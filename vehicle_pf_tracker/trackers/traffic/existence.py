@@ -246,7 +246,9 @@ class Existence:
         shares = inside_image(edges_of(tracks), size).tolist()
         for track, inside in zip(tracks, shares, strict=True):
             unseen = track.unseen * period
-            track.lose(unseen > self.parameters.lost_after or self._is_doubtful(track))
+            has_left = track.inside < HALF and track.unseen >= SEEN_WITHIN
+            is_old = unseen > self.parameters.lost_after
+            track.lose(is_old or has_left or self._is_doubtful(track))
             if self._goes_on(track, unseen, inside):
                 kept.append(track)
                 continue

@@ -25,7 +25,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.colours import BINS
 from vehicle_pf_tracker.trackers.traffic.detections import CERTAIN, HALF, NOTHING, Place, Sample
-from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import ACROSS, Drive, VehicleState, W
 
@@ -73,7 +73,7 @@ class Track:
     shown : (2,) array
         Largest width and height of its latest detections, of its own.
     lost : bool
-        It has been hidden for too long to be predicted, or is rather not there.
+        It has been hidden for too long to be predicted, has left, or is rather not there.
     has_driven : bool
         Its way shows that it is no part of the scene.
     given : bool
@@ -319,6 +319,7 @@ class Track:
         mode, state = self.mode, self.state
         confidence = 1 / (1 + math.exp(-self.log_odds))
         hidden = mode in (TrackMode.OCCLUDED, TrackMode.LOST)
+        unknown = SCENE if self.inside >= HALF else BORDER
         return TrackEstimate(
             identity=self.identity,
             serial=self.serial,
@@ -330,7 +331,7 @@ class Track:
             label=self.label,
             score=self.score,
             age=self.age,
-            hidden_by=(self.hidden_by or SCENE) if hidden else None,
+            hidden_by=(self.hidden_by or unknown) if hidden else None,
         )
 
 
