@@ -170,6 +170,21 @@ def test_the_share_of_a_place_is_a_beta_binomial_estimate():
     assert shares == pytest.approx([2 * usual / 4, (1 + 2 * usual) / 3])
 
 
+@pytest.mark.parametrize("found", [True, False])
+def test_what_becomes_of_a_vehicle_becomes_of_the_part_that_was_missing(found):
+    existence = Existence(TrafficParameters(), DetectionEvidence())
+    one = vanish(existence, 100.0)
+    for _ in range(FEW):
+        one.shorten((3, 5), is_short=True)
+    if found:
+        existence.resume(one, track(2, 100.0))
+    else:
+        one.unseen = 1e3
+        existence.survivors([one], SIZE, 1 / 30)
+    assert (existence.uncoverings.share((3, 5)) > 0.5) is found
+    assert one.shortened is None
+
+
 def test_a_place_is_learnt_anew():
     existence = Existence(TrafficParameters(), DetectionEvidence())
     for _ in range(500):

@@ -17,8 +17,9 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.detections import overlaps
+from vehicle_pf_tracker.trackers.traffic.detections import overlaps, places_of
 from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure, outgrown
+from vehicle_pf_tracker.trackers.traffic.occlusion import Returns
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
 from vehicle_pf_tracker.trackers.traffic.track import FEW, Track, predict
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
@@ -26,6 +27,8 @@ from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, Vehic
 SIZE = (320, 240)
 DRIVE, ROAD = Drive(0.001, 0.5, 400.0), Drive(0.002, 0.5, 768.0)
 BOX = np.array([100.0, 100, 140, 130])
+PART = BOX - (0, 0, 0, 12)
+(PLACE,) = places_of(BOX[None], SIZE)
 
 
 @pytest.fixture
@@ -36,9 +39,11 @@ def track():
     return one
 
 
-def measured(track, detection, *others):
+def measured(track, detection, *others, uncoverings=None, settings=None):
     edges = np.array([detection], float)
-    (whole,) = measure([track], edges, DetectionParameters(), SIZE, np.vstack([edges, *others]))
+    every = np.vstack([edges, *others])
+    settings = settings or DetectionParameters()
+    (whole,) = measure([track], edges, settings, SIZE, every, uncoverings or Returns())
     return whole
 
 
@@ -48,7 +53,7 @@ def test_a_whole_detection_measures_every_edge(track):
 
 
 def test_a_covered_edge_does_not_brake_the_vehicle(track):
-    assert not measured(track, BOX - (0, 0, 0, 12))
+    assert not measured(track, PART)
     assert track.state.edges[Edge.BOTTOM] == pytest.approx(130, abs=0.3)
     assert track.partial == 1
 
@@ -85,14 +90,38 @@ def test_what_was_shown_of_a_vehicle_grows_with_it(track):
     settings = DetectionParameters(edge_noise=0.1)  # no edge jumps by a fifth of the height
     twice = np.array([80.0, 80, 160, 140])
     track.state.resize(twice)
-    part = np.array([twice - (0, 0, 0, 12)])
-    assert not measure([track], part, settings, SIZE, part)[0]
+    assert not measured(track, twice - (0, 0, 0, 12), settings=settings)
 
 
 def test_no_edge_stays_covered_for_ever(track):
     for _ in range(200):
-        measured(track, BOX - (0, 0, 0, 12))
+        measured(track, PART)
     assert track.state.edges[Edge.BOTTOM] < 125
+
+
+@pytest.mark.parametrize("found", [True, False])
+def test_where_parts_do_not_come_back_a_smaller_vehicle_is_believed_soon(track, found):
+    uncoverings = Returns()
+    uncoverings.learn(PLACE, found=found)
+    for _ in range(FEW):
+        measured(track, PART, uncoverings=uncoverings)
+    assert track.state.edges[Edge.BOTTOM] == pytest.approx(130, abs=0.1)
+    for _ in range(20):
+        measured(track, PART, uncoverings=uncoverings)
+    assert bool(track.state.edges[Edge.BOTTOM] > 129.9) is found
+
+
+def test_where_parts_come_back_is_learnt(track):
+    uncoverings = Returns()
+    for box in [PART] * FEW + [BOX]:
+        measured(track, box, uncoverings=uncoverings)
+    assert uncoverings.share(PLACE) > 0.5
+    for box in [PART] * (FEW - 1) + [BOX]:  # too few to tell
+        measured(track, box, uncoverings=uncoverings)
+    assert uncoverings.share(PLACE) == pytest.approx((1 + 2 * 2 / 3) / 3)
+    for _ in range(100):
+        measured(track, PART, uncoverings=uncoverings)
+    assert uncoverings.share(PLACE) == pytest.approx(1 / 2)
 
 
 def test_a_vehicle_cut_at_the_border_gets_the_usual_height():
@@ -165,6 +194,6 @@ def test_a_vehicle_that_drives_away_fast_before_a_wrong_horizon_is_followed(rate
     track = Track(1, first_state(boxes[0], 0.05, -72.0, ROAD, (640, 640)), 1, matches=1)
     for box in boxes[1:]:
         predict([track], -72.0, 1.0, ROAD)
-        measure([track], box[None], DetectionParameters(), (640, 640), box[None])
+        measure([track], box[None], DetectionParameters(), (640, 640), box[None], Returns())
         track.add_evidence(box, 0.0, 0.0)
         assert overlaps(track.state.edges, box) > 0.6

@@ -19,20 +19,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
-from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections
 from vehicle_pf_tracker.trackers.traffic.detections import (
     CERTAIN,
-    GRID,
     HALF,
     LITTLE,
     DetectionEvidence,
-    Place,
     inside_image,
     places_of,
 )
+from vehicle_pf_tracker.trackers.traffic.occlusion import Returns
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.track import (
     FEW,
@@ -65,44 +61,11 @@ vehicles' detections have lower ones: a spot that looks like a vehicle does so e
 such scores are worth one."""
 _PRIOR = 10.0
 """Vehicles in plain sight that were detected, and that were missed, before any was seen."""
-_UNIFORM = 2.0
-"""Outcomes that a prior is worth: as many as a uniform one."""
 _BLIND_FROM = 2
 """Least vehicles in sight, all missed in one image, for the detector to have failed:
 they did not all vanish at once."""
 _BLIND_FOR = 150.0
 """Nominal periods after which a vehicle that no detector sees is doubted even so: 5 s at 30 Hz."""
-
-
-class Reappearances:
-    """How many of the vehicles that vanished in plain sight were found again, by place.
-
-    Below a bridge nearly all are, elsewhere hardly any: what vanished was no vehicle, or its
-    detections went to another. The share in one place is a beta-binomial estimate, whose prior is
-    the share everywhere; that begins at a half.
-    """
-
-    def __init__(self) -> None:
-        self._counts = np.zeros((2, GRID, GRID))
-
-    def learn(self, place: Place, *, found: bool) -> None:
-        """Add the outcome of one vehicle."""
-        row, column = place
-        self._counts[int(found), row, column] += 1
-        if self._counts[:, row, column].sum() > SETTLED_AFTER:
-            self._counts[:, row, column] /= 2  # leaves and road works come and go
-
-    def share(self, place: Place) -> float:
-        """Share of them that are found again."""
-        row, column = place
-        everywhere = _estimated(self._counts.sum(axis=(1, 2)), HALF)
-        return _estimated(self._counts[:, row, column], everywhere)
-
-
-def _estimated(outcomes: Array, prior: float) -> float:
-    """Posterior mean of a share, of the numbers without and with it."""
-    without, found = outcomes.tolist()
-    return float((found + _UNIFORM * prior) / (without + found + _UNIFORM))
 
 
 class Existence:
@@ -117,15 +80,15 @@ class Existence:
 
     Attributes
     ----------
-    reappearances : Reappearances
-        What became of vehicles that vanished in plain sight.
+    reappearances, uncoverings : Returns
+        What became of vehicles that vanished in plain sight, and of parts of others that did.
     """
 
     def __init__(self, parameters: TrafficParameters, evidence: DetectionEvidence) -> None:
         self.parameters = parameters
         self._evidence = evidence
         self._detected, self._asked = _PRIOR, 2 * _PRIOR
-        self.reappearances = Reappearances()
+        self.reappearances, self.uncoverings = Returns(), Returns()
 
     @property
     def detection_rate(self) -> float:
@@ -163,6 +126,8 @@ class Existence:
     def _note_found(self, track: Track) -> None:
         if track.vanished is not None:
             self.reappearances.learn(track.vanished, found=True)
+            if (place := track.take_shortened()) is not None:
+                self.uncoverings.learn(place, found=True)
 
     def _add(self, track: Track, found: FrameDetections, index: int, fit: float) -> bool:
         sample, log_odds = found.samples[index], float(found.log_odds[index])
@@ -253,14 +218,22 @@ class Existence:
                 kept.append(track)
                 continue
             if track.confirmed:
-                if track.vanished is not None and inside > LITTLE:
-                    self.reappearances.learn(track.vanished, found=False)
+                if inside > LITTLE:
+                    self._note_end(track)
                 continue
             # What drove may have been a vehicle, and tells nothing about its detections.
             if track.matches < FEW or not self._drives(track):
                 for sample in track.samples:
                     self._evidence.learn(sample, False)
         return kept
+
+    def _note_end(self, track: Track) -> None:
+        for returns, place in (
+            (self.reappearances, track.vanished),
+            (self.uncoverings, track.take_shortened()),
+        ):
+            if place is not None:
+                returns.learn(place, found=False)
 
     def _is_doubtful(self, track: Track) -> bool:
         """Test whether a vehicle is rather not there, by what is known of it or of its place."""

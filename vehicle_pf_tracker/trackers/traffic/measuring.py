@@ -28,7 +28,15 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.association import INWARD, cut_edges, deviations
-from vehicle_pf_tracker.trackers.traffic.detections import HALF, INSIDE, LITTLE, areas
+from vehicle_pf_tracker.trackers.traffic.detections import (
+    HALF,
+    INSIDE,
+    LITTLE,
+    Place,
+    areas,
+    places_of,
+)
+from vehicle_pf_tracker.trackers.traffic.occlusion import Returns
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
 from vehicle_pf_tracker.trackers.traffic.track import FEW, RATE, Track, edges_of
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
@@ -99,6 +107,7 @@ def measure(
     settings: DetectionParameters,
     size: tuple[int, int],
     others: Array,
+    uncoverings: Returns,
 ) -> npt.NDArray[np.bool_]:
     """Correct the states of tracks, each by its detection; True where the whole was measured.
 
@@ -114,6 +123,8 @@ def measure(
         Width and height of the image.
     others : (M, 4) array
         Edges of all detections, px.
+    uncoverings : Returns
+        Learns where missing parts of vehicles come back: there something covers them.
     """
     _divide(tracks, edges, others)
     states = VehicleState.stacked([track.state for track in tracks])
@@ -131,7 +142,12 @@ def measure(
     crept = np.tile(shrunk, 2) & (normal > np.maximum(opposite, 0.0))
     recede = _recede(tracks, edges, settings.edge_noise) & ~unknown.any(axis=1)
     covered = (jumped | crept) & ~unknown & ~recede[:, np.newaxis]
-    patient = np.array([one.matches >= FEW and one.partial < SETTLED_AFTER for one in tracks])
+    places = places_of(predicted, size)
+    shorter = (sides < _WHOLE * latest).any(axis=1)
+    for index in np.flatnonzero(~unknown.any(axis=1)).tolist():
+        _shorten(tracks[index], places[index], uncoverings, is_short=bool(shorter[index]))
+    pairs = zip(tracks, places, strict=True)
+    patient = np.array([_is_patient(track, place, uncoverings) for track, place in pairs])
     left_out = unknown | (covered & patient[:, np.newaxis])
     residuals = np.where(left_out, 0.0, (predicted - edges) * INWARD)
     drifts = _doubt_drives(tracks, states, residuals, spread, recede)
@@ -141,6 +157,20 @@ def measure(
     for track, shown, drift, is_whole in zip(tracks, latest, drifts, whole.tolist(), strict=True):
         track.measured(shown, drift, is_whole=is_whole)
     return np.asarray(whole)
+
+
+def _shorten(track: Track, place: Place, uncoverings: Returns, *, is_short: bool) -> None:
+    """Note whether less of a vehicle was detected than before, and what becomes of the rest."""
+    short = track.shorten(place, is_short=is_short)
+    if short in (0, SETTLED_AFTER) and (began := track.take_shortened()) is not None:
+        uncoverings.learn(began, found=short == 0)
+
+
+def _is_patient(track: Track, place: Place, uncoverings: Returns) -> bool:
+    """Test whether edges that seem covered are left out: the longer, where they are seen again."""
+    if track.matches < FEW or track.partial >= SETTLED_AFTER:
+        return False
+    return track.partial < FEW or uncoverings.share(track.shortened or place) >= HALF
 
 
 def _recede(tracks: Sequence[Track], edges: Array, noise: float) -> npt.NDArray[np.bool_]:

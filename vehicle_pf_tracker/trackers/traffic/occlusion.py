@@ -12,7 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Occlusions among vehicles: whose lower edge is nearer on the road hides the other."""
+"""Occlusions: what hides vehicles, and where they are seen again.
+
+Of two vehicles, the one whose lower edge is nearer on the road hides the other.
+"""
 
 from __future__ import annotations
 
@@ -20,10 +23,53 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.detections import HALF, NOTHING, areas, inside_image
+from vehicle_pf_tracker.trackers.traffic.detections import (
+    GRID,
+    HALF,
+    NOTHING,
+    Place,
+    areas,
+    inside_image,
+)
 from vehicle_pf_tracker.trackers.traffic.track import FEW, Track, edges_of
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import SETTLED_AFTER
+
+_UNIFORM = 2.0
+"""Outcomes that a prior is worth: as many as a uniform one."""
+
+
+class Returns:
+    """How much of what vanished in plain sight was seen again, by place.
+
+    Below a bridge nearly all is, elsewhere hardly anything: what vanished was no vehicle, or no
+    part of one, or its detections went to another. The share in one place is a beta-binomial
+    estimate, whose prior is the share everywhere; that begins at a half.
+    """
+
+    def __init__(self) -> None:
+        self._counts = np.zeros((2, GRID, GRID))
+
+    def learn(self, place: Place, *, found: bool) -> None:
+        """Add an outcome."""
+        row, column = place
+        self._counts[int(found), row, column] += 1
+        if self._counts[:, row, column].sum() > SETTLED_AFTER:
+            self._counts[:, row, column] /= 2  # leaves and road works come and go
+
+    def share(self, place: Place) -> float:
+        """Share that is seen again."""
+        row, column = place
+        everywhere = _estimated(self._counts.sum(axis=(1, 2)), HALF)
+        return _estimated(self._counts[:, row, column], everywhere)
+
+
+def _estimated(outcomes: Array, prior: float) -> float:
+    """Posterior mean of a share, of the numbers without and with it."""
+    without, found = outcomes.tolist()
+    return float((found + _UNIFORM * prior) / (without + found + _UNIFORM))
 
 
 def nearest_first(tracks: Sequence[Track], road: RoadPlane | None) -> list[Track]:

@@ -27,6 +27,7 @@ from vehicle_pf_tracker.trackers.traffic.colours import BINS
 from vehicle_pf_tracker.trackers.traffic.detections import CERTAIN, HALF, NOTHING, Place, Sample
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
+from vehicle_pf_tracker.trackers.traffic.straight_drive import StraightDrive
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import ACROSS, Drive, VehicleState, W
 
 SEEN_WITHIN = 2.0
@@ -38,8 +39,6 @@ RATE = 0.25
 the latest four count for two thirds."""
 FALL = 0.2
 """Fall of the colours' similarity below its usual value above which it is not the vehicle."""
-_STRAIGHT = 0.8
-"""Straightness of a drive, which a leap between two places that flicker cannot reach (0.75)."""
 
 
 @dataclass(eq=False, slots=True)
@@ -62,12 +61,15 @@ class Track:
         Evidence by the scores of its detections alone.
     doubt : float
         Log odds against a vehicle by these scores; never below zero.
-    matches, partial : int
-        Number of its detections, and of the latest in a row that showed only a part of it.
+    matches, partial, short : int
+        Number of its detections; and of the latest in a row that showed only a part of it, and that
+        were smaller than earlier ones.
     missed : int
         Number of the latest looks of the detector, in a row, that missed it in plain sight.
     vanished : Place or None
         Where it was missed several times in a row.
+    shortened : Place or None
+        Where several in a row were smaller, until it is known whether the rest comes back.
     crowded : int
         Number of its latest detections in a row that had another one beside them in its box.
     shown : (2,) array
@@ -114,6 +116,8 @@ class Track:
     partial: int = 0
     missed: int = 0
     vanished: Place | None = None
+    short: int = 0
+    shortened: Place | None = None
     crowded: int = 0
     shown: Array = field(default_factory=lambda: np.zeros(2))
     lost: bool = False
@@ -134,7 +138,7 @@ class Track:
     usual_similarity: float = 1.0
     growth: Growth = field(default_factory=Growth)
     _first: Array = field(default_factory=lambda: np.zeros(2))
-    _drive: Array = field(default_factory=lambda: np.zeros(8))
+    _drive: StraightDrive = field(default_factory=StraightDrive)
 
     @property
     def confirmed(self) -> bool:
@@ -180,7 +184,7 @@ class Track:
         self._be_found()
         self.log_odds = max(self.log_odds, track.log_odds)
         self.show(track.visible, track.inside, track.covers, None)
-        self.shown, self.partial = track.shown, track.partial
+        self.shown, self.partial, self.short = track.shown, track.partial, track.short
 
     def name(self, label: str, score: float) -> None:
         """Take score and class of its detection in this frame."""
@@ -192,6 +196,18 @@ class Track:
         """Take its largest sides (2,) in px, drift (4,), and if a detection showed all of it."""
         self.shown, self.drift = sides / self.state.mean[W:ACROSS], drift
         self.partial = 0 if is_whole else self.partial + 1
+
+    def shorten(self, place: Place, *, is_short: bool) -> int:
+        """Count the latest detections in a row, this one here, that were smaller than before."""
+        self.short = self.short + 1 if is_short else 0
+        if self.short == FEW:
+            self.shortened = place
+        return self.short
+
+    def take_shortened(self) -> Place | None:
+        """Hand out where it became smaller."""
+        place, self.shortened = self.shortened, None
+        return place
 
     def crowd(self, *, crowded: bool) -> int:
         """Count the detections in a row that had another one beside them in the box."""
@@ -240,29 +256,11 @@ class Track:
         x, y = ((edges[:2] + edges[2:]) / 2).tolist()
         if self.matches == 1:
             self._first = np.array([x, y])
-        time = self.age
-        self._drive += (1, time, time**2, x, y, time * x, time * y, x * x + y * y)
+        self._drive.add(self.age, x, y)
 
     def drive(self) -> float:
-        """Evidence that its detections are a straight drive at constant speed.
-
-        The logarithm of how rarely detections that shake independently in one place are as
-        straight.
-        """
-        count, time, squared, x, y, time_x, time_y, places = self._drive.tolist()
-        if not count:
-            return 0.0
-        scatter = places - (x * x + y * y) / count
-        duration = squared - time * time / count
-        if scatter <= 0 or duration <= 0:
-            return 0.0
-        along_x, along_y = time_x - time * x / count, time_y - time * y / count
-        # Share of their scatter that the drive explains.
-        straightness = float((along_x**2 + along_y**2) / duration / scatter)
-        if straightness < _STRAIGHT:
-            return 0.0
-        # The share is distributed as Beta(1, count - 2): two slopes, of twice as many coordinates.
-        return float(2 - count) * math.log(max(1 - straightness, math.ulp(1.0)))
+        """Evidence that its detections are a straight drive at constant speed."""
+        return self._drive.evidence()
 
     def prove(self, doubted: float, sample: Sample) -> None:
         """Take the evidence by the score of a detection, of which it is not known what it shows."""

@@ -258,7 +258,8 @@ class TrafficTracker:
         tracks, indices = [tracks[row] for row, _ in pairs], [indices[one] for _, one in pairs]
         found.free = sorted(set(found.free).difference(indices))
         edges = found.edges[indices]
-        whole = measure(tracks, edges, self.parameters.detections, self._size, found.edges)
+        settings, uncoverings = self.parameters.detections, self._existence.uncoverings
+        whole = measure(tracks, edges, settings, self._size, found.edges, uncoverings)
         cut = np.asarray(cut_edges(edges, self._size).any(axis=1))
         rows = zip(tracks, indices, fits, whole, cut, strict=True)
         for track, index, fit, is_whole, is_cut in rows:
