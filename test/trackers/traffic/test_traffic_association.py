@@ -24,6 +24,7 @@ from vehicle_pf_tracker.trackers.traffic.association import (
     FrameDetections,
     assign,
     edge_costs,
+    is_double,
     pair_costs,
 )
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
@@ -71,6 +72,16 @@ def test_overlaps():
     assert inside_image(BOX, (30, 240)) == 0.5
     assert clipped(np.array([[-5.0, 5, 20, 300]]), (100, 240)).tolist() == [[0, 5, 20, 240]]
     assert clipped(np.array([[200.0, 5, 220, 30]]), (100, 240)).tolist() == [[99, 5, 100, 30]]
+
+
+@pytest.mark.parametrize(
+    ("left", "facts", "double"),
+    [(119, {}, True), (121, {}, False), (119, {"undetected": 1.0}, False)],
+)
+def test_what_shares_most_of_its_box_with_a_detected_vehicle_is_its_double(left, facts, double):
+    new = track(3, 100)
+    assert is_double(new, [new, track(1, left, confirmed=True, **facts)]) is double
+    assert not is_double(new, [new, track(2, left)])  # new as well
 
 
 @pytest.mark.parametrize("log_odds", [1.0, -1.0])

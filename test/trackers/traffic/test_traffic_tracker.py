@@ -94,6 +94,16 @@ def test_a_vehicle_behind_something_is_occluded_and_comes_back_under_its_number(
     assert estimates[0].mode is TrackMode.TRACKING
 
 
+@pytest.mark.parametrize("shift", [(10, 8), (0, 28)])
+def test_a_vehicle_with_two_boxes_has_one_number_and_two_vehicles_have_two(shift):
+    tracker = TrafficTracker(FLAT)
+    for index in range(40):
+        boxes = [(20 + 4 * index + dx, 100 + dy, 40, 30) for dx, dy in ((0, 0), shift)]
+        estimates = tracker.step(scene(*boxes), Detections.make(boxes))
+    assert tracker.last_identity == (1 if shift == (10, 8) else 2)
+    assert sum(one.mode is TrackMode.TRACKING for one in estimates) == tracker.last_identity
+
+
 def test_a_vehicle_that_leaves_is_lost_and_the_border_hides_it():
     tracker = TrafficTracker(replace(FLAT, pixels=False))
     left, modes = -20, []

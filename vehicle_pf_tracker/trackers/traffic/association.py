@@ -38,11 +38,12 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     NOTHING,
     DetectionEvidence,
     Detections,
+    areas,
     clipped,
     overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import FALL, FEW, Track
+from vehicle_pf_tracker.trackers.traffic.track import FALL, FEW, Track, edges_of
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
     PIXEL_NOISE,
     SETTLED_AFTER,
@@ -291,6 +292,25 @@ def _log_density(residuals: Array, covariances: Array) -> Array:
         residuals = residuals[:, 1:] - slope * residuals[:, :1]
         covariances = covariances[:, 1:, 1:] - slope[..., np.newaxis] * covariances[:, :1, 1:]
     return total
+
+
+def is_double(track: Track, others: Sequence[Track]) -> bool:
+    """Test whether a new vehicle shares most of its box with one that is detected, too.
+
+    Detectors give one vehicle two boxes, for many frames on end: of it all and of its front, or
+    with and without its shadow. Two vehicles side by side soon show more of each.
+
+    Parameters
+    ----------
+    track : Track
+        The new one.
+    others : sequence of Track
+        All tracks.
+    """
+    boxes = edges_of([one for one in others if one.confirmed and one.undetected == 0])
+    own = track.state.edges
+    smaller = np.minimum(areas(boxes), areas(own))
+    return bool((intersections(own, boxes) > HALF * smaller).any())
 
 
 def former(track: Track, others: Sequence[Track]) -> Track | None:

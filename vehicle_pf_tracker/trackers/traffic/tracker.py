@@ -35,6 +35,7 @@ from vehicle_pf_tracker.trackers.traffic.association import (
     birth_odds,
     cut_edges,
     former,
+    is_double,
     pair_costs,
 )
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
@@ -86,6 +87,8 @@ class TrafficTracker:
         Vehicles dropped so far because their state was no Gaussian any more.
     last_identity : int
         Identity of the newest vehicle; 0 before the first.
+    seed : int
+        Seed in use.
     """
 
     def __init__(
@@ -97,15 +100,10 @@ class TrafficTracker:
         self.bad_states = 0
         self.last_identity = 0
         self._serial = 0
-        self._seed = drawn_seed(self.parameters.seed)
+        self.seed = drawn_seed(self.parameters.seed)
         self._frame: Frame | None = None
         self._tracks: list[Track] = []
         self._clear()
-
-    @property
-    def seed(self) -> int:
-        """Seed in use."""
-        return self._seed
 
     @property
     def cluttered_places(self) -> int:
@@ -181,7 +179,7 @@ class TrafficTracker:
             self._look_for_horizon()
 
     def _clear(self) -> None:
-        self._rng = np.random.default_rng(self._seed)
+        self._rng = np.random.default_rng(self.seed)
         self._tracks = []
         self._pixels = PixelHold()
         self._evidence = DetectionEvidence()
@@ -191,8 +189,8 @@ class TrafficTracker:
     def reconfigure(self, parameters: TrafficParameters) -> None:
         """Take new parameters between two frames; no vehicle is lost by it."""
         if parameters.seed != self.parameters.seed:
-            self._seed = drawn_seed(parameters.seed)
-            self._rng = np.random.default_rng(self._seed)
+            self.seed = drawn_seed(parameters.seed)
+            self._rng = np.random.default_rng(self.seed)
         self.parameters = self._existence.parameters = parameters
 
     def _look(self, frame: Frame) -> None:
@@ -286,14 +284,15 @@ class TrafficTracker:
                 missed.remove(twin)
 
     def _confirm(self, track: Track, *, given: bool = False) -> None:
-        """Give a new vehicle its number, unless it is one that was hidden."""
+        """Give a new vehicle its number, unless it is one that was hidden, or seen twice."""
         may_return = self.parameters.returning and not given
         if may_return and (hidden := former(track, self._tracks)) is not None:
             self._existence.resume(hidden, track)
             self._tracks.remove(track)
             return
-        self.last_identity += 1
-        track.confirm(self.last_identity, given=given)
+        if given or not is_double(track, self._tracks):
+            self.last_identity += 1
+            track.confirm(self.last_identity, given=given)
 
     def _drop_inside(
         self, tracks: Sequence[Track], found: FrameDetections, *, either: bool = False
