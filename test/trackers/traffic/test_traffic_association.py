@@ -79,9 +79,10 @@ def test_overlaps():
     [(119, {}, True), (121, {}, False), (119, {"undetected": 1.0}, False)],
 )
 def test_what_shares_most_of_its_box_with_a_detected_vehicle_is_its_double(left, facts, double):
-    new = track(3, 100)
-    assert is_double(new, [new, track(1, left, confirmed=True, **facts)]) is double
-    assert not is_double(new, [new, track(2, left)])  # new as well
+    new, box = track(3, 100, detection=BOX), BOX + np.array([left - 100, 0] * 2)
+    other = track(1, left, confirmed=True, detection=box, **facts)
+    assert is_double(new, [new, other]) is double
+    assert not is_double(new, [new, track(2, left, detection=box)])  # new as well
 
 
 @pytest.mark.parametrize("log_odds", [1.0, -1.0])

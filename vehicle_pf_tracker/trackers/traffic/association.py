@@ -43,7 +43,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
     overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import FALL, FEW, Track, edges_of
+from vehicle_pf_tracker.trackers.traffic.track import FALL, FEW, Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
     PIXEL_NOISE,
     SETTLED_AFTER,
@@ -295,10 +295,10 @@ def _log_density(residuals: Array, covariances: Array) -> Array:
 
 
 def is_double(track: Track, others: Sequence[Track]) -> bool:
-    """Test whether a new vehicle shares most of its box with one that is detected, too.
+    """Test whether most of a new vehicle's detection is in that of another one, or reversely.
 
-    Detectors give one vehicle two boxes, for many frames on end: of it all and of its front, or
-    with and without its shadow. Two vehicles side by side soon show more of each.
+    Networks give one vehicle two boxes, for many frames on end: of it all and of its front, or with
+    and without its shadow. Two vehicles side by side soon show more of each.
 
     Parameters
     ----------
@@ -307,8 +307,8 @@ def is_double(track: Track, others: Sequence[Track]) -> bool:
     others : sequence of Track
         All tracks.
     """
-    boxes = edges_of([one for one in others if one.confirmed and one.undetected == 0])
-    own = track.state.edges
+    detected = [one.detection for one in others if one.confirmed and one.undetected == 0]
+    boxes, own = np.array(detected).reshape(-1, 4), track.detection
     smaller = np.minimum(areas(boxes), areas(own))
     return bool((intersections(own, boxes) > HALF * smaller).any())
 

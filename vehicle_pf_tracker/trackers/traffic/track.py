@@ -84,6 +84,8 @@ class Track:
         Number of the track as which it was found again; 0 if of none.
     score : float
         Score of its detection in this frame; NaN without one.
+    detection : (4,) array
+        Edges of its latest detection, px.
     age, unseen, undetected : float
         Nominal periods since it was first seen, last seen, last detected.
     visible, inside : float
@@ -125,6 +127,7 @@ class Track:
     given: bool = False
     joined: int = 0
     score: float = math.nan
+    detection: Array = field(default_factory=lambda: np.zeros(4))
     age: float = 0.0
     unseen: float = 0.0
     undetected: float = 0.0
@@ -225,10 +228,6 @@ class Track:
         self.unseen = 0.0
         self.state.measure(edges, deviations)
 
-    def grow(self, edges: Array) -> None:
-        """Take a detection (4,) that shows the whole vehicle for how it grows."""
-        self.growth.add(edges)
-
     def learn_colours(self, colours: Array) -> None:
         """Let the colours follow those of a box in plain sight."""
         known = self.colours.any()
@@ -249,7 +248,7 @@ class Track:
             Log odds by its score, and by where it is.
         """
         self._be_found()
-        self.hidden_by = None
+        self.hidden_by, self.detection = None, edges
         self.matches += 1
         self.doubt = max(self.doubt - score, 0.0)
         self.log_odds = min(self.log_odds + score + fit, CERTAIN)

@@ -265,7 +265,7 @@ class TrafficTracker:
             if is_whole:
                 track.learn_colours(found.histogram(index))
                 if not is_cut:
-                    track.grow(found.edges[index])
+                    track.growth.add(found.edges[index])
             if self._existence.detected(track, found, index, fit):
                 self._confirm(track)
 
