@@ -30,8 +30,10 @@ def confirmed(number, left, colours=RED, **facts):
 
 def test_a_vehicle_that_reappears_a_little_off_is_the_hidden_one():
     hidden, new = confirmed(1, 100.0, undetected=20.0), confirmed(2, 130.0)
+    new.detection = new.state.edges
     assert former(new, [hidden, new]) is hidden
     hidden.resume(new)
+    assert hidden.detection[0] == pytest.approx(130)
     assert hidden.identity == 1
     assert hidden.state.edges[0] == pytest.approx(130)
     assert hidden.undetected == 0

@@ -180,7 +180,7 @@ class Track:
     def resume(self, track: Track) -> None:
         """Go on where the new track is that this hidden vehicle turned out to be."""
         self.state, self.before, self.joined = track.state, track.before, track.serial
-        self.score = track.score
+        self.score, self.detection = track.score, track.detection
         for label, votes in track.votes.items():
             self.votes[label] = self.votes.get(label, 0) + votes
         self.has_driven = self.has_driven or track.has_driven
