@@ -14,6 +14,8 @@
 
 """Folders in MOTChallenge's layout."""
 
+import re
+
 import cv2
 import numpy as np
 import pytest
@@ -74,6 +76,16 @@ def test_a_missing_image_is_named(folder):
         list(read_sequence(folder).frames())
 
 
+@pytest.mark.parametrize("fault", ["frameRate=nan", "frameRate=0", "frameRate=inf", "imWidth=-1"])
+def test_numbers_of_a_sequence_are_above_zero(folder, fault):
+    name = fault.partition("=")[0]
+    text = re.sub(rf"{name}=\S+", fault, INFO)
+    assert fault in text
+    (folder / "seqinfo.ini").write_text(text)
+    with pytest.raises(InputError, match=r"seqinfo\.ini .*: its numbers must be above 0"):
+        read_sequence(folder)
+
+
 def test_what_is_no_such_folder_is_told(tmp_path, folder):
     with pytest.raises(InputError, match=r"not a MOTChallenge folder: it has no seqinfo\.ini"):
         read_sequence(tmp_path)
@@ -96,7 +108,7 @@ def test_a_bad_line_is_named(tmp_path, line):
 def test_a_number_that_is_not_finite_is_refused(tmp_path):
     path = tmp_path / "gt.txt"
     path.write_text("1,3,10,5,8,6\n1,3,nan,5,8,6\n")
-    with pytest.raises(InputError, match=r"gt\.txt has a number that is not finite"):
+    with pytest.raises(InputError, match=r"line 2 of .*gt\.txt has a number that is not"):
         read_table(path, 6)
 
 

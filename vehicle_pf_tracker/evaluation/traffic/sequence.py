@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 import configparser
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -105,6 +106,8 @@ def read_sequence(folder: Path) -> TrafficSequence:
         )
     except (configparser.Error, ValueError) as error:
         raise InputError(f"{info} does not describe a sequence: {error}") from None
+    if not (0 < frame_rate < math.inf and min(frame_count, width, height) > 0):
+        raise InputError(f"{info} does not describe a sequence: its numbers must be above 0")
     truth = read_table(folder / "gt" / "gt.txt", 6, 9)
     detections = {
         path.stem: read_table(path, 7)[:, [0, 2, 3, 4, 5, 6]]
@@ -132,12 +135,13 @@ def read_table(path: Path, least: int, most: int = 0) -> Array:
         If there is no such file, or a line has too few numbers.
     """
     lines = table_rows(path, read_text(path, "the table"), least, "the table")
-    rows = [numbers_in(where, cells[: max(least, most)]) for where, cells in lines]
+    rows = []
+    for where, cells in lines:
+        rows.append(numbers_in(where, cells[: max(least, most)]))
+        if not all(map(math.isfinite, rows[-1])):
+            raise InputError(f"{where} has a number that is not finite, or an empty cell")
     width = min(map(len, rows), default=least)
-    table = np.array([row[:width] for row in rows], dtype=np.float64).reshape(-1, width)
-    if not np.isfinite(table).all():
-        raise InputError(f"the table {path} has a number that is not finite, or an empty cell")
-    return table
+    return np.array([row[:width] for row in rows], dtype=np.float64).reshape(-1, width)
 
 
 def _hidden(folder: Path, truth: Array) -> npt.NDArray[np.bool_]:
