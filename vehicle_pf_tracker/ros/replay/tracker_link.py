@@ -81,7 +81,8 @@ class Answers:
         status = message.status[0]
         scalars = {"mode": status.message, **{pair.key: pair.value for pair in status.values}}
         self._rows[frame] = EstimateRow.from_scalars(frame, stamp, scalars)
-        self._answers[frame] = scalars
+        # All of a day would be gigabytes.
+        self._answers[frame] = scalars if "road" in scalars else {}
         self.count += 1
 
     def has(self, frame: int) -> bool:
@@ -91,7 +92,7 @@ class Answers:
     def road_columns(self) -> dict[str, list[float | None]]:
         """Return places and speeds on the road, a value for each of `rows`; none without a road."""
         answers = [self._answers.get(frame, {}) for frame in self._rows]
-        if not any("road" in one for one in answers):
+        if not any(answers):
             return {}
         return {
             name: [float(one[name]) if name in one else None for one in answers]
