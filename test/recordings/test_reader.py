@@ -28,7 +28,6 @@ from recording_samples import PERIOD_NS, frame_of, stamp_of, truth_of
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from vehicle_pf_tracker.core.clock import header_stamp_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings import mcap_blocks, messages
 from vehicle_pf_tracker.recordings.reader import Recording
@@ -362,11 +361,6 @@ def test_whole_files_without_a_full_index_are_read_without_complaint(bare_mcap, 
     assert recording.notices == []
     assert recording.frame_count == 6
     assert stamps(recording) == [stamp_of(index) for index in range(6)]
-
-
-@pytest.mark.parametrize("length", [0, 4, 8, 11])
-def test_a_message_too_short_for_a_header_has_no_stamp(length):
-    assert header_stamp_ns(memoryview(bytes(length))) is None
 
 
 @pytest.mark.parametrize("version", [8, 9])
