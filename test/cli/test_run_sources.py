@@ -159,21 +159,6 @@ def test_doubtful_targets_are_followed_with_a_notice(run, tmp_path, capsys):
     assert "the target 0,0,90,60 is doubtful: it covers 88% of the image" in error
 
 
-def test_a_target_that_stands_while_others_drive_is_a_notice(run, tmp_path, capsys):
-    def with_a_sign(index):
-        frame = frame_of(index)
-        frame[42:58, 70:90] = (40, 160, 60)
-        return frame
-
-    video = write_video(tmp_path / "street.avi", map(with_a_sign, range(COUNT)))
-    assert run(video, "--fps", "2", "--target", f"car:{TARGET}", "--target", "70,42,20,16") == 0
-    notes = [line for line in capsys.readouterr().err.splitlines() if "has not moved" in line]
-    assert notes == [
-        "vehicle-pf-tracker: note: 1: frame 11: the target has not moved for 5 s while other "
-        "things did: it stands, or it is no vehicle"
-    ]
-
-
 def test_a_run_leaves_nothing_of_the_one_before(run, video, tmp_path):
     assert run(video, "--target", TARGET, "--target", TARGET) == 0
     assert (tmp_path / "out" / "tracks.csv").exists()

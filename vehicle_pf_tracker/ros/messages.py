@@ -101,12 +101,7 @@ def status(
 
 
 def mode_message(
-    header: Header,
-    name: str,
-    hardware_id: str,
-    mode: str,
-    values: Mapping[str, object],
-    level: bytes | None = None,
+    header: Header, name: str, hardware_id: str, mode: str, values: Mapping[str, object]
 ) -> DiagnosticArray:
     """Make the `~/mode` of one image.
 
@@ -120,11 +115,8 @@ def mode_message(
         A `Mode`, `WAITING` or `REJECTED`.
     values : mapping
         Scalars of the estimate, or the reason of a rejection.
-    level : bytes, optional
-        At least this level.
     """
-    highest = max(LEVELS[mode], level or LEVELS[mode])
-    one = status(highest, name, mode, hardware_id, {"mode": mode, **values})
+    one = status(LEVELS[mode], name, mode, hardware_id, {"mode": mode, **values})
     return DiagnosticArray(header=header, status=[one])
 
 

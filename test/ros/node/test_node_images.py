@@ -34,7 +34,7 @@ from vehicle_pf_tracker.trackers.session import Session
 
 pytestmark = pytest.mark.ros
 
-TIMED = {"step_ms", "moved"}
+TIMED = {"step_ms"}
 
 
 def offline(variant: str, frames, **settings) -> list[dict[str, str]]:

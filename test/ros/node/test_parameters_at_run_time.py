@@ -36,7 +36,7 @@ from vehicle_pf_tracker.trackers.session import Session
 
 pytestmark = pytest.mark.ros
 
-TIMED = {"step_ms", "moved"}
+TIMED = {"step_ms"}
 OF_THE_ROAD = {"road", *ROAD_COLUMNS}
 """Values that stand beside those of the estimate."""
 WORDS = {

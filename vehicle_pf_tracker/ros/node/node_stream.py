@@ -241,11 +241,9 @@ class NodeStream(ABC):
         except OSError as error:
             self.warnings.say("kept", f"the target cannot be saved: {error.strerror or error}")
 
-    def publish_mode(
-        self, header: Header, mode: str, values: Mapping[str, object], level: bytes | None = None
-    ) -> None:
+    def publish_mode(self, header: Header, mode: str, values: Mapping[str, object]) -> None:
         """Publish the one `~/mode` of an image; see `Outputs.publish_mode`."""
-        answer = self._publish_mode(header, mode, values, level)
+        answer = self._publish_mode(header, mode, values)
         if self.incidents is not None:
             self.incidents.keep(answer)
             if (box := self.followed) is not None:

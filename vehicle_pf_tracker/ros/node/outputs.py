@@ -114,11 +114,11 @@ class Outputs:
             self.send("velocity", messages.velocity_message, header, estimate.velocity, period)
 
     def publish_mode(
-        self, header: Header, mode: str, values: Mapping[str, object], level: bytes | None = None
+        self, header: Header, mode: str, values: Mapping[str, object]
     ) -> DiagnosticArray:
-        """Publish the one `~/mode` of an image; `level` is that of the mode unless it is higher."""
+        """Publish the one `~/mode` of an image."""
         name = f"{self.node_name}: target"
-        message = messages.mode_message(header, name, self.hardware_id, mode, values, level)
+        message = messages.mode_message(header, name, self.hardware_id, mode, values)
         self.send("mode", lambda: message)
         return message
 

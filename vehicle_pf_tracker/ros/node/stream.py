@@ -22,7 +22,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
@@ -33,9 +32,8 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
-from vehicle_pf_tracker.image.target_pixels import Stillness
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
+from vehicle_pf_tracker.ros.messages import WAITING
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
@@ -91,7 +89,6 @@ class Stream(NodeStream):
         self._session: Session | None = None
         self._loading = KernelLoading(configuration.tracker.kernels)
         self._target_problem = ""
-        self._stillness = Stillness()
         self.localisation = StreamLocalisation(variant.name, configuration.session.road, cameras)
         self.estimate: Estimate | None = None
         if not self.get_ready():
@@ -236,7 +233,7 @@ class Stream(NodeStream):
         assert session is not None
         if session.refusal:
             self.health.refuse_target(session.refusal)
-        events, level = self._events(session), None
+        events = self._events(session, frame)
         if estimate is None and self._target_problem:
             events["reason"] = self._target_problem
         mode = estimate.mode.value if estimate is not None else WAITING
@@ -249,34 +246,23 @@ class Stream(NodeStream):
             words = self.localisation.words
             self.health.road = self.localisation.values
             events |= self.health.road
-            level = self._doubt(header, frame, estimate, events)
         if own.publish.overlay:
             self._outputs.publish_overlay(header, frame, mode, estimate, words)
         self.health.answered(mode, estimate.duration * 1e3 if estimate else None)
         scalars = estimate.scalars() if estimate else {}
-        self.publish_mode(header, mode, {**scalars, **events}, level)
+        self.publish_mode(header, mode, {**scalars, **events})
 
-    def _doubt(
-        self, header: Header, frame: Frame, estimate: Estimate, events: dict[str, object]
-    ) -> bytes | None:
-        """Ask what speaks against the target; return the level where that is a warning."""
-        still, words = self._stillness, []
-        if estimate.regime == START:
-            still.begin(estimate.box, stamp_ns(header))
-            words = self.doubts(frame, estimate.box)
-        words += still.look(frame, estimate.box, stamp_ns(header))
-        events["moved"] = still.moved
-        for sentence in words:
-            self.log.warning(sentence)
-        if words:
-            events["event"] = "; ".join([*map(str, filter(None, [events.get("event")])), *words])
-        return DiagnosticStatus.WARN if still.is_suspect else None
-
-    def _events(self, session: Session) -> dict[str, object]:
-        words = "; ".join(session.events)
-        if not words:
-            return {}
+    def _events(self, session: Session, frame: Frame) -> dict[str, object]:
+        """Log what is irregular about an image, and what speaks against a new target."""
         if session.recovered:
             self.note_restart()
-        (self.errors if session.recovered else self.warnings).say("event", words)
-        return {"event": words}
+        if session.events:
+            log = self.errors if session.recovered else self.warnings
+            log.say("event", "; ".join(session.events))
+        estimate, doubts = self.estimate, list[str]()
+        if estimate is not None and estimate.regime == START:
+            doubts = self.doubts(frame, estimate.box)
+        for sentence in doubts:
+            self.log.warning(sentence)
+        words = "; ".join([*session.events, *doubts])
+        return {"event": words} if words else {}
