@@ -164,19 +164,16 @@ def associate(first_ns: Sequence[int], second_ns: Sequence[int], max_diff: float
     """
     limit = max_diff_ns(max_diff)
     free = sorted((stamp, index) for index, stamp in enumerate(second_ns))
-    taken: set[int] = set()
-    offers = [offer for i, stamp in enumerate(first_ns) for offer in _offers(free, stamp, i, limit)]
-    heapq.heapify(offers)
     pairs: dict[int, int] = {}
-    while offers:
-        _, i, j = heapq.heappop(offers)
-        if j in taken:  # so offer what is nearest among the rest
-            for offer in _offers(free, first_ns[i], i, limit):
-                heapq.heappush(offers, offer)
-            continue
-        pairs[i] = j
-        taken.add(j)
-        del free[bisect.bisect_left(free, (second_ns[j], j))]
+    # A difference only grows while others are paired, so that an earlier one is a lower bound.
+    waiting = [(0, i) for i in range(len(first_ns))]
+    while waiting and free:
+        least, i = heapq.heappop(waiting)
+        difference, place = _nearest(free, first_ns[i])
+        if difference == least:
+            pairs[i] = free.pop(place)[1]
+        elif difference <= limit:
+            heapq.heappush(waiting, (difference, i))
     return dict(sorted(pairs.items()))
 
 
@@ -187,15 +184,10 @@ def max_diff_ns(max_diff: float) -> int:
     return round(max_diff * 1e9)
 
 
-def _offers(
-    free: Sequence[tuple[int, int]], stamp: int, i: int, limit: int
-) -> list[tuple[int, int, int]]:
-    """Return (difference in ns, `i`, j) for the nearest free j, as a list of one or none."""
-    right = bisect.bisect_left(free, (stamp, -1))
-    sides = [right] if right < len(free) else []
-    if right > 0:  # of repeated stamps the first
-        sides.append(bisect.bisect_left(free, (free[right - 1][0], -1)))
-    near = [(abs(free[side][0] - stamp), side) for side in sides]
-    return [
-        (distance, i, free[side][1]) for distance, side in sorted(near)[:1] if distance <= limit
-    ]
+def _nearest(free: Sequence[tuple[int, int]], stamp: int) -> tuple[int, int]:
+    """Return the difference in ns of the nearest free stamp, and its place; the earlier of two."""
+    after = bisect.bisect_left(free, (stamp, -1))
+    # Of repeated stamps the first.
+    before = bisect.bisect_left(free, (free[after - 1][0], -1)) if after else after
+    places = (place for place in (before, after) if place < len(free))
+    return min((abs(free[place][0] - stamp), place) for place in places)
