@@ -139,46 +139,6 @@ def test_what_claims_too_much_does_not_come_to_the_decoder(bomb, size):
         decode_compressed("png", bomb)
 
 
-RESTARTS = (cv2.IMWRITE_JPEG_RST_INTERVAL, 2)
-CHOOSES_SAMPLING = hasattr(cv2, "IMWRITE_JPEG_SAMPLING_FACTOR")
-TALL = (
-    (cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_440)
-    if CHOOSES_SAMPLING
-    else ()
-)
-writes_tall = pytest.mark.skipif(not CHOOSES_SAMPLING, reason="OpenCV 4.6 writes one sampling")
-NOISE = np.random.default_rng(2).integers(0, 255, (75, 101, 3), np.uint8)
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        (),
-        RESTARTS,
-        pytest.param(TALL, marks=writes_tall),
-        pytest.param((*TALL, *RESTARTS), marks=writes_tall),
-    ],
-)
-@pytest.mark.parametrize("share", [0.5, 0.7, 0.95])
-@pytest.mark.parametrize("grey", [False, True])
-def test_a_cut_jpeg_with_an_end_is_refused_rather_than_filled_with_grey(options, share, grey):
-    data = coded(".jpg", NOISE[..., 0] if grey else NOISE, *options)
-    with pytest.raises(InputError, match="cut off"):
-        decode_compressed("jpeg", data[: int(share * len(data))].rstrip(b"\xff") + b"\xff\xd9")
-
-
-@pytest.mark.parametrize(
-    "options", [(), RESTARTS, PROGRESSIVE, pytest.param(TALL, marks=writes_tall)]
-)
-@pytest.mark.parametrize("level", [0, 127, 128, 255])
-def test_a_grey_image_is_whole(options, level):
-    """128 is what a decoder fills a cut image with."""
-    frame = decode_compressed(
-        "jpeg", coded(".jpg", np.full((40, 56, 3), level, np.uint8), *options)
-    )
-    assert np.array_equal(frame, np.full((40, 56, 3), level, np.uint8))
-
-
 @pytest.mark.parametrize(
     "padding", [b"\0" * 5000, b"\xff" * 5000, b"\xff\xda\xff\xd9" * 900, b"\n"]
 )

@@ -21,6 +21,7 @@ off. So the markers of a JPEG and the chunks of a PNG are read first, up to the 
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import cv2
@@ -42,11 +43,6 @@ _ALONE = frozenset({0x01, *range(0xD0, 0xD9)})
 """Markers without a length: TEM, restarts and the start of the image."""
 _FRAME_HEADERS = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 """SOF0 to SOF15: the same range holds DHT, JPG and DAC."""
-
-_GREY = 128
-"""Value of every channel where a decoder of JPEG has no data."""
-_EXTRA = bytes(1 + (37 * at + at * at) % 254 for at in range(256))
-"""Bytes that decode to anything but grey, with no marker among them."""
 
 
 @dataclass(slots=True)
@@ -72,14 +68,14 @@ class CodedImage:
         Raises
         ------
         InputError
-            If it is damaged or cut off.
+            If it is damaged.
         """
         if self._frame is None:
-            image = _decoded(self._data)
+            image = None
+            with suppress(cv2.error):
+                image = cv2.imdecode(np.frombuffer(self._data, np.uint8), cv2.IMREAD_COLOR)
             if image is None:
                 raise InputError(f"{self.name} cannot be decoded: its data are damaged")
-            if self._data.startswith(_JPEG) and _ends_early(self._data, image):
-                raise InputError(f"{self.name} is cut off before its end")
             self._frame = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB, dst=image), np.uint8)
         return self._frame
 
@@ -161,37 +157,6 @@ def _jpeg_size(data: bytes) -> tuple[int, int, int]:
 
 def _number(data: bytes) -> int:
     return int.from_bytes(data, "big")
-
-
-def _decoded(data: bytes) -> Frame | None:
-    try:
-        image: Frame | None = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)  # type: ignore[assignment]
-    except cv2.error:
-        return None
-    return image
-
-
-def _ends_early(data: bytes, image: Frame) -> bool:
-    """Test whether the pixels end before the image does, and the decoder filled it up with grey.
-
-    It says so on stderr alone. So, where the last block is grey, more data are put before the end:
-    a whole image does not change by them.
-    """
-    turned = (image, image[::-1], image[:, ::-1], image[::-1, ::-1])  # by the file's orientation
-    if not any((_last_block(one) == _GREY).all() for one in turned):
-        return False
-    longer = _decoded(data[:-2] + _EXTRA + data[-2:])
-    return longer is None or not np.array_equal(image, longer)
-
-
-def _last_block(image: Frame) -> Frame:
-    """View of the last block of a JPEG, or of the last but one where that is one pixel wide.
-
-    Without its first row and column, which take colour from the blocks before.
-    """
-    ends = [size - (size % 8 == 1) for size in image.shape[:2]]
-    (bottom, rows), (right, columns) = ((end, min((end - 1) % 8, 4)) for end in ends)
-    return image[max(bottom - max(rows, 1), 0) : bottom, max(right - max(columns, 1), 0) : right]
 
 
 def jpeg(frame: Frame, quality: int = 95) -> bytes:
