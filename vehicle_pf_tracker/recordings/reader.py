@@ -138,25 +138,19 @@ class Recording:
             If no image can be read.
         """
         # Held back until one can be read, so that a recording of rubbish is an error.
-        unread: list[StampedFrame] = []
-        readable = False
-        count = 0
-        for _, message in self._select({self.image_topic}):
-            image = self._decode_or_note(message)
-            count += 1
-            if not readable and image.frame is None:
-                unread.append(image)
-                if len(unread) == _UNREADABLE_IN_A_ROW:
-                    break
-                continue
-            readable = True
-            yield from unread
-            unread = []
-            yield image
-        is_short = count < self.frame_count
-        if is_short and len(unread) < _UNREADABLE_IN_A_ROW:
+        held: list[StampedFrame] = []
+        readable, count = False, 0
+        for count, (_, message) in enumerate(self._select({self.image_topic}), start=1):
+            held.append(self._decode_or_note(message))
+            readable = readable or held[-1].frame is not None
+            if readable:
+                yield from held
+                held.clear()
+            elif count == _UNREADABLE_IN_A_ROW:
+                break
+        else:
             self._notices.add_missing(self.frame_count - count)
-        if not readable and (unread or is_short):
+        if not readable:
             raise InputError(
                 f"no image of {self.image_topic} in {self.path} can be read; "
                 f"{self._notices.first_reason}"

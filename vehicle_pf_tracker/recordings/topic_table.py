@@ -170,7 +170,7 @@ class ReadNotices:
 
     def add_missing(self, count: int) -> None:
         """Note images that should be there, unless a damage explains it."""
-        if not self._damages:
+        if count > 0 and not self._damages:
             self._damages[self._path, -1] = (
                 f"recording {self._path}: {count} images that its index lists are missing"
             )
