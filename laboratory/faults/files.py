@@ -43,7 +43,7 @@ from vehicle_pf_tracker.cli.main import main as command
 from vehicle_pf_tracker.cli.params import default_yaml
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.parameters.files import check_yaml_file, read_yaml
+from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.ros.rclpy_internals import (
@@ -125,7 +125,7 @@ def _in_python(path: Path) -> str:
 def _in_node(path: Path) -> str:
     context, node = rclpy.Context(), None
     try:
-        check_yaml_file(path, "parameter file")  # as the node's program does first
+        read_yaml_file(path, "parameter file")  # as the node's program does first
         with _quiet():
             rclpy.init(args=["--ros-args", "--params-file", str(path)], context=context)
             node = TrackerNode(VARIANT, context=context)

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -55,11 +55,6 @@ class _Loader(yaml.SafeLoader):
         return node
 
 
-def check_yaml_file(path: Path, what: str) -> None:
-    """Check a file that somebody else reads; arguments and errors are as in `read_yaml_file`."""
-    _load(path, what, lambda loader: loader.get_single_node())
-
-
 def read_yaml_file(path: Path, what: str) -> Any:
     """Read the one document of a YAML file.
 
@@ -75,15 +70,11 @@ def read_yaml_file(path: Path, what: str) -> Any:
     InputError
         If it cannot be read, is not YAML, has a key twice, or has aliases.
     """
-    return _load(path, what, lambda loader: loader.get_single_data())
-
-
-def _load(path: Path, what: str, get: Callable[[_Loader], Any]) -> Any:
     if path.is_file() and path.stat().st_size > _LARGEST_FILE:
         raise InputError(f"the {what} {path} is larger than {_LARGEST_FILE // 2**20} MB")
     text = read_text(path, f"the {what}")
     try:
-        return get(_Loader(text))
+        return yaml.load(text, _Loader)  # noqa: S506 - a safe loader
     except RecursionError:
         raise InputError(f"the {what} {path} is not valid YAML: it is nested too deeply") from None
     # ValueError: characters that YAML forbids, numbers of thousands of digits, dates that are none.

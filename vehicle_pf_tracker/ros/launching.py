@@ -35,7 +35,7 @@ from rclpy.validate_topic_name import validate_topic_name
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.parameters.files import check_yaml_file, flatten, read_yaml, read_yaml_file
+from vehicle_pf_tracker.parameters.files import flatten, read_yaml, read_yaml_file
 from vehicle_pf_tracker.parameters.table import unknown_name
 from vehicle_pf_tracker.ros.transport import PROFILE_VARIABLES
 from vehicle_pf_tracker.trackers.registry import find_node
@@ -154,7 +154,7 @@ def parameter_file(given: str, variant: str, share: str) -> str:
     if not given and find_node(variant).is_plug_in:
         return ""
     path = Path(given) if given else Path(share, "config", f"{find_node(variant).name}.yaml")
-    check_yaml_file(path, "parameter file")
+    read_yaml_file(path, "parameter file")
     return str(path)
 
 

@@ -41,7 +41,7 @@ from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.files import check_yaml_file, read_yaml
+from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
 from vehicle_pf_tracker.ros.node.kernel_loading import is_loading
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
 from vehicle_pf_tracker.ros.transport import image_transport
@@ -89,7 +89,7 @@ def run_process(name: str, arguments: Sequence[str], serve: Callable[[list[str]]
     warnings.filterwarnings("ignore", "Failed to fini rosout publisher", RuntimeWarning)
     try:
         for path in _parameter_files(arguments):  # of a key that is there twice, ROS takes the last
-            check_yaml_file(path, "parameter file")
+            read_yaml_file(path, "parameter file")
         rclpy.init(args=list(arguments))
         interrupts.left_to_ros = True
         return serve(remove_ros_args(list(arguments)))
