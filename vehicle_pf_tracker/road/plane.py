@@ -139,11 +139,7 @@ def _normalising(points: Array) -> Array:
 
 def _linear_fit(source: Array, target: Array) -> Array:
     """Solve the direct linear transformation from `source` to `target`, both normalised."""
-    ones, zeros = np.ones((len(source), 1)), np.zeros((len(source), 3))
-    points = np.hstack([source, ones])
-    along = np.hstack([points, zeros, -target[:, :1] * points])
-    across = np.hstack([zeros, points, -target[:, 1:] * points])
-    _, values, vectors = np.linalg.svd(np.vstack([along, across]))
+    _, values, vectors = np.linalg.svd(_rows(_homogeneous(source), target))
     matrix: Array = vectors[-1].reshape(3, 3)
     shape = np.linalg.svd(matrix, compute_uv=False)
     if values[7] < _LEAST_RATIO * values[0] or shape[2] < _LEAST_RATIO * shape[0]:
@@ -156,9 +152,11 @@ def _linear_fit(source: Array, target: Array) -> Array:
 
 def _refined(matrix: Array, source: Array, target: Array) -> Array:
     """Minimise the distances of the mapped `source` from `target`, from a linear solution."""
+    points = _homogeneous(source)
     for _ in range(_ROUNDS):
-        residuals = (_mapped(matrix, source) - target).ravel()
-        step = np.linalg.lstsq(_derivatives(matrix, source), -residuals, rcond=None)[0]
+        mapped = _mapped(matrix, source)
+        derivatives = _rows(points / (points @ matrix[2])[:, np.newaxis], mapped)
+        step = np.linalg.lstsq(derivatives, (target - mapped).ravel(), rcond=None)[0]
         matrix = matrix + step.reshape(3, 3)
         matrix = matrix / np.linalg.norm(matrix)
         if np.linalg.norm(step) < _SETTLED:
@@ -166,15 +164,15 @@ def _refined(matrix: Array, source: Array, target: Array) -> Array:
     return matrix
 
 
-def _derivatives(matrix: Array, source: Array) -> Array:
-    """Return the derivatives (2 N, 9) of the mapped points by the entries of the matrix."""
-    points = np.hstack([source, np.ones((len(source), 1))])
-    scale = points @ matrix[2]
-    mapped = _mapped(matrix, source)
-    near = points / scale[:, np.newaxis]
-    zeros = np.zeros_like(near)
-    along = np.hstack([near, zeros, -mapped[:, :1] * near])
-    across = np.hstack([zeros, near, -mapped[:, 1:] * near])
+def _homogeneous(points: Array) -> Array:
+    return np.hstack([points, np.ones((len(points), 1))])
+
+
+def _rows(points: Array, mapped: Array) -> Array:
+    """Return what each entry of a matrix adds to x and y of the mapped points, (2 N, 9)."""
+    zeros = np.zeros_like(points)
+    along = np.hstack([points, zeros, -mapped[:, :1] * points])
+    across = np.hstack([zeros, points, -mapped[:, 1:] * points])
     return np.asarray(np.stack([along, across], axis=1).reshape(-1, 9))
 
 
