@@ -114,12 +114,6 @@ class WeighedParticles:
 class RepeatedResampling(ColourTracker[RepeatedParametersT]):
     """Tables I and II of P3 but for the pass of resampling."""
 
-    @abstractmethod
-    def resample_once(
-        self, frame: Frame, particles: WeighedParticles, elapsed: float
-    ) -> tuple[WeighedParticles, int, str]:
-        """Replace particles once; also returns their number, and the branch taken."""
-
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self._settings
         parents = self._cloud.positions
@@ -151,9 +145,34 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
         limit = self._settings.criterion * len(particles.cloud.positions)
         return effective_sample_size(particles.cloud.weights) < limit
 
-    def _scattered(self, frame: Frame, parents: Array, spread: float) -> Array:
-        """Jitter copies of `parents` by `spread` px, inside the image."""
-        return keep_inside(frame, parents + sample_normal(self._rng, len(parents), spread))
+    def resample_once(
+        self, frame: Frame, particles: WeighedParticles, elapsed: float
+    ) -> tuple[WeighedParticles, int, str]:
+        """Replace particles once; also returns their number, and the branch taken."""
+        replaced, weights, jitter, regime = self._choose(particles)
+        count = int(replaced.sum())
+        if count == 0:
+            return particles, 0, regime
+        ancestors = SCHEMES[self._settings.resampling](weights, count, self._rng)
+        spread = jitter * self._settings.sigma * elapsed
+        parents = particles.cloud.positions[ancestors]
+        copies = keep_inside(frame, parents + sample_normal(self._rng, count, spread))
+        positions, coefficients = particles.cloud.positions.copy(), particles.coefficients.copy()
+        positions[replaced] = copies
+        coefficients[replaced] = self.similarity(frame, copies)
+        return self.weigh(positions, coefficients), count, regime
+
+    @abstractmethod
+    def _choose(
+        self, particles: WeighedParticles
+    ) -> tuple[npt.NDArray[np.bool_], Array, float, str]:
+        """Choose the particles to replace (N,), and how.
+
+        Returns
+        -------
+        particles to replace, weights by which parents are drawn, both of shape (N,); spread of the
+        copies around them, as a share of sigma; and the branch taken
+        """
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,16 +183,12 @@ class ConventionalParameters(RepeatedResamplingParameters):
 class ConventionalTracker(RepeatedResampling[ConventionalParameters]):
     """Table I of P3."""
 
-    def resample_once(
-        self, frame: Frame, particles: WeighedParticles, elapsed: float
-    ) -> tuple[WeighedParticles, int, str]:
-        """Replace particles once; see `RepeatedResampling.resample_once`."""
-        settings = self._settings
-        parents = self._resample(particles.cloud)  # step 15
-        spread = settings.jitter * settings.sigma * elapsed
-        copies = self._scattered(frame, parents, spread)  # step 16
-        weighed = self.weigh(copies, self.similarity(frame, copies))  # step 17
-        return weighed, len(copies), "regular"
+    def _choose(
+        self, particles: WeighedParticles
+    ) -> tuple[npt.NDArray[np.bool_], Array, float, str]:
+        """Replace all (steps 15 to 17)."""
+        weights = particles.cloud.weights
+        return np.ones(len(weights), bool), weights, self._settings.jitter, "regular"
 
 
 OCCLUSION_TESTS = ("n_eff", "similarity")
@@ -221,21 +236,18 @@ class AdaptiveParameters(RepeatedResamplingParameters):
 class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
     """Table II of P3."""
 
-    def resample_once(
-        self, frame: Frame, particles: WeighedParticles, elapsed: float
-    ) -> tuple[WeighedParticles, int, str]:
-        """Replace particles once; see `RepeatedResampling.resample_once`."""
-        settings = self._settings
-        weights, count = particles.cloud.weights, len(particles.cloud.positions)
-        occluded = self._is_occluded(particles)  # step 15
-        if occluded:
-            kept = np.arange(count) == weights.argmax()  # step 16
-            spread = settings.occlusion.jitter * settings.sigma * elapsed
+    def _choose(
+        self, particles: WeighedParticles
+    ) -> tuple[npt.NDArray[np.bool_], Array, float, str]:
+        """Replace low weights, or all but the best, by copies of the rest (steps 17, 20 and 22)."""
+        settings, weights = self._settings, particles.cloud.weights
+        if self._is_occluded(particles):  # step 15
+            kept = np.arange(len(weights)) == weights.argmax()  # step 16
+            jitter, regime = settings.occlusion.jitter, "occlusion"
         else:
-            kept = weights >= min(settings.low_weight / count, weights.max())  # step 19
-            spread = settings.jitter * settings.sigma * elapsed
-        weighed = self._regenerate(frame, particles, kept, spread)  # steps 17, 20 and 22
-        return weighed, count - int(kept.sum()), "occlusion" if occluded else "regular"
+            kept = weights >= min(settings.low_weight / len(weights), weights.max())  # step 19
+            jitter, regime = settings.jitter, "regular"
+        return ~kept, np.where(kept, weights, 0.0), jitter, regime
 
     def _is_occluded(self, particles: WeighedParticles) -> bool:
         test = self._settings.occlusion
@@ -244,18 +256,3 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
             return effective_sample_size(particles.cloud.weights) < limit
         best = 1.0 - hellinger_distance(particles.coefficients.max())
         return bool(best < test.similarity * self._judge.level)
-
-    def _regenerate(
-        self, frame: Frame, particles: WeighedParticles, kept: npt.NDArray[np.bool_], spread: float
-    ) -> WeighedParticles:
-        """Replace all particles but the kept ones by copies of those; only these are weighed."""
-        missing = len(kept) - int(kept.sum())
-        if missing == 0:
-            return particles
-        scheme = SCHEMES[self._settings.resampling]
-        ancestors = scheme(np.where(kept, particles.cloud.weights, 0.0), missing, self._rng)
-        copies = self._scattered(frame, particles.cloud.positions[ancestors], spread)
-        positions, coefficients = particles.cloud.positions.copy(), particles.coefficients.copy()
-        positions[~kept] = copies
-        coefficients[~kept] = self.similarity(frame, copies)
-        return self.weigh(positions, coefficients)
