@@ -84,14 +84,6 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
     def _make_features(self) -> Mapping[str, WindowFeature]:
         """Make the features by name from the effective parameters."""
 
-    @property
-    def _is_joint(self) -> bool:
-        return True
-
-    @property
-    def _updates_unused(self) -> bool:
-        return False
-
     def reconfigure(self, parameters: FilterParametersT) -> None:
         """Take new parameters; see `BaseTracker.reconfigure`."""
         if parameters.num_particles != self.parameters.num_particles:
@@ -253,7 +245,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             self._predicted_for = 0.0
             self._velocity.add(self._position, position, elapsed)
             for number, (first, found) in enumerate(zip(self._first, histograms, strict=True)):
-                if weighting.factors[number] > 0 or self._updates_unused:
+                if weighting.factors[number] > 0 or settings.update_unused:
                     weight = settings.reference_weight
                     self.references[number] = Reference(weight * first + (1 - weight) * found)
         self._searching = weighting.full_occlusion
@@ -269,7 +261,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         if effective_sample_size(cloud.weights) >= limit:
             return 0
         self._ancestors = self._draw(cloud.weights, settings.resampling)
-        if not self._is_joint:
+        if not settings.joint_resampling:
             sets = [self._draw(own, settings.resampling) for own in weights]
             count = len(self._ancestors)
             self._ancestors = common_survivors(sets, count, otherwise=self._ancestors)
@@ -292,14 +284,6 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
 class MfpfTracker(FeatureFilter[MfpfParameters]):
     """Colour, edges and texture together."""
-
-    @property
-    def _is_joint(self) -> bool:
-        return self._settings.joint_resampling
-
-    @property
-    def _updates_unused(self) -> bool:
-        return self._settings.update_unused
 
     def _make_features(self) -> Mapping[str, WindowFeature]:
         settings = self._settings

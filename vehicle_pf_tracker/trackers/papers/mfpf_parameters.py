@@ -165,6 +165,10 @@ class FeatureFilterParameters(ParticleParameters):
     dispersion: DispersionParameters = group(DispersionParameters)
     confidence: ConfidenceParameters = group(ConfidenceParameters)
 
+    # Parameters of `mfpf`: one feature has no other to be joined with, or to drop out beside.
+    update_unused = False
+    joint_resampling = True
+
     def printed(self: FilterParametersT) -> FilterParametersT:
         """Return the parameters as printed; see `CommonParameters.printed`."""
         return replace(
