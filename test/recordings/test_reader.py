@@ -251,7 +251,7 @@ def test_a_folder_without_usable_metadata_is_read_by_its_files(record, tmp_path)
         assert "damaged" in recording.notices[0]
     (folder / "metadata.yaml").unlink()
     recording = Recording(folder)
-    assert "no metadata.yaml" in recording.notices[0]
+    assert "metadata.yaml is missing" in recording.notices[0]
     # bag_10 comes after bag_9, not before bag_8.
     assert [index.path.name for index in recording.files] == [
         "bag_8.mcap",

@@ -59,54 +59,45 @@ def recording_files(path: Path) -> tuple[list[Path], list[str]]:
 
 def _folder_files(folder: Path) -> tuple[list[Path], list[str]]:
     metadata = folder / "metadata.yaml"
-    present = sorted(filter(Path.is_file, folder.glob("*.mcap")), key=_natural_order)
-    if not metadata.exists():
-        if not present:
-            raise InputError(f"the folder {folder} holds no recording (metadata.yaml, *.mcap)")
-        return present, [f"recording {folder} has no metadata.yaml; its *.mcap files are used"]
     information = _information(metadata)
-    if information is None:
-        if not present:
-            raise InputError(f"{metadata} is damaged, and there is no *.mcap file beside it")
-        return present, [f"{metadata} is damaged; the *.mcap files beside it are used"]
-    _check_storage(folder, information)
-    return _listed_files(folder, information)
+    if information is not None:
+        _check_storage(folder, information)
+        return _listed_files(folder, information)
+    present = sorted(filter(Path.is_file, folder.glob("*.mcap")), key=_natural_order)
+    if not present:
+        raise InputError(f"the folder {folder} holds no recording (metadata.yaml, *.mcap)")
+    state = "damaged" if metadata.exists() else "missing"
+    return present, [f"{metadata} is {state}; the *.mcap files beside it are used"]
 
 
 def _information(metadata: Path) -> dict[str, Any] | None:
+    """Read what the metadata say of a recording; None where they are missing or damaged."""
     try:
         if not metadata.is_file():
             return None
         information = yaml.safe_load(metadata.read_text())["rosbag2_bagfile_information"]
         files = information["relative_file_paths"]
+        words = [information.get(key) or "" for key in ("storage_identifier", "compression_mode")]
     # ValueError: bytes that are not text, numbers of thousands of digits, dates that are none.
-    except (yaml.YAMLError, ValueError, RecursionError, KeyError, TypeError):
+    except (yaml.YAMLError, ValueError, RecursionError, KeyError, TypeError, AttributeError):
         return None
-    is_list = isinstance(files, list) and files and all(isinstance(name, str) for name in files)
-    return information if is_list else None
+    is_sound = isinstance(files, list) and files and all(isinstance(w, str) for w in files + words)
+    return information if is_sound else None
 
 
 def _check_storage(folder: Path, information: dict[str, Any]) -> None:
-    storage = _word(folder, information, "storage_identifier") or "mcap"
+    storage = information.get("storage_identifier") or "mcap"
     if storage != "mcap":
         raise InputError(
             f"the recording {folder} is stored as {storage}; "
             "convert it to MCAP with `ros2 bag convert`"
         )
-    mode = _word(folder, information, "compression_mode").lower()
+    mode = (information.get("compression_mode") or "").lower()
     if mode not in {"", "none", "storage"}:
         raise InputError(
             f"the recording {folder} is compressed by {mode}; convert it with `ros2 bag convert`, "
             "or record with `--storage-preset-profile zstd_fast`"
         )
-
-
-def _word(folder: Path, information: dict[str, Any], key: str) -> str:
-    """Return a text of the metadata; other types are not even printed: aliases may nest them."""
-    value = information.get(key)
-    if value is not None and not isinstance(value, str):
-        raise InputError(f"{key} in {folder / 'metadata.yaml'} is not text")
-    return value or ""
 
 
 def _listed_files(folder: Path, information: dict[str, Any]) -> tuple[list[Path], list[str]]:
