@@ -61,16 +61,10 @@ class Reference:
     ----------
     histogram : (bins,) array
         Sums to one, or is all zero and similar to nothing; not changed afterwards.
-
-    Attributes
-    ----------
-    kept : dict
-        Derived data that kernels keep with it, by a key of their own.
     """
 
     def __init__(self, histogram: Histogram) -> None:
         self.histogram = np.asarray(histogram, dtype=np.float64)
-        self.kept: dict[object, object] = {}
 
     @cached_property
     def active(self) -> npt.NDArray[np.intp]:

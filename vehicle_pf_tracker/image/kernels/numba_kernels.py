@@ -68,17 +68,15 @@ class CellTable(NamedTuple):
     values: Reals
 
 
+@functools.lru_cache(maxsize=32)
 def table_of(reference: Reference) -> CellTable:
     """Return the table of a reference, computed once."""
-    kept = reference.kept.get("cells")
-    if not isinstance(kept, CellTable):
-        count = len(reference.active)
-        cells = np.full(len(reference.histogram), count, np.uint16)
-        cells[reference.active] = np.arange(count)
-        values = np.zeros(-(-(count + 1) // _LANES) * _LANES)
-        values[:count] = np.sqrt(reference.values)
-        kept = reference.kept["cells"] = CellTable(cells, values)
-    return kept
+    count = len(reference.active)
+    cells = np.full(len(reference.histogram), count, np.uint16)
+    cells[reference.active] = np.arange(count)
+    values = np.zeros(-(-(count + 1) // _LANES) * _LANES)
+    values[:count] = np.sqrt(reference.values)
+    return CellTable(cells, values)
 
 
 def roots_up_to(count: int) -> Reals:
