@@ -112,7 +112,10 @@ def load_kernels(choice: str) -> Kernels:
                 f"kernels: numba needs numba, which cannot be imported ({error}); "
                 "install it, or set kernels to auto or opencv"
             ) from error
-        return Kernels(_fallback_notices(error))
+        if isinstance(error, ModuleNotFoundError) and error.name == "numba":
+            return Kernels()
+        why = f"numba is installed but cannot be imported ({error}); the OpenCV kernels are used"
+        return Kernels([why])
 
 
 def takes_long(choice: str) -> bool:
@@ -128,10 +131,3 @@ def load_numba() -> Kernels:
     # Imported late: it takes half a second, and only here is it known to be needed.
     kernels: Kernels = importlib.import_module(f"{__package__}.numba_kernels").NumbaKernels()
     return kernels
-
-
-def _fallback_notices(error: ImportError) -> list[str]:
-    """Return no notice where numba is not installed, and one where it fails to load."""
-    if isinstance(error, ModuleNotFoundError) and error.name == "numba":
-        return []
-    return [f"numba is installed but cannot be imported ({error}); the OpenCV kernels are used"]

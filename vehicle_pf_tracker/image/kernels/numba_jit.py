@@ -22,6 +22,7 @@ shape (P, H, W): a window's counts are those of all planes together.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import Any, TypeAlias, TypeVar
 
@@ -40,6 +41,7 @@ NOT_KEPT = (
     "seconds: set NUMBA_CACHE_DIR to a folder that can be written"
 )
 
+_FASTMATH = {"reassoc", "contract"}
 _notices: list[str] = []
 
 
@@ -55,32 +57,27 @@ def compiled(*signatures: Any) -> Callable[[FunctionT], FunctionT]:
     """
 
     def compile_it(function: FunctionT) -> FunctionT:
+        build = functools.partial(numba.njit, list(signatures), fastmath=_FASTMATH)
         try:
-            return _compile(function, list(signatures), keep=True)
+            result: FunctionT = build(cache=True)(function)
         except Exception as error:  # no folder, a full disk, or what a torn file makes of pickle
             if not _notices:
                 _notices.append(NOT_KEPT.format(str(error).partition("\n")[0]))
-            return _compile(function, list(signatures), keep=False)
+            result = build()(function)
+        return result
 
     return compile_it
 
 
 def inlined(function: FunctionT) -> FunctionT:
     """Make a part of the compiled functions of the same file."""
-    inner: FunctionT = numba.njit(fastmath={"reassoc", "contract"})(function)
+    inner: FunctionT = numba.njit(fastmath=_FASTMATH)(function)
     return inner
 
 
 def notices() -> list[str]:
     """Return the problems met while compiling, one sentence each."""
     return list(_notices)
-
-
-def _compile(function: FunctionT, signatures: list[Any], *, keep: bool) -> FunctionT:
-    result: FunctionT = numba.njit(signatures, cache=keep, fastmath={"reassoc", "contract"})(
-        function
-    )
-    return result
 
 
 Cells: TypeAlias = npt.NDArray[np.uint16]
