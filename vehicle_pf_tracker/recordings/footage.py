@@ -81,6 +81,7 @@ class Footage(ABC):
     image_topic = ""
     fps: float
     frame_count: int | None
+    _notices: Sequence[str] = ()
 
     @abstractmethod
     def frames(self) -> Iterator[Picture]:
@@ -99,7 +100,7 @@ class Footage(ABC):
     @property
     def notices(self) -> list[str]:
         """Irregularities, a sentence each; complete when all images are read."""
-        return []
+        return list(self._notices)
 
 
 def check_fps(fps: float, source: Path | str) -> float:

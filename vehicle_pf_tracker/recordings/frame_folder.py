@@ -66,6 +66,8 @@ class FrameFolder(Footage):
     ----------
     images : mapping of int to Path
         The image files by their numbers, in order.
+    stamps : list of int
+        Their stamps in ns; the first is at the start, whatever its number.
     rows : mapping of int to TruthRow
         The truth by the number of its image; empty where there is none.
 
@@ -89,7 +91,8 @@ class FrameFolder(Footage):
         stated = _frame_rate(folder) if fps is None else check_fps(fps, "--fps")
         self._is_assumed = stated is None
         self.fps = ASSUMED_FPS if stated is None else stated
-        stamp_of(max(self.images) - min(self.images), self.fps)  # refuses what ROS cannot express
+        first = min(self.images)
+        self.stamps = [stamp_of(number - first, self.fps) for number in self.images]
         names = {path.name: number for number, path in self.images.items()}
         images = Images(list(self.images), self._size, names)
         if truth is None:
@@ -100,12 +103,6 @@ class FrameFolder(Footage):
         if self.rows and not self.rows.keys() & self.images.keys():
             raise InputError(f"no frame of the truth {truth or 'in ' + str(folder)} has an image")
 
-    @property
-    def stamps(self) -> list[int]:
-        """Stamps of the images in ns; the first is at the start, whatever its number."""
-        first = min(self.images)
-        return [stamp_of(number - first, self.fps) for number in self.images]
-
     def frames(self) -> Iterator[Picture]:
         """Yield the images by their numbers."""
         for (number, path), stamp in zip(self.images.items(), self.stamps, strict=True):
@@ -113,8 +110,8 @@ class FrameFolder(Footage):
 
     def truth(self) -> list[Truth]:
         """Return the truth of all images, in order."""
-        stamps = dict(zip(self.images, self.stamps, strict=True))
-        return [self.rows[n].at(stamp) for n, stamp in stamps.items() if n in self.rows]
+        numbered = zip(self.images, self.stamps, strict=True)
+        return [self.rows[n].at(stamp) for n, stamp in numbered if n in self.rows]
 
     def _size(self) -> tuple[int, int]:
         return frame_size(read_picture(next(iter(self.images.values()))).frame)

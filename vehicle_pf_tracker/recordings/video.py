@@ -216,7 +216,6 @@ class Camera(Footage):
         self.fps = float(self._video.get(cv2.CAP_PROP_FPS))
         self.frame_count = None
         self._read = 0
-        self._notices: list[str] = []
 
     @property
     def is_endless(self) -> bool:
@@ -240,11 +239,6 @@ class Camera(Footage):
     def _next(self) -> Frame | None:
         with quiet_opencv():  # it complains of a stream that stalls
             return _next_frame(self._video)
-
-    @property
-    def notices(self) -> list[str]:
-        """Report a source that ended by itself."""
-        return self._notices
 
 
 def _next_frame(video: cv2.VideoCapture) -> Frame | None:
