@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -200,11 +199,6 @@ class Recording:
             Time to skip after the start of the recording, s of log time.
         duration : float or None
             Time to read, s; None reads to the end.
-
-        Raises
-        ------
-        InputError
-            If a time is negative or not finite.
         """
         types = {info.name: info for info in self.topics}
         for index, message in self._select(topics, start_offset, duration):
@@ -221,10 +215,10 @@ class Recording:
         start_offset: float = 0.0,
         duration: float | None = None,
     ) -> Iterator[tuple[McapIndex, Message]]:
-        first = self.start_ns + _nanoseconds("start offset", start_offset)
+        first = self.start_ns + round(start_offset * 1e9)
         end = self.end_ns + 1
         if duration is not None:
-            end = min(end, first + _nanoseconds("duration", duration))
+            end = min(end, first + round(duration * 1e9))
         return merged_messages(self.files, topics, first, end, self._notices.add_block)
 
     def _decode_or_note(self, message: Message) -> StampedFrame:
@@ -272,9 +266,3 @@ class Recording:
                 "nothing in it can be used"
             )
         raise InputError(f"the recording {self.path} holds no messages")
-
-
-def _nanoseconds(name: str, seconds: float) -> int:
-    if not math.isfinite(seconds) or seconds < 0:
-        raise InputError(f"the {name} must be a number of seconds >= 0, not {seconds}")
-    return round(seconds * 1e9)
