@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.kernels.interface import CHOICES, load_kernels
@@ -31,14 +31,13 @@ particles_parameter = functools.partial(parameter, bounds=(1, 100_000))
 _side = functools.partial(parameter, 0.0, bounds=(0.0, 4096.0), unit="px", effect="relearns")
 
 
-def frame_rate_parameter() -> Any:
-    """Make the nominal rate of the images."""
-    return parameter(
-        0.0,
-        "Nominal rate that speeds in px per frame refer to; 0 takes the median of the first ten "
-        "intervals.",
-        bounds=(0.0, 1000.0), unit="1/s",
-    )  # fmt: skip
+frame_rate_parameter = functools.partial(
+    parameter, 0.0,
+    "Nominal rate that speeds in px per frame refer to; 0 takes the median of the first ten "
+    "intervals.",
+    bounds=(0.0, 1000.0), unit="1/s",
+)  # fmt: skip
+"""Make the nominal rate of the images."""
 
 
 @dataclass(frozen=True, slots=True)
