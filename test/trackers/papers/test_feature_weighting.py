@@ -45,7 +45,6 @@ def test_confidences_and_factors_by_hand():
     assert weighting.confidences == pytest.approx([1.2, 0.8, 0.0])
     assert weighting.factors == pytest.approx([0.6, 0.4, 0.0])
     assert not weighting.full_occlusion
-    assert weighting.combine(np.array([[10, 0], [20, 10], [99, 99]])) == pytest.approx([14, 4])
 
 
 def test_all_below_their_thresholds_is_full_occlusion():

@@ -74,10 +74,6 @@ class FeatureWeighting:
         """True if every feature is below its threshold."""
         return not self.factors.any()
 
-    def combine(self, candidates: Array) -> Array:
-        """Weighted average of the features' own positions (F, 2), eq. 18."""
-        return np.asarray(self.factors @ candidates)
-
 
 def weigh_features(averages: Array, initial: Array, threshold: float) -> FeatureWeighting:
     """Compare each feature's average similarity with its initial one.

@@ -227,7 +227,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             candidates = particles[weights.argmax(axis=1)]
         else:
             candidates = weights @ particles
-        x, y = weighting.combine(candidates)
+        x, y = weighting.factors @ candidates
         return float(x), float(y)
 
     def _update(
