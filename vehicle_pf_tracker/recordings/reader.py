@@ -117,11 +117,6 @@ class Recording:
         self._notices = ReadNotices(self.path, self.image_topic, found, self.files)
 
     @property
-    def duration_ns(self) -> int:
-        """Time from the first to the last message in ns."""
-        return self.end_ns - self.start_ns
-
-    @property
     def notices(self) -> list[str]:
         """Irregularities, a sentence each; the list grows while reading."""
         return self._notices.sentences
