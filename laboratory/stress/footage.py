@@ -143,10 +143,10 @@ def open_footage(source: Source) -> StressFootage:
 def _open_folder(source: Source, path: Path) -> StressFootage:
     folder = FrameFolder(path)
     files = list(folder.images.values())
-    rows = [folder.rows.get(number) for number in folder.images]
+    truths = [folder.truths.get(number) for number in folder.images]
     truth = tuple(
-        None if row is None else Truth(stamp_of(i, folder.fps), row.box, row.occlusion)
-        for i, row in enumerate(rows)
+        None if one is None else replace(one, stamp_ns=stamp_of(i, folder.fps))
+        for i, one in enumerate(truths)
     )
 
     def frame(index: int) -> Frame:
@@ -177,7 +177,7 @@ def _open_recording(source: Source, path: Path) -> StressFootage:
 def _describe(name: str, path: Path) -> Source:
     if _is_frame_folder(path):
         folder = FrameFolder(path)
-        if not folder.rows:
+        if not folder.truths:
             raise InputError(f"the frame folder {path} has no truth to compare with")
         files = [*folder.images.values(), path / "groundtruth.csv", path / "sequence.json"]
         unsized = Source(name, str(path.absolute()), "", len(folder.images), 0, 0, _digest(files))

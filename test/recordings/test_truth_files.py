@@ -232,7 +232,7 @@ def test_truth_that_is_named_takes_the_place_of_what_lies_there(lay, tmp_path):
 def test_tc128_states_the_images_that_its_rows_begin_at(lay):
     files = {"Car/Car_gt.txt": FROM_1[:2], "Car/Car_frames.txt": ["3,4"]}
     folder = FrameFolder(lay("Car/img/{:04d}.jpg", files), fps=10)
-    assert {number: row.box.x for number, row in folder.rows.items()} == {3: 8, 4: 10}
+    assert {number: one.box.x for number, one in folder.truths.items()} == {3: 8, 4: 10}
 
 
 def test_the_truth_above_the_folder_of_the_images_is_found(lay):

@@ -21,6 +21,7 @@ import json
 import math
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError, read_text
@@ -28,7 +29,7 @@ from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.recordings.footage import Footage, Picture, check_fps, stamp_of
-from vehicle_pf_tracker.recordings.truth_files import TruthRow, read_truth, truth_beside
+from vehicle_pf_tracker.recordings.truth_files import read_truth, truth_beside
 from vehicle_pf_tracker.recordings.truth_formats import Images
 
 FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
@@ -68,7 +69,7 @@ class FrameFolder(Footage):
         The image files by their numbers, in order.
     stamps : list of int
         Their stamps in ns; the first is at the start, whatever its number.
-    rows : mapping of int to TruthRow
+    truths : mapping of int to Truth
         The truth by the number of its image; empty where there is none.
 
     Raises
@@ -85,11 +86,9 @@ class FrameFolder(Footage):
         truth: Path | None = None,
         identity: int | None = None,
     ) -> None:
-        self._folder = folder
         self.images = numbered_images(folder)
         self.frame_count = len(self.images)
         stated = _frame_rate(folder) if fps is None else check_fps(fps, "--fps")
-        self._is_assumed = stated is None
         self.fps = ASSUMED_FPS if stated is None else stated
         first = min(self.images)
         self.stamps = [stamp_of(number - first, self.fps) for number in self.images]
@@ -97,36 +96,33 @@ class FrameFolder(Footage):
         images = Images(list(self.images), self._size, names)
         if truth is None:
             beside = folder.parent if folder.name in IMAGE_FOLDERS else folder
-            self.rows, self._notices = truth_beside(beside, images, identity)
+            table, notices = truth_beside(beside, images, identity)
         else:
-            self.rows, self._notices = read_truth([truth], images, identity)
-        if self.rows and not self.rows.keys() & self.images.keys():
+            table, notices = read_truth([truth], images, identity)
+        numbered = zip(self.images, self.stamps, strict=True)
+        self.truths = {n: replace(table[n], stamp_ns=at) for n, at in numbered if n in table}
+        if table and not self.truths:
             raise InputError(f"no frame of the truth {truth or 'in ' + str(folder)} has an image")
+        if stated is None:
+            notices.append(
+                f"the folder {folder} states no frame rate; {ASSUMED_FPS:g} frames/s are assumed, "
+                "give --fps or a sequence.json to change that"
+            )
+        if lost := len(table) - len(self.truths):
+            notices.append(f"frames of the truth without an image: {lost}")
+        self._notices = notices
 
     def frames(self) -> Iterator[Picture]:
         """Yield the images by their numbers."""
         for (number, path), stamp in zip(self.images.items(), self.stamps, strict=True):
-            yield read_picture(path, stamp, self.rows.get(number))
+            yield read_picture(path, stamp, self.truths.get(number))
 
     def truth(self) -> list[Truth]:
         """Return the truth of all images, in order."""
-        numbered = zip(self.images, self.stamps, strict=True)
-        return [self.rows[n].at(stamp) for n, stamp in numbered if n in self.rows]
+        return list(self.truths.values())
 
     def _size(self) -> tuple[int, int]:
         return frame_size(read_picture(next(iter(self.images.values()))).frame)
-
-    @property
-    def notices(self) -> list[str]:
-        """Report an assumed frame rate, truth that was read or not, and truth without an image."""
-        notices = list(self._notices)
-        if self._is_assumed:
-            notices.append(
-                f"the folder {self._folder} states no frame rate; {ASSUMED_FPS:g} frames/s are "
-                "assumed, give --fps or a sequence.json to change that"
-            )
-        lost = len(self.rows.keys() - self.images.keys())
-        return notices + ([f"frames of the truth without an image: {lost}"] if lost else [])
 
 
 def image_files(folder: Path) -> list[Path]:
@@ -200,7 +196,7 @@ def _of_ini(text: str) -> float:
     return float(parser["Sequence"]["frameRate"])
 
 
-def read_picture(path: Path, stamp_ns: int = 0, row: TruthRow | None = None) -> Picture:
+def read_picture(path: Path, stamp_ns: int = 0, truth: Truth | None = None) -> Picture:
     """Read an image, which has this stamp and truth.
 
     Raises
@@ -216,5 +212,4 @@ def read_picture(path: Path, stamp_ns: int = 0, row: TruthRow | None = None) -> 
         raise InputError(f"cannot read the image {path}: {error.strerror}") from error
     except InputError as error:
         raise InputError(f"the image {path} cannot be read: {error}") from error
-    truth = None if row is None else row.at(stamp_ns)
     return Picture(stamp_ns, frame, str(path), coded_format, coded, truth)

@@ -19,12 +19,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, read_text
-from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 from vehicle_pf_tracker.recordings.truth_formats import (
     FORMATS,
@@ -60,19 +59,8 @@ _PLACES = (
 """Where truth lies, from the folder of the images."""
 
 
-@dataclass(frozen=True, slots=True)
-class TruthRow:
-    """True box (px) of the vehicle in a frame, and its occlusion."""
-
-    box: Box
-    occlusion: Occlusion
-
-    def at(self, stamp_ns: int) -> Truth:
-        """Make the truth of the image that has this stamp."""
-        return Truth(stamp_ns, self.box, self.occlusion)
-
-
-Table = dict[int, TruthRow]
+Table = dict[int, Truth]
+"""Truth by the number of its image, whose stamp it has yet to be given."""
 
 
 def truth_beside(
@@ -82,7 +70,7 @@ def truth_beside(
 
     Returns
     -------
-    table : dict of int to TruthRow
+    table : dict of int to Truth
         The truth by the number of its image; empty where there is none.
     notices : list of str
         What was read, and what was seen and not read, a sentence each.
@@ -127,7 +115,7 @@ def read_truth(
         If a file cannot be read, names a frame twice, or has a cell that is not a number; or if
         there is no target `identity`.
     """
-    targets: dict[int, dict[int, TruthRow | None]] = {}
+    targets: dict[int, dict[int, Truth | None]] = {}
     notices = []
     for path in paths:
         text = read_text(path, "the truth")
@@ -168,7 +156,7 @@ def _reader(path: Path, text: str) -> Reader:
     raise UnreadTruthError(f"{path} looks like truth, but is in no format that is read")
 
 
-def _row(label: Label) -> tuple[int, int, TruthRow | None]:
+def _row(label: Label) -> tuple[int, int, Truth | None]:
     """Return frame and target of a label, and its row; None where the target is absent."""
     for value, name in ((label.number, "frame"), (label.identity, "target")):
         if not float(value).is_integer():
@@ -176,5 +164,5 @@ def _row(label: Label) -> tuple[int, int, TruthRow | None]:
     if any(abs(value) > LARGEST_PX for value in label.sides if math.isfinite(value)):
         raise InputError(f"{label.where} has a box beyond {LARGEST_PX:.0f} px")
     is_box = all(map(math.isfinite, label.sides)) and min(label.sides[2:]) > 0
-    row = TruthRow(Box(*label.sides), label.occlusion) if is_box else None
+    row = Truth(0, Box(*label.sides), label.occlusion) if is_box else None
     return int(label.number), int(label.identity), row

@@ -24,6 +24,7 @@ import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +42,7 @@ from vehicle_pf_tracker.recordings.footage import (
     stamp_of,
 )
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
-from vehicle_pf_tracker.recordings.truth_files import read_truth
+from vehicle_pf_tracker.recordings.truth_files import Table, read_truth
 from vehicle_pf_tracker.recordings.truth_formats import Images
 
 _SILENT = 0
@@ -102,7 +103,6 @@ class VideoFile(Footage):
         identity: int | None = None,
     ) -> None:
         self._path = path
-        self._stamps: dict[int, int] = {}
         self._read = self._without_time = 0
         self._ended = False
         self._keeps_times = fps is None
@@ -116,9 +116,13 @@ class VideoFile(Footage):
             raise InputError(f"the video {path} states no frame rate; give it with --fps")
         check_fps(self.fps, path)
         images = Images(range(1, (self.frame_count or _MOST_FRAMES) + 1), lambda: size, {})
-        self._truth, self._notices = (
-            ({}, []) if truth is None else read_truth([truth], images, identity)
-        )
+        table: Table = {}
+        if truth is not None:
+            table, self._notices = read_truth([truth], images, identity)
+        # At even stamps until the frames are read.
+        self._truth = {
+            n: replace(row, stamp_ns=stamp_of(n - 1, self.fps)) for n, row in table.items()
+        }
 
     def frames(self) -> Iterator[Picture]:
         """Yield the frames with their stamps."""
@@ -128,10 +132,9 @@ class VideoFile(Footage):
             self._ended, last = False, 0
             while (frame := _next_frame(video)) is not None:
                 stamp, number = self._stamp(video, last), self._read + 1
-                row = self._truth.get(number)
-                if row is not None:
-                    self._stamps[number] = stamp
-                truth = None if row is None else row.at(stamp)
+                truth = self._truth.get(number)
+                if truth is not None:
+                    truth = self._truth[number] = replace(truth, stamp_ns=stamp)
                 yield Picture(stamp, frame, f"frame {number} of {self._path}", truth=truth)
                 self._read, last = number, stamp
             self._ended = True
@@ -142,11 +145,7 @@ class VideoFile(Footage):
 
     def truth(self) -> list[Truth]:
         """Return the truth, at even stamps where its frames are not read yet."""
-        return [
-            row.at(self._stamps.get(n, stamp_of(n - 1, self.fps)))
-            for n, row in sorted(self._truth.items())
-            if n >= 1
-        ]
+        return [one for number, one in sorted(self._truth.items()) if number >= 1]
 
     def _stamp(self, video: cv2.VideoCapture, last: int) -> int:
         """Return the stamp of the frame just read, in ns, later than the one before."""
