@@ -148,14 +148,11 @@ def numbered_images(folder: Path) -> dict[int, Path]:
     for path in paths:
         if not path.is_file():
             raise InputError(f"the image {path} is not a regular file")
-    numbered = [path for path in paths if path.stem.isdecimal()]
-    ending = [re.search(r"[0-9]+$", path.stem) for path in paths]
-    if numbered:
-        numbers = [int(path.stem) for path in numbered]
-    elif all(ending):
-        numbered, numbers = paths, [int(found.group()) for found in ending if found]
-    else:
-        numbered, numbers = paths, list(range(1, len(paths) + 1))
+    numbered = [path for path in paths if path.stem.isdecimal()] or paths
+    endings = [re.search(r"\d+$", path.stem) for path in numbered]
+    numbers = [int(end[0]) for end in endings if end]
+    if not all(endings):
+        numbers = list(range(1, len(numbered) + 1))
     images: dict[int, Path] = {}
     for number, path in zip(numbers, numbered, strict=True):
         if number in images:
