@@ -19,7 +19,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from vehicle_pf_tracker.core.clock import header_stamp_ns
 from vehicle_pf_tracker.core.errors import InputError
@@ -242,13 +241,12 @@ class Recording:
         return bool(found)
 
     def _assemble(self, found: Iterable[tuple[McapIndex, Message]]) -> tuple[Truth, ...]:
-        def received() -> Iterator[tuple[str, Any]]:
-            for index, message in found:
-                topic = index.channels[message.channel_id].topic
-                yield topic, deserialize(message.data, messages.TRUTH_TYPES[topic])
-
+        by_topic = ((index.channels[one.channel_id].topic, one.data) for index, one in found)
+        received = (
+            (topic, deserialize(data, messages.TRUTH_TYPES[topic])) for topic, data in by_topic
+        )
         try:
-            return messages.truth_from_messages(received(), self.files[-1].is_truncated)
+            return messages.truth_from_messages(received, self.files[-1].is_truncated)
         except InputError as error:
             raise InputError(f"the truth of {self.path} is broken: {error}") from error
 
