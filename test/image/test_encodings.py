@@ -15,6 +15,7 @@
 """Every encoding against numbers worked out by hand, and what must be refused."""
 
 import array
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.image.encodings import ENCODINGS, to_rgb
+from vehicle_pf_tracker.image.encodings import ENCODINGS, frame_of_message
 
 RED, GREEN, BLUE = (200, 10, 30), (20, 220, 40), (5, 15, 250)
 COLOURS = np.array([[RED, GREEN, BLUE], [BLUE, RED, GREEN]], np.uint8)
@@ -33,6 +34,15 @@ def padded(rows, padding=5):
     rows = np.ascontiguousarray(rows).view(np.uint8).reshape(rows.shape[0], -1)
     filler = np.full((rows.shape[0], padding), 0xAB, np.uint8)
     return np.hstack([rows, filler]).tobytes(), rows.shape[1] + padding
+
+
+def to_rgb(encoding, height, width, step, is_bigendian, data):
+    return frame_of_message(
+        SimpleNamespace(
+            encoding=encoding, height=height, width=width, step=step, is_bigendian=is_bigendian,
+            data=data,
+        )
+    )  # fmt: skip
 
 
 def convert(encoding, rows, width, height=None, big=False, padding=5):

@@ -59,28 +59,19 @@ class _Encoding:
     even: bool = False
 
 
-def to_rgb(
-    encoding: str, height: int, width: int, step: int, is_bigendian: bool, data: Buffer
-) -> Frame:
-    """Read the data of a `sensor_msgs/Image` as an RGB frame.
+def frame_of_message(message: Any) -> Frame:
+    """Read a `sensor_msgs/Image` as an RGB frame.
 
-    `rgb8` is returned as a view of `data`, rows `step` bytes apart; everything else is converted
+    `rgb8` is returned as a view of the data, rows `step` bytes apart; everything else is converted
     into a new array. 16-bit values keep their high byte; those of `16UC1`, which thermal cameras
     send with 10 to 16 bits in use, are scaled by the image's own range instead, so that two images
     of a scene may differ in brightness.
 
     Parameters
     ----------
-    encoding : str
-        Name of the encoding, one of `ENCODINGS`.
-    height, width : int
-        Size in px.
-    step : int
-        Distance of two rows in bytes.
-    is_bigendian : bool
-        Byte order of 16-bit values.
-    data : buffer
-        The image's bytes, at least ``step * height`` (NV12: half as many again).
+    message : sensor_msgs/Image
+        Its encoding is one of `ENCODINGS`, its data any buffer of at least ``step * height`` bytes
+        (NV12: half as many again).
 
     Returns
     -------
@@ -91,23 +82,17 @@ def to_rgb(
     ------
     InputError
         If the encoding is unknown, the size is zero, odd where pixels share their colour, or above
-        `MAX_SIDE`, `step` is shorter than a row, or `data` is shorter than the image.
+        `MAX_SIDE`, `step` is shorter than a row, or the data are shorter than the image.
     """
-    layout = ENCODINGS.get(encoding)
+    layout = ENCODINGS.get(message.encoding)
     if layout is None:
         known = " ".join(ENCODINGS)
-        raise InputError(f"the image encoding {encoding!r} is unknown; these are read: {known}")
-    _check_layout(encoding, layout, height, width, step)
-    frame: Frame = layout.convert(_pixels(layout, height, width, step, data), bool(is_bigendian))
+        raise InputError(
+            f"the image encoding {message.encoding!r} is unknown; these are read: {known}"
+        )
+    _check_layout(layout, message)
+    frame: Frame = layout.convert(_pixels(layout, message), bool(message.is_bigendian))
     return frame
-
-
-def frame_of_message(message: Any) -> Frame:
-    """Read a `sensor_msgs/Image`; errors are those of `to_rgb`."""
-    return to_rgb(
-        message.encoding, message.height, message.width, message.step, message.is_bigendian,
-        message.data,
-    )  # fmt: skip
 
 
 def fields_of_frame(frame: Frame) -> dict[str, Any]:
@@ -124,8 +109,9 @@ def flat_bytes(data: Buffer) -> Bytes:
     return np.frombuffer(data, np.uint8)
 
 
-def _check_layout(encoding: str, layout: _Encoding, height: int, width: int, step: int) -> None:
-    size = f"{width}x{height} px in {encoding}"
+def _check_layout(layout: _Encoding, message: Any) -> None:
+    width, height, step = message.width, message.height, message.step
+    size = f"{width}x{height} px in {message.encoding}"
     if height <= 0 or width <= 0:
         raise InputError(f"an image of {size} has no pixels")
     if max(height, width) > MAX_SIDE:
@@ -136,14 +122,14 @@ def _check_layout(encoding: str, layout: _Encoding, height: int, width: int, ste
         raise InputError(f"an image of {size} has a step of {step} bytes, shorter than one row")
 
 
-def _pixels(layout: _Encoding, height: int, width: int, step: int, data: Buffer) -> Bytes:
+def _pixels(layout: _Encoding, message: Any) -> Bytes:
     """View the data without row padding: (rows, width) or (rows, width, bytes of a pixel)."""
-    flat = flat_bytes(data)
-    rows = int(height * layout.rows)
+    width, step, flat = message.width, message.step, flat_bytes(message.data)
+    rows = int(message.height * layout.rows)
     if flat.size < step * rows:
         raise InputError(
-            f"an image of {width}x{height} px with a step of {step} bytes needs {step * rows} "
-            f"bytes of data, but has {flat.size}"
+            f"an image of {width}x{message.height} px with a step of {step} bytes needs "
+            f"{step * rows} bytes of data, but has {flat.size}"
         )
     packed = flat[: step * rows].reshape(rows, step)[:, : width * layout.pixel_bytes]
     return packed if layout.pixel_bytes == 1 else packed.reshape(rows, width, layout.pixel_bytes)
