@@ -140,12 +140,6 @@ def _overlap(counts: Counts, values: Reals, total: int, roots: Reals) -> float:
 
 
 @inlined
-def _cleared(width: int, cells: int) -> tuple[Columns, Counts, Pixels]:
-    """Column histograms, their sum, and the rows that they are of: none yet."""
-    return np.zeros((width, cells), np.uint16), np.zeros(cells, np.int32), np.zeros(2, np.int64)
-
-
-@inlined
 def _follow_rows(columns: Columns, cells: Cells, rows: Pixels, top: int, bottom: int) -> None:
     """Take the column histograms of rows[0]:rows[1] to those of top:bottom, which is not above."""
     width = cells.shape[2]
@@ -202,7 +196,8 @@ def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Sc
     (left, right, up), (x0, y0, x1, y1), (values, roots) = reach, extent, scale
     heads = np.empty((y1 - y0 + 1, x1 - x0 + 1), np.int64)
     others = _listed(pixels, x0, y0, heads)
-    columns, sums, rows = _cleared(width, len(values))
+    columns = np.zeros((width, len(values)), np.uint16)
+    sums, rows = np.zeros(len(values), np.int32), np.zeros(2, np.int64)
     result = np.empty(len(pixels))
     for y in range(y0, y1 + 1):
         asked = np.flatnonzero(heads[y - y0] >= 0)
