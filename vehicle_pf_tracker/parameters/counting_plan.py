@@ -236,8 +236,7 @@ def _point(value: Any, what: str) -> Position:
     if not (
         isinstance(value, list)
         and len(value) == 2
-        and all(isinstance(part, int | float) and not isinstance(part, bool) for part in value)
-        and all(-_LARGEST <= part <= _LARGEST for part in value)
+        and all(type(part) in (int, float) and abs(part) <= _LARGEST for part in value)
     ):
         raise InputError(f"{what} has the point {str(value)[:60]}, which is not [x, y] in px")
     return float(value[0]), float(value[1])
