@@ -103,8 +103,6 @@ class VideoFile(Footage):
         identity: int | None = None,
     ) -> None:
         self._path = path
-        self._read = self._without_time = 0
-        self._ended = False
         self._keeps_times = fps is None
         video = self._open()
         self.fps = float(video.get(cv2.CAP_PROP_FPS)) if fps is None else check_fps(fps, "--fps")
@@ -117,8 +115,10 @@ class VideoFile(Footage):
         check_fps(self.fps, path)
         images = Images(range(1, (self.frame_count or _MOST_FRAMES) + 1), lambda: size, {})
         table: Table = {}
+        self._found: list[str] = []
         if truth is not None:
-            table, self._notices = read_truth([truth], images, identity)
+            table, self._found = read_truth([truth], images, identity)
+        self._notices = self._found
         # At even stamps until the frames are read.
         self._truth = {
             n: replace(row, stamp_ns=stamp_of(n - 1, self.fps)) for n, row in table.items()
@@ -127,55 +127,49 @@ class VideoFile(Footage):
     def frames(self) -> Iterator[Picture]:
         """Yield the frames with their stamps."""
         video = self._open()
+        number = last = untimed = 0
         try:
-            self._read = self._without_time = 0
-            self._ended, last = False, 0
             while (frame := _next_frame(video)) is not None:
-                stamp, number = self._stamp(video, last), self._read + 1
+                stamp = self._stamp(video, number, last)
+                if stamp is None:
+                    stamp = last + round(1e9 / self.fps) if last else START_NS
+                    untimed += 1
+                number, last = number + 1, stamp
                 truth = self._truth.get(number)
                 if truth is not None:
                     truth = self._truth[number] = replace(truth, stamp_ns=stamp)
                 yield Picture(stamp, frame, f"frame {number} of {self._path}", truth=truth)
-                self._read, last = number, stamp
-            self._ended = True
         finally:
             video.release()
-        if not self._read:
+        if not number:
             raise InputError(f"no frame of the video {self._path} can be decoded")
+        self._notices = [*self._found, *self._irregularities(number, untimed)]
 
     def truth(self) -> list[Truth]:
         """Return the truth, at even stamps where its frames are not read yet."""
         return [one for number, one in sorted(self._truth.items()) if number >= 1]
 
-    def _stamp(self, video: cv2.VideoCapture, last: int) -> int:
-        """Return the stamp of the frame just read, in ns, later than the one before."""
-        even = stamp_of(self._read, self.fps)
+    def _stamp(self, video: cv2.VideoCapture, index: int, last: int) -> int | None:
+        """Return the stamp of the frame just read, in ns; None if it is not after `last`."""
+        even = stamp_of(index, self.fps)
         if not self._keeps_times:
             return even
         stated = START_NS + round(video.get(cv2.CAP_PROP_POS_MSEC) * 1e6)
         if abs(stated - even) <= _ROUNDING_NS and even > last:
             return even
-        if stated > last and stated <= LAST_STAMP_NS:
-            return stated
-        self._without_time += 1
-        return last + round(1e9 / self.fps) if last else START_NS
+        return stated if last < stated <= LAST_STAMP_NS else None
 
-    @property
-    def notices(self) -> list[str]:
-        """Report fewer frames than the file states, and truth without a frame."""
-        notices = list(self._notices)
-        if self._ended and self.frame_count is not None and self._read < self.frame_count:
-            notices.append(
-                f"the video {self._path} states {self.frame_count} frames, {self._read} could be "
-                "read"
-            )
-        if self._without_time:
-            notices.append(
+    def _irregularities(self, read: int, untimed: int) -> Iterator[str]:
+        """Report fewer frames than the file states, times that it lacks, truth without a frame."""
+        if self.frame_count is not None and read < self.frame_count:
+            yield f"the video {self._path} states {self.frame_count} frames, {read} could be read"
+        if untimed:
+            yield (
                 f"the video {self._path} states no time, or none after the frame before, for "
-                f"{self._without_time} frames; they follow at {self.fps:g} frames/s"
+                f"{untimed} frames; they follow at {self.fps:g} frames/s"
             )
-        lost = sum(not 1 <= number <= self._read for number in self._truth)
-        return notices + ([f"frames of the truth without an image: {lost}"] if lost else [])
+        if lost := sum(not 1 <= number <= read for number in self._truth):
+            yield f"frames of the truth without an image: {lost}"
 
     def _open(self) -> cv2.VideoCapture:
         with quiet_opencv():
