@@ -131,6 +131,6 @@ def _table(plane: RoadPlane, pairs: Sequence[Pair]) -> str:
     lines.append(f"{'root mean square':>38}  {rms[0]:8.2f}  {rms[1]:8.3f}")
     if len(pairs) == 4:
         lines.append("four pairs always fit exactly: give more to see how well they were read")
-    lengths = [np.linalg.norm(plane.jacobian(np.array(pair.pixel)), 2) for pair in pairs]
+    lengths = [plane.pixel_length(plane.ideal(np.array(pair.pixel))) for pair in pairs]
     lines.append(f"a pixel is {min(lengths):.2g} to {max(lengths):.2g} m of road there")
     return "\n".join([*lines, ""])

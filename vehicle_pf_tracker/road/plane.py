@@ -176,10 +176,6 @@ def _rows(points: Array, mapped: Array) -> Array:
     return np.asarray(np.stack([along, across], axis=1).reshape(-1, 9))
 
 
-_STEP = 0.01
-"""Step in px of the derivative through the lens: far below the distances over which it changes."""
-
-
 @dataclass(frozen=True, slots=True)
 class Pair:
     """A pixel and the point of the road that it shows, in px and m."""
@@ -266,15 +262,9 @@ class RoadPlane:
         """Remove the lens's distortion from pixels (…, 2)."""
         return points if self.lens is None else self.lens.to_ideal(points)
 
-    def jacobian(self, point: Array) -> Array:
-        """Return the derivative (2, 2) of metres by pixels at the pixel `point` (2,)."""
-        at_ideal = self.homography.jacobian(self.ideal(point))
-        if self.lens is None:
-            return at_ideal
-        steps = np.eye(2) * _STEP
-        ahead, back = self.ideal(point + steps), self.ideal(point - steps)
-        through_lens = (ahead - back).T / (2 * _STEP)
-        return np.asarray(at_ideal @ through_lens)
+    def pixel_length(self, ideal: Array) -> float:
+        """Return the length on the road of one pixel at the ideal pixel (2,), m."""
+        return float(np.linalg.norm(self.homography.jacobian(ideal), 2))
 
     def objection(self, ideal: Array) -> str:
         """Say why the ideal pixel (2,) is outside the calibrated area; empty where it is not."""
@@ -284,7 +274,7 @@ class RoadPlane:
             return "above the horizon of the road"
         if self.hull is not None and not is_inside(self.hull, ideal):
             return "outside the calibrated area"
-        length = float(np.linalg.norm(self.homography.jacobian(ideal), 2))
+        length = self.pixel_length(ideal)
         if not length <= self.coarsest:
             return f"too far away: a pixel is {length:.2g} m of road"
         return ""
