@@ -47,7 +47,7 @@ def run(request: Request) -> int:
         claimed([request.out], [request.source, request.truth], overwrite=request.overwrite),
         counting("imported") as progress,
     ):
-        made = import_recording(
+        summary, notices = import_recording(
             request.source,
             request.out,
             truth=request.truth,
@@ -57,9 +57,6 @@ def run(request: Request) -> int:
             progress=progress,
             overwrite=request.overwrite,
         )
-    tell_notices(made.notices)
-    print(
-        f"{request.out}: {made.frames} frames of {made.width}x{made.height} px "
-        f"at {made.fps:g} frames/s, {made.truths} with truth"
-    )
+    tell_notices(notices)
+    print(f"{request.out}: {summary}")
     return 0

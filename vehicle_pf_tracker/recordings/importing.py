@@ -16,8 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -30,30 +29,6 @@ from vehicle_pf_tracker.recordings.writer import RecordingWriter
 FORMATS = ("compressed", "raw")
 
 
-@dataclass(frozen=True, slots=True)
-class ImportSummary:
-    """Summary of an import.
-
-    Attributes
-    ----------
-    frames, truths : int
-        Number of images, and of those with truth.
-    fps : float
-        Frame rate of the source in 1/s.
-    width, height : int
-        Size of the images in px.
-    notices : tuple of str
-        Irregularities, a sentence each.
-    """
-
-    frames: int
-    truths: int
-    fps: float
-    width: int
-    height: int
-    notices: tuple[str, ...]
-
-
 def import_recording(  # noqa: PLR0913 - one for each option of the command
     source: Path,
     out: Path,
@@ -64,7 +39,7 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
     format: str | None = None,  # noqa: A002 (named as the option of the command)
     progress: Callable[[int, int | None], None] | None = None,
     overwrite: bool = False,
-) -> ImportSummary:
+) -> tuple[str, Sequence[str]]:
     """Import a video file, or a frame folder with its truth, as a recording.
 
     Parameters
@@ -86,6 +61,13 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
         Called after each image with the number done and the total, None where that is unknown.
     overwrite : bool
         Replace a recording that is there.
+
+    Returns
+    -------
+    summary : str
+        Number and size of the images, their rate, and the number with truth.
+    notices : sequence of str
+        Irregularities, a sentence each.
 
     Raises
     ------
@@ -113,7 +95,8 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
             frames += 1
             if progress is not None:
                 progress(frames, footage.frame_count)
-    return ImportSummary(frames, truths, footage.fps, *size, tuple(footage.notices))
+    made = f"{frames} frames of {size[0]}x{size[1]} px at {footage.fps:g} frames/s"
+    return f"{made}, {truths} with truth", footage.notices
 
 
 def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:
