@@ -105,26 +105,14 @@ def fit_homography(pixels: Array, metres: Array) -> Homography:
     to_unit_pixels, to_unit_metres = _normalising(pixels), _normalising(metres)
     unit_pixels, unit_metres = _mapped(to_unit_pixels, pixels), _mapped(to_unit_metres, metres)
     road_to_image = _refined(_linear_fit(unit_metres, unit_pixels), unit_metres, unit_pixels)
-    return oriented(
-        np.linalg.inv(to_unit_metres) @ np.linalg.inv(road_to_image) @ to_unit_pixels, pixels
-    )
-
-
-def oriented(matrix: Array, pixels: Array) -> Homography:
-    """Make the homography of `matrix`, its sign chosen so that `pixels` are before the camera.
-
-    Raises
-    ------
-    InputError
-        If they are not all on one side of the horizon.
-    """
+    matrix = np.linalg.inv(to_unit_metres) @ np.linalg.inv(road_to_image) @ to_unit_pixels
     near = Homography(matrix).nearness(pixels)
     if not (np.all(near > 0) or np.all(near < 0)):
         raise InputError(
             "the pairs of the road put points on both sides of its horizon: check that each pixel "
             "has its own road point, in the same order around the area"
         )
-    return Homography(matrix * np.sign(near[0]))
+    return Homography(matrix * np.sign(near[0]))  # so that the pixels are before the camera
 
 
 def _normalising(points: Array) -> Array:
