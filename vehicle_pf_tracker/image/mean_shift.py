@@ -22,7 +22,6 @@ position lies in; the step from there is real-valued. Equations are numbered as 
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -36,23 +35,21 @@ from vehicle_pf_tracker.image.window import Centres, Coefficients, Positions, Wi
 Indices = npt.NDArray[np.intp]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Kernel:
-    """Pixels of the ellipse in a window: offsets (P, 2) in px, Epanechnikov profile (P,)."""
-
-    offsets: Array
-    profile: Array
-
-
 @functools.lru_cache(maxsize=8)
-def epanechnikov(window: Window) -> Kernel:
-    """Make the kernel whose ellipse touches the sides of `window` (eq. 12, without its norm)."""
+def epanechnikov(window: Window) -> tuple[Array, Array]:
+    """Make the kernel whose ellipse touches the sides of `window` (eq. 12, without its norm).
+
+    Returns
+    -------
+    offsets, profile : (P, 2) array, (P,) array
+        Offsets of the ellipse's pixels from the centre, px, and the profile there.
+    """
     y, x = np.mgrid[
         -window.half_height : window.half_height + 1, -window.half_width : window.half_width + 1
     ]
     radius = np.square(x / (window.half_width + 0.5)) + np.square(y / (window.half_height + 0.5))
     inside = radius < 1
-    return Kernel(np.column_stack([x[inside], y[inside]]) * 1.0, 1.0 - radius[inside])
+    return np.column_stack([x[inside], y[inside]]) * 1.0, 1.0 - radius[inside]
 
 
 def kernel_histogram(
@@ -73,7 +70,7 @@ def kernel_histogram(
     bins = bin_count(bits)
     pixel = _pixels(frame, np.asarray([position]))
     cells = _cells(frame, pixel, window, np.arange(bins), bits)
-    return np.asarray(_masses(cells, epanechnikov(window), bins)[0])
+    return np.asarray(_masses(cells, epanechnikov(window)[1], bins)[0])
 
 
 def kernel_similarity(
@@ -100,7 +97,7 @@ def kernel_similarity(
         From 0 to 1.
     """
     cells = _cells(frame, _pixels(frame, positions), window, reference.active, bits)
-    masses = _masses(cells, epanechnikov(window), len(reference.active))
+    masses = _masses(cells, epanechnikov(window)[1], len(reference.active))
     return bhattacharyya_coefficient(masses, reference.values)
 
 
@@ -120,15 +117,15 @@ def mean_shift(
         Mean of the ellipse's pixels, each weighted by ``sqrt(q / p)`` of its colour; the position
         itself where the ellipse has no colour of the reference.
     """
-    kernel, pixel = epanechnikov(window), _pixels(frame, positions)
+    (offsets, profile), pixel = epanechnikov(window), _pixels(frame, positions)
     cells = _cells(frame, pixel, window, reference.active, bits)
-    masses = _masses(cells, kernel, len(reference.active))
+    masses = _masses(cells, profile, len(reference.active))
     table = np.zeros((len(masses), masses.shape[1] + 2))
     np.divide(reference.values, masses, out=table[:, :-2], where=masses > 0)
     weights = np.sqrt(table).ravel().take(cells)  # sqrt(q / p) of eq. 25, (N, P)
     total = weights.sum(axis=1)
     moved = total > 0
-    step = (weights @ kernel.offsets)[moved] / total[moved, np.newaxis]
+    step = (weights @ offsets)[moved] / total[moved, np.newaxis]
     shifted = np.array(positions, dtype=np.float64)
     shifted[moved] = pixel[moved] + 0.5 + step
     return shifted
@@ -155,16 +152,16 @@ def _cells(frame: Frame, pixel: Centres, window: Window, active: Indices, bits: 
     covered = frame[low[1] : high[1], low[0] : high[0]]
     region[top:bottom, left:right] = table[bin_indices(covered, bits)]
     stride = np.array([1, region.shape[1]])
-    reads = (epanechnikov(window).offsets @ stride).astype(np.intp)
+    reads = (epanechnikov(window)[0] @ stride).astype(np.intp)
     columns = region.ravel().take(((pixel - first) @ stride)[:, np.newaxis] + reads)
     return np.asarray(columns + (len(active) + 2) * np.arange(len(pixel))[:, np.newaxis])
 
 
-def _masses(cells: Indices, kernel: Kernel, bins: int) -> Array:
+def _masses(cells: Indices, profile: Array, bins: int) -> Array:
     """Normalised kernel mass of each active bin, shape (N, bins)."""
     count, width = len(cells), bins + 2
-    profile = np.broadcast_to(kernel.profile, cells.shape)
-    masses = np.bincount(cells.ravel(), profile.ravel(), minlength=count * width)
+    each = np.broadcast_to(profile, cells.shape)
+    masses = np.bincount(cells.ravel(), each.ravel(), minlength=count * width)
     masses = masses.reshape(count, width)
     # The centre pixel always exists, so the sum without the last column is never zero.
     return np.asarray(masses[:, :bins] / masses[:, :-1].sum(axis=1, keepdims=True))

@@ -39,7 +39,7 @@ _ARGUMENTS = CELLS, RECTANGLES, _OFFSETS, REALS, REALS
 def ellipse(window: Window) -> tuple[Offsets, Reals]:
     """Offsets x, y (P, 2) and profile (P,) of the kernel's pixels."""
     kernel = epanechnikov(window)
-    offsets, profile = kernel.offsets.astype(np.int64), kernel.profile.copy()
+    offsets, profile = kernel[0].astype(np.int64), kernel[1].copy()
     offsets.flags.writeable = profile.flags.writeable = False
     return offsets, profile
 
