@@ -29,6 +29,7 @@ import math
 import reprlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from operator import attrgetter
 from types import MappingProxyType
 from typing import Any, Literal, TypeAlias, TypeVar, cast, get_type_hints
 
@@ -189,22 +190,18 @@ def _specs(cls: Any) -> Mapping[str, ParameterSpec]:
         if dataclasses.is_dataclass(value):
             for name, spec in specs(hints[field.name]).items():
                 dotted = f"{field.name}.{name}"
-                table[dotted] = dataclasses.replace(spec, name=dotted, default=_get(value, name))
+                table[dotted] = dataclasses.replace(
+                    spec, name=dotted, default=attrgetter(name)(value)
+                )
         else:
             spec = field.metadata[_KEY]
             table[field.name] = dataclasses.replace(spec, name=field.name, default=value)
     return MappingProxyType(table)
 
 
-def _get(parameters: Any, name: str) -> Any:
-    for part in name.split("."):
-        parameters = getattr(parameters, part)
-    return parameters
-
-
 def to_mapping(parameters: object) -> dict[str, Value]:
     """Return the value of every parameter by dotted name."""
-    return {name: _get(parameters, name) for name in specs(type(parameters))}
+    return {name: attrgetter(name)(parameters) for name in specs(type(parameters))}
 
 
 def from_mapping(
