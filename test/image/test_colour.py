@@ -17,7 +17,7 @@ import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import check_frame
-from vehicle_pf_tracker.image.colour import bin_indices, joint_histogram
+from vehicle_pf_tracker.image.colour import JointColour, bin_indices
 from vehicle_pf_tracker.image.similarity import (
     bhattacharyya_coefficient,
     hellinger_distance,
@@ -34,7 +34,7 @@ def test_bins_by_hand():
 def test_histogram_of_a_half_red_window():
     frame = np.zeros((5, 6, 3), np.uint8)
     frame[:, 3:, 0] = 255
-    histogram = joint_histogram(frame, (3.5, 2.5), Window(1, 1), 3)
+    histogram = JointColour(3).histograms(frame, np.array([[3.5, 2.5]]), Window(1, 1))[0]
     # Pixels 2, 3, 4 of each row: one black, two red.
     assert histogram[0] == pytest.approx(1 / 3)
     assert histogram[7 * 64] == pytest.approx(2 / 3)

@@ -23,7 +23,6 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.window import (
-    Bounds,
     Counted,
     CountedFeature,
     Positions,
@@ -64,40 +63,6 @@ def bin_indices(pixels: Frame, bits: int) -> BinIndices:
         | (levels[..., 1] << np.uint16(bits))
         | levels[..., 2]
     )
-
-
-def joint_histogram(
-    frame: Frame, position: tuple[float, float], window: Window, bits: int
-) -> Histogram:
-    """Normalised joint histogram of one window: P1's ``hist(S)``.
-
-    Parameters
-    ----------
-    frame : (H, W, 3) array
-        RGB.
-    position : (float, float)
-        Centre of the window in px; kept inside the image.
-    window : Window
-        Size of the window.
-    bits : int
-        Bits a channel.
-
-    Returns
-    -------
-    (bin_count(bits),) array
-        Sums to one.
-    """
-    rectangle = bounds(frame, np.asarray(position, dtype=np.float64), window)
-    counts = np.bincount(
-        bin_indices(crop(frame, rectangle), bits).ravel(), minlength=bin_count(bits)
-    )
-    return np.asarray(counts / counts.sum())
-
-
-def crop(frame: Frame, rectangle: Bounds) -> Frame:
-    """View of the pixels of `frame` in one rectangle."""
-    left, top, right, bottom = (int(side) for side in rectangle)
-    return frame[top:bottom, left:right]
 
 
 @dataclass(frozen=True)

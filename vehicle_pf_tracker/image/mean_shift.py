@@ -59,8 +59,14 @@ def kernel_histogram(
 
     Parameters
     ----------
-    frame, position, window, bits
-        As for `colour.joint_histogram`; the kernel's ellipse touches the sides of the window.
+    frame : (H, W, 3) array
+        RGB.
+    position : (float, float)
+        Centre of the window in px; kept inside the image.
+    window : Window
+        Box around the kernel's ellipse.
+    bits : int
+        Bits a channel.
 
     Returns
     -------

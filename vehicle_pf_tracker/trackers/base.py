@@ -34,7 +34,7 @@ from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.filtering.resampling import SCHEMES, Ancestors
 from vehicle_pf_tracker.filtering.weights import Weights, effective_sample_size
-from vehicle_pf_tracker.image.colour import Histogram, joint_histogram
+from vehicle_pf_tracker.image.colour import Histogram, JointColour
 from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.similarity import Reference
@@ -80,7 +80,8 @@ class Target:
 
     def joint_histogram(self, window: Window, bits: int) -> Histogram:
         """Return the joint RGB histogram of the target in the first frame."""
-        return joint_histogram(self.patch, self.centre, window, bits)
+        centre = np.asarray([self.centre])
+        return np.asarray(JointColour(bits).histograms(self.patch, centre, window)[0])
 
     def kernel_reference(self, window: Window, bits: int) -> Reference:
         """Return the reference of mean shift: the same histogram, weighted with its kernel."""
