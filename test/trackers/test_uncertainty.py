@@ -22,7 +22,6 @@ from vehicle_pf_tracker.trackers.uncertainty import (
     Calibration,
     Spread,
     Uncertainty,
-    calibration_of,
     cloud_covariance,
 )
 from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
@@ -82,10 +81,8 @@ def test_a_new_start_forgets_size_and_time():
     assert track.covariance(again, 1.0)[0, 0] == 0
 
 
-def test_calibrations_are_of_variants_and_an_unknown_one_gets_that_of_all():
+def test_calibrations_are_of_variants_and_of_all_others():
     assert {"*", "fusion"} <= set(CALIBRATIONS) <= {"*", *VARIANTS}
-    assert calibration_of("new", CALIBRATIONS) is CALIBRATIONS["*"]
-    assert calibration_of("pf", CALIBRATIONS) is CALIBRATIONS["pf"]
 
 
 def test_time_that_goes_back_is_not_negative():

@@ -40,7 +40,7 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
     progress: Callable[[int, int | None], None] | None = None,
     overwrite: bool = False,
 ) -> tuple[str, Sequence[str]]:
-    """Import a video file, or a frame folder with its truth, as a recording.
+    """Import a video file, or a frame folder with its truth; return a summary and notices.
 
     Parameters
     ----------
@@ -62,13 +62,6 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
     overwrite : bool
         Replace a recording that is there.
 
-    Returns
-    -------
-    summary : str
-        Number and size of the images, their rate, and the number with truth.
-    notices : sequence of str
-        Irregularities, a sentence each.
-
     Raises
     ------
     InputError
@@ -83,8 +76,8 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
     footage = open_footage(source, truth=truth, fps=fps, identity=identity)
     frames, truths, size = 0, 0, (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
-        for picture in footage.frames():
-            size = _check_size(picture, size if frames else frame_size(picture.frame))
+        for frames, picture in enumerate(footage.frames(), start=1):
+            size = _check_size(picture, size if frames > 1 else frame_size(picture.frame))
             if coded := _coded(picture, format):
                 writer.write_compressed(picture.stamp_ns, *coded)
             else:
@@ -92,7 +85,6 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
             if picture.truth is not None:
                 writer.write_truth(picture.truth)
                 truths += 1
-            frames += 1
             if progress is not None:
                 progress(frames, footage.frame_count)
     made = f"{frames} frames of {size[0]}x{size[1]} px at {footage.fps:g} frames/s"
