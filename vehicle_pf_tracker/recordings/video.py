@@ -172,17 +172,18 @@ class VideoFile(Footage):
             yield f"frames of the truth without an image: {lost}"
 
     def _open(self) -> cv2.VideoCapture:
-        with quiet_opencv():
-            video = cv2.VideoCapture(str(self._path), _backend())
-        if not video.isOpened():
-            raise InputError(f"{self._path} is not a video file that can be decoded")
-        return video
+        return _opened(str(self._path), f"{self._path} is not a video file that can be decoded")
 
 
-def _backend() -> int:
-    """Choose FFmpeg where OpenCV has it: the other decoders complain on the terminal."""
+def _opened(source: int | str, failure: str) -> cv2.VideoCapture:
+    """Open a video, by FFmpeg where OpenCV has it: other decoders complain on the terminal."""
     has_ffmpeg = cv2.CAP_FFMPEG in cv2.videoio_registry.getStreamBackends()
-    return cv2.CAP_FFMPEG if has_ffmpeg else cv2.CAP_ANY
+    is_file = isinstance(source, str) and has_ffmpeg
+    with quiet_opencv():
+        video = cv2.VideoCapture(source, cv2.CAP_FFMPEG if is_file else cv2.CAP_ANY)
+    if not video.isOpened():
+        raise InputError(failure)
+    return video
 
 
 class Camera(Footage):
@@ -201,11 +202,7 @@ class Camera(Footage):
 
     def __init__(self, source: int | str) -> None:
         self._name = f"the camera {source}" if isinstance(source, int) else f"the stream {source}"
-        with quiet_opencv():
-            backend = cv2.CAP_ANY if isinstance(source, int) else _backend()
-            self._video = cv2.VideoCapture(source, backend)
-        if not self._video.isOpened():
-            raise InputError(f"{self._name} cannot be opened")
+        self._video = _opened(source, f"{self._name} cannot be opened")
         self.fps = float(self._video.get(cv2.CAP_PROP_FPS))
         self.frame_count = None
         self._read = 0
