@@ -166,15 +166,19 @@ NODES: Mapping[str, Variant] = MappingProxyType({**VARIANTS, TRAFFIC.name: TRAFF
 """Everything that has a node, by name."""
 
 
-def find_variant(name: str) -> Variant:
-    """Look up a variant.
+def find_variant(name: str, own: Mapping[str, Variant] = VARIANTS) -> Variant:
+    """Look up a variant of this package, or of another one.
 
     Raises
     ------
     InputError
         If there is none of this name.
     """
-    return _find(name, VARIANTS)
+    known = {**own, **plug_ins()}
+    if name not in known:
+        hint = suggestion(name.removesuffix("_tracker"), known)
+        raise InputError(f"there is no variant {name!r}{hint}; choose one of {', '.join(known)}")
+    return known[name]
 
 
 def find_node(name: str) -> Variant:
@@ -185,7 +189,7 @@ def find_node(name: str) -> Variant:
     InputError
         If there is no node of this name.
     """
-    return _find(name, NODES)
+    return find_variant(name, NODES)
 
 
 PLUG_INS = "vehicle_pf_tracker.variants"
@@ -210,14 +214,6 @@ def plug_ins() -> Mapping[str, Variant]:
         classes = point.value.removesuffix("Tracker")
         found[point.name] = Variant(point.name, classes, owner, "")
     return found
-
-
-def _find(name: str, own: Mapping[str, Variant]) -> Variant:
-    known = {**own, **plug_ins()}
-    if name not in known:
-        hint = suggestion(name.removesuffix("_tracker"), known)
-        raise InputError(f"there is no variant {name!r}{hint}; choose one of {', '.join(known)}")
-    return known[name]
 
 
 def make_tracker(variant: str = "fusion", **parameters: Any) -> BaseTracker[Any]:
