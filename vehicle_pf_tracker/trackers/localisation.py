@@ -32,7 +32,7 @@ from vehicle_pf_tracker.road.camera import Lens, Pose
 from vehicle_pf_tracker.road.motion import KMH, RoadMotion
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
-from vehicle_pf_tracker.trackers.uncertainty import Uncertainty, calibration_of
+from vehicle_pf_tracker.trackers.uncertainty import Uncertainty
 from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 
 CORRELATION = 4.0
@@ -222,7 +222,7 @@ class Localisation:
     """
 
     def __init__(self, variant: str, parameters: RoadParameters) -> None:
-        self._uncertainty = Uncertainty(calibration_of(variant, CALIBRATIONS))
+        self._uncertainty = Uncertainty(CALIBRATIONS.get(variant, CALIBRATIONS["*"]))
         self._estimate: Estimate | None = None
         self._period = 1.0
         self._lens, self._pose = parameters.lens, parameters.pose

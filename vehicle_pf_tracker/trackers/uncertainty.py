@@ -22,7 +22,6 @@ itself, on synthetic scenes.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -127,8 +126,3 @@ class Uncertainty:
         visible = estimate.mode is Mode.TRACKING
         spread = self._calibration.visible if visible else self._calibration.hidden
         return spread.covariance(estimate, period, self._hidden, self._first_area)
-
-
-def calibration_of(variant: str, table: Mapping[str, Calibration]) -> Calibration:
-    """Return the calibration of a variant, or that of all together where it has none."""
-    return table.get(variant, table["*"])
