@@ -24,7 +24,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import Box, Position
+from vehicle_pf_tracker.core.box import Box, Position, intersections
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline.estimates import EstimateRow, clock_words
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
@@ -99,18 +99,59 @@ def draw_box(picture: Frame, box: Box, colour: Colour, width: int, *, dashed: bo
 
 
 def draw_path(
-    picture: Frame, points: Iterable[Position], colour: Colour, *, closed: bool = False
+    picture: Frame,
+    points: Iterable[Position],
+    colour: Colour,
+    *,
+    closed: bool = False,
+    width: int = 0,
 ) -> None:
-    """Draw lines from point to point, px, as wide as suits the picture."""
+    """Draw lines from point to point, px, `width` px wide or, with 0, as suits the picture."""
     pixels = np.array(pixels_at(np.array(list(points)).reshape(-1, 2)), np.int32)
     path = pixels.reshape(-1, 1, 2)
-    cv2.polylines(picture, [path], closed, colour, line_width(picture), cv2.LINE_AA)
+    cv2.polylines(picture, [path], closed, colour, width or line_width(picture), cv2.LINE_AA)
 
 
-def write_above(picture: Frame, words: str, box: Box, colour: Colour) -> None:
-    """Write words above a box, in the picture."""
-    width, ((x, y),) = line_width(picture), pixels_at(np.array([[box.x, box.y]]))
-    write_words(picture, words, (max(x, 0), max(y - 3 * width, LETTER * width)), colour, width)
+class Labels:
+    """Words beside boxes, written over all else, each where no other words are.
+
+    Parameters
+    ----------
+    picture : Frame
+        Written to.
+    width : int
+        Width of the strokes, px; 0: as suits the picture.
+    """
+
+    def __init__(self, picture: Frame, width: int = 0) -> None:
+        self._picture, self._width = picture, width or line_width(picture)
+        self._waiting: list[tuple[Box, Colour, tuple[str, ...]]] = []
+
+    def add(self, box: Box, colour: Colour, *words: str) -> None:
+        """Write, at the end, the first of `words` that finds room around a box of px."""
+        self._waiting.append((box, colour, words))
+
+    def write(self) -> None:
+        """Write all words; those that were added first are placed first."""
+        taken = np.zeros((0, 4))
+        for box, colour, choice in self._waiting:
+            options = [(words, at) for words in choice for at in self._places(words, box)]
+            free = (one for one in options if not intersections(one[1], taken).any())
+            # Without room the shortest words cover others: a vehicle always has its number.
+            words, place = next(free, options[-4])
+            taken = np.vstack([taken, place])
+            corner = int(place[0]), int(place[3]) - 3 * self._width
+            write_words(self._picture, words, corner, colour, self._width)
+
+    def _places(self, words: str, box: Box) -> Array:
+        """Return the edges (4, 4) of words above, below, right and left of a box."""
+        high, font = LETTER * self._width, cv2.FONT_HERSHEY_SIMPLEX
+        size = cv2.getTextSize(words, font, 0.45 * self._width, self._width)[0][0], high
+        (left, top), (right, bottom) = box.corners[0], box.corners[2]
+        corners = (left, top - high), (left, bottom), (right, top), (left - size[0], top)
+        room = np.maximum(np.subtract(frame_size(self._picture), size), 0)
+        inside = np.clip(corners, 0, room)
+        return np.hstack([inside, inside + size])
 
 
 def dashes(corners: Sequence[Position], dash: float) -> Iterator[Array]:
@@ -171,7 +212,9 @@ class Annotator:
         is_predicted = estimate.mode is Mode.OCCLUDED
         draw_box(picture, estimate.box, colour, width, dashed=is_predicted)
         if self.name:
-            write_above(picture, self.name, estimate.box, colour)
+            labels = Labels(picture)
+            labels.add(estimate.box, colour, self.name)
+            labels.write()
 
 
 def estimate_words(name: str, row: EstimateRow) -> str:
@@ -210,20 +253,23 @@ _PIECES = 60
 def draw_pixel_grid(frame: Frame) -> Frame:
     """Draw lines with their pixel coordinates over a copy of `frame`."""
     picture = np.array(frame, order="C")
-    width, height = frame_size(frame)
+    (width, height), pen = frame_size(frame), _fine(picture)
     step = _step(max(width, height) / _LINES)
     for x in range(step, width, step):
-        cv2.line(picture, (x, 0), (x, height - 1), _LINE, 1)
-        write_words(picture, str(x), (x + 2, 11), _TEXT)
+        cv2.line(picture, (x, 0), (x, height - 1), _LINE, pen)
+        write_words(picture, str(x), (x + 2 * pen, 11 * pen), _TEXT, pen)
     for y in range(step, height, step):
-        cv2.line(picture, (0, y), (width - 1, y), _LINE, 1)
-        write_words(picture, str(y), (2, y - 3), _TEXT)
+        cv2.line(picture, (0, y), (width - 1, y), _LINE, pen)
+        write_words(picture, str(y), (2 * pen, y - 3 * pen), _TEXT, pen)
     return picture
 
 
 def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Frame:
     """Draw lines of the road with their metres, and the pairs, over a copy of `frame`."""
-    picture = np.array(frame, order="C")
+    picture: Frame = np.array(frame, order="C")
+    labels = Labels(picture, width := _fine(picture))
+    for pair in pairs:
+        labels.add(Box(*pair.pixel, 0, 0), _TEXT, f"{pair.road[0]:g},{pair.road[1]:g}")
     points = np.array([pair.road for pair in pairs])
     low, high = points.min(axis=0), points.max(axis=0)
     for axis in (0, 1):
@@ -233,16 +279,20 @@ def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Fra
         line[:, 1 - axis] = np.linspace(low[1 - axis], high[1 - axis], _PIECES)
         for number in np.arange(first, last + 1) * step:
             line[:, axis] = number
-            pixels = np.clip(np.floor(plane.to_image(line)), -(2**14), 2**14).astype(np.int32)
-            cv2.polylines(picture, [pixels.reshape(-1, 1, 2)], False, _ROAD, 1, cv2.LINE_AA)
-            u, v = pixels[0].tolist()
-            write_words(picture, f"{'xy'[axis]}={number:g}", (u + 2, v + 12), _TEXT)
-    for pair in pairs:
-        u, v = np.floor(pair.pixel).astype(int).tolist()
-        cv2.drawMarker(picture, (u, v), _POINT, cv2.MARKER_CROSS, 11, 1)
-        words = f"{pair.road[0]:g},{pair.road[1]:g}"
-        write_words(picture, words, (u + 6, v - 4), _TEXT)
+            pixels = plane.to_image(line)
+            pixels = pixels[np.isfinite(pixels).all(axis=1)]
+            draw_path(picture, pixels, _ROAD, width=width)
+            for u, v in pixels[:1].tolist():  # no words where others are
+                labels.add(Box(u, v, 0, 0), _TEXT, f"{'xy'[axis]}={number:g}", "")
+    for centre in pixels_at(np.array([pair.pixel for pair in pairs])):
+        cv2.drawMarker(picture, centre, _POINT, cv2.MARKER_CROSS, 11 * width, width)
+    labels.write()
     return picture
+
+
+def _fine(picture: Frame) -> int:
+    """Return the width of lines that hide little of what is read off beside them, px."""
+    return max(1, line_width(picture) // 2)
 
 
 def _step(least: float) -> int:

@@ -26,7 +26,6 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline import drawing
@@ -45,7 +44,9 @@ _TRAIL = 60
 @functools.lru_cache(maxsize=1024)
 def identity_colour(identity: int) -> drawing.Colour:
     """Return the colour of a vehicle; numbers that follow each other have unlike ones."""
-    red, green, blue = colorsys.hsv_to_rgb(identity * _GOLDEN % 1.0, 0.75, 1.0)
+    hue = identity * _GOLDEN % 1.0
+    # Paler from blue to violet, which the eye sees darker: thin words of full blue are illegible.
+    red, green, blue = colorsys.hsv_to_rgb(hue, 0.5 if 0.58 < hue < 0.85 else 0.75, 1.0)
     return round(255 * red), round(255 * green), round(255 * blue)
 
 
@@ -66,6 +67,7 @@ class Trails:
 
 def draw_vehicle(
     picture: Frame,
+    labels: drawing.Labels,
     estimate: TrackEstimate,
     kmh: float | None = None,
     trail: Iterable[Position] = (),
@@ -86,16 +88,20 @@ def draw_vehicle(
     drawing.draw_box(picture, estimate.box, colour, width, dashed=is_hidden)
     words = [str(estimate.identity), estimate.label, "" if kmh is None else f"{kmh:.0f} km/h"]
     words += [estimate.mode.value] if is_hidden else []
-    drawing.write_above(picture, " ".join(filter(None, words)), estimate.box, colour)
+    labels.add(estimate.box, colour, " ".join(filter(None, words)), words[0])
 
 
-def draw_counts(picture: Frame, counter: Counter, scale: float = 1.0) -> None:
+def draw_counts(
+    picture: Frame, labels: drawing.Labels, counter: Counter, scale: float = 1.0
+) -> None:
     """Draw lines with the crossings of each direction, and zones with their occupancy.
 
     Parameters
     ----------
     picture : Frame
         Written to.
+    labels : Labels
+        Take the words.
     counter : Counter
         Counts, with their lines and zones.
     scale : float
@@ -105,14 +111,14 @@ def draw_counts(picture: Frame, counter: Counter, scale: float = 1.0) -> None:
         ends = np.array([line.start, line.end]) * scale
         drawing.draw_path(picture, ends, _PLAN)
         counts = ", ".join(f"{counter.count(line.name, to)} {to}" for to in line.directions)
-        _write_at(picture, f"{line.name}: {counts}", ends[0])
+        labels.add(Box(*ends[0], 0, 0), _PLAN, f"{line.name}: {counts}")
     for zone in counter.plan.zones:
         corners = np.array(zone.corners) * scale
         drawing.draw_path(picture, corners, _PLAN, closed=True)
         entries, exits = (counter.count(zone.name, to) for to in (ENTRY, EXIT))
         there = counter.occupancy[zone.name]
         words = f"{zone.name}: {there} ({entries} entered, {exits} left)"
-        _write_at(picture, words, corners[corners[:, 1].argmin()])
+        labels.add(Box(*corners[corners[:, 1].argmin()], 0, 0), _PLAN, words)
 
 
 def annotated(
@@ -124,22 +130,14 @@ def annotated(
 ) -> Frame:
     """Return a copy of `frame` with counts, vehicles and a line of words."""
     picture: Frame = np.array(frame, order="C")
-    draw_counts(picture, counter)
+    labels, width = drawing.Labels(picture), drawing.line_width(picture)
+    labels.add(Box(5 * width, 19 * width, 0, 0), drawing.NEUTRAL, words)
+    draw_counts(picture, labels, counter)
     for one in estimates:
         trail = trails.of.get(one.serial, ()) if trails is not None else ()
-        draw_vehicle(picture, one, counter.speed_kmh(one.serial), trail)
-    width = drawing.line_width(picture)
-    drawing.write_words(picture, words, (5 * width, 16 * width), drawing.NEUTRAL, width)
+        draw_vehicle(picture, labels, one, counter.speed_kmh(one.serial), trail)
+    labels.write()
     return picture
-
-
-def _write_at(picture: Frame, words: str, point: Array) -> None:
-    """Write words above a point, moved into the picture where it is outside."""
-    width, (height, across) = drawing.line_width(picture), picture.shape[:2]
-    x = min(max(point[0] + 3 * width, 0), 0.8 * across)
-    # Not in the topmost line, which has the time.
-    y = min(max(point[1] - 3 * width, 2.3 * drawing.LETTER * width), height - 3 * width)
-    drawing.write_words(picture, words, (int(x), int(y)), _PLAN, width)
 
 
 _LEAST_WIDTH = 640
@@ -205,10 +203,12 @@ class PathPicture:
         picture: Frame = np.asarray(enlarged, np.uint8)
         drawn = self._layer.any(axis=2)
         picture[drawn] = self._layer[drawn]
+        labels = drawing.Labels(picture)
+        draw_counts(picture, labels, counter, scale)
         for one in self._on_ground:
             box = Box(*(scale * value for value in astuple(one.box)))
-            draw_vehicle(picture, replace(one, box=box))
-        draw_counts(picture, counter, scale)
+            draw_vehicle(picture, labels, replace(one, box=box))
+        labels.write()
         write_picture(path, picture)
 
 
