@@ -21,7 +21,7 @@ from traffic_samples import vehicle
 
 from vehicle_pf_tracker.core.box import Box, intersections
 from vehicle_pf_tracker.offline import drawing
-from vehicle_pf_tracker.offline.drawing import NEUTRAL, Labels, draw_box, draw_pixel_grid
+from vehicle_pf_tracker.offline.drawing import NEUTRAL, draw_box, draw_pixel_grid, write_labels
 from vehicle_pf_tracker.offline.traffic_drawing import (
     Trails,
     annotated,
@@ -39,9 +39,9 @@ BLACK = np.zeros((240, 320, 3), np.uint8)
 
 def drawn(mode, identity=3):
     picture = BLACK.copy()
-    labels = Labels(picture)
+    labels = []
     draw_vehicle(picture, labels, vehicle(identity, 160, 200, mode, size=(100, 80)))
-    labels.write()
+    write_labels(picture, labels)
     return picture
 
 
@@ -100,7 +100,7 @@ def test_a_speed_is_written_where_the_road_is_known(monkeypatch):
         for index in range(25):
             estimates = [vehicle(1, 50 + 4 * index, 200)]  # 4 px in 40 ms are 10 m/s
             counter.update(estimates, index * 40_000_000)
-        annotated(BLACK, "", estimates, counter)
+        annotated(BLACK, "", estimates, counter, Trails())
         assert said in written
         written.clear()
 
@@ -126,7 +126,7 @@ def test_colours_of_neighbouring_numbers_differ():
 
 def test_the_frame_stays_as_it_was():
     frame = BLACK.copy()
-    picture = annotated(frame, "0:00.0", [vehicle(1, 160, 200)], Counter(CountingPlan()))
+    picture = annotated(frame, "0:00.0", [vehicle(1, 160, 200)], Counter(CountingPlan()), Trails())
     assert picture.any()
     assert not frame.any()
 
@@ -137,12 +137,12 @@ def test_lines_and_zones_are_drawn_with_their_counts():
         (CountingZone("yard", ((10.0, 200.0), (90.0, 200.0), (90.0, 230.0), (10.0, 230.0))),),
     )
     counter = Counter(plan)
-    picture = annotated(BLACK, "", [], counter)
+    picture = annotated(BLACK, "", [], counter, Trails())
     assert picture[150, 5:315].all()
     assert picture[200:230, 10].all()
     for index, bottom in enumerate([120, 180]):
         counter.update([vehicle(1, 200, bottom)], index)
-    other = annotated(BLACK, "", [], counter)
+    other = annotated(BLACK, "", [], counter, Trails())
     assert (picture != other).any()  # 1 in
 
 
@@ -155,7 +155,7 @@ def written(monkeypatch, estimates, words=""):
         places[words] = (corner[0], corner[1] - 11 * width, corner[0] + across, corner[1])
 
     monkeypatch.setattr(drawing, "write_words", note)
-    annotated(BLACK, words, estimates, Counter(CountingPlan()))
+    annotated(BLACK, words, estimates, Counter(CountingPlan()), Trails())
     return places
 
 

@@ -135,9 +135,7 @@ class Stillness:
         size = max(round(width * scale), 1), max(round(height * scale), 1)
         small = cv2.resize(frame, size, interpolation=cv2.INTER_AREA).mean(axis=2)
         left, top = (max(int(at * scale) - 1, 0) for at in (box.x, box.y))
-        right, bottom = (
-            math.ceil(at * scale) + 1 for at in (box.x + box.width, box.y + box.height)
-        )
+        right, bottom = (math.ceil(at * scale) + 1 for at in box.corners[2])
         if self._before is not None and self._before.shape == small.shape:
             change = np.abs(small - self._before)
             change[top:bottom, left:right] = 0.0

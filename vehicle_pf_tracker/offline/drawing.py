@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
+from typing import TypeAlias
 
 import cv2
 import numpy as np
@@ -29,6 +30,9 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline.estimates import EstimateRow, clock_words
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+
+Colour = tuple[int, int, int]
+"""Red, green, blue."""
 
 
 def line_width(picture: Frame) -> int:
@@ -42,11 +46,7 @@ def line_width_of(size: tuple[int, int]) -> int:
 
 
 def write_words(
-    picture: Frame,
-    words: str,
-    corner: tuple[int, int],
-    colour: tuple[int, int, int],
-    width: int = 1,
+    picture: Frame, words: str, corner: tuple[int, int], colour: Colour, width: int = 1
 ) -> None:
     """Write words with a dark edge.
 
@@ -70,9 +70,6 @@ def write_words(
         cv2.putText(picture, words, (x + across, y + down), font, scale, (0, 0, 0), width, smooth)
     cv2.putText(picture, words, corner, font, scale, colour, width, smooth)
 
-
-Colour = tuple[int, int, int]
-"""Red, green, blue."""
 
 LETTER = 14
 """Height of a line of words, in line widths."""
@@ -99,59 +96,42 @@ def draw_box(picture: Frame, box: Box, colour: Colour, width: int, *, dashed: bo
 
 
 def draw_path(
-    picture: Frame,
-    points: Iterable[Position],
-    colour: Colour,
-    *,
-    closed: bool = False,
-    width: int = 0,
+    picture: Frame, points: Iterable[Position], colour: Colour, *, closed: bool = False
 ) -> None:
-    """Draw lines from point to point, px, `width` px wide or, with 0, as suits the picture."""
+    """Draw lines from point to point, px, as wide as suits the picture."""
     pixels = np.array(pixels_at(np.array(list(points)).reshape(-1, 2)), np.int32)
     path = pixels.reshape(-1, 1, 2)
-    cv2.polylines(picture, [path], closed, colour, width or line_width(picture), cv2.LINE_AA)
+    cv2.polylines(picture, [path], closed, colour, line_width(picture), cv2.LINE_AA)
 
 
-class Labels:
-    """Words beside boxes, written over all else, each where no other words are.
+Label: TypeAlias = tuple[Box, Colour, tuple[str, ...]]
+"""Box in px, and words for it: the first that find room."""
+Labels: TypeAlias = list[Label]
 
-    Parameters
-    ----------
-    picture : Frame
-        Written to.
-    width : int
-        Width of the strokes, px; 0: as suits the picture.
+
+def write_labels(picture: Frame, labels: Iterable[Label], width: int = 0) -> None:
+    """Write words around boxes, in the picture, where no others are; the first go first.
+
+    Strokes are `width` px wide or, with 0, as suits the picture.
     """
+    width, taken = width or line_width(picture), np.zeros((0, 4))
+    for box, colour, choice in labels:
+        options = [(words, at) for words in choice for at in _places(picture, words, box, width)]
+        free = (one for one in options if not intersections(one[1], taken).any())
+        # Without room the shortest words cover others: a vehicle always has its number.
+        words, place = next(free, options[-4])
+        taken = np.vstack([taken, place])
+        corner = int(place[0]), int(place[3]) - 3 * width
+        write_words(picture, words, corner, colour, width)
 
-    def __init__(self, picture: Frame, width: int = 0) -> None:
-        self._picture, self._width = picture, width or line_width(picture)
-        self._waiting: list[tuple[Box, Colour, tuple[str, ...]]] = []
 
-    def add(self, box: Box, colour: Colour, *words: str) -> None:
-        """Write, at the end, the first of `words` that finds room around a box of px."""
-        self._waiting.append((box, colour, words))
-
-    def write(self) -> None:
-        """Write all words; those that were added first are placed first."""
-        taken = np.zeros((0, 4))
-        for box, colour, choice in self._waiting:
-            options = [(words, at) for words in choice for at in self._places(words, box)]
-            free = (one for one in options if not intersections(one[1], taken).any())
-            # Without room the shortest words cover others: a vehicle always has its number.
-            words, place = next(free, options[-4])
-            taken = np.vstack([taken, place])
-            corner = int(place[0]), int(place[3]) - 3 * self._width
-            write_words(self._picture, words, corner, colour, self._width)
-
-    def _places(self, words: str, box: Box) -> Array:
-        """Return the edges (4, 4) of words above, below, right and left of a box."""
-        high, font = LETTER * self._width, cv2.FONT_HERSHEY_SIMPLEX
-        size = cv2.getTextSize(words, font, 0.45 * self._width, self._width)[0][0], high
-        (left, top), (right, bottom) = box.corners[0], box.corners[2]
-        corners = (left, top - high), (left, bottom), (right, top), (left - size[0], top)
-        room = np.maximum(np.subtract(frame_size(self._picture), size), 0)
-        inside = np.clip(corners, 0, room)
-        return np.hstack([inside, inside + size])
+def _places(picture: Frame, words: str, box: Box, width: int) -> Array:
+    """Return the edges (4, 4) of words above, below, right and left of a box."""
+    (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, width)
+    (left, top), (right, bottom), size = box.corners[0], box.corners[2], (across, LETTER * width)
+    corners = (left, top - size[1]), (left, bottom), (right, top), (left - across, top)
+    inside = np.clip(corners, 0, np.maximum(np.subtract(frame_size(picture), size), 0))
+    return np.hstack([inside, inside + size])
 
 
 def dashes(corners: Sequence[Position], dash: float) -> Iterator[Array]:
@@ -212,9 +192,7 @@ class Annotator:
         is_predicted = estimate.mode is Mode.OCCLUDED
         draw_box(picture, estimate.box, colour, width, dashed=is_predicted)
         if self.name:
-            labels = Labels(picture)
-            labels.add(estimate.box, colour, self.name)
-            labels.write()
+            write_labels(picture, [(estimate.box, colour, (self.name,))])
 
 
 def estimate_words(name: str, row: EstimateRow) -> str:
@@ -267,9 +245,11 @@ def draw_pixel_grid(frame: Frame) -> Frame:
 def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Frame:
     """Draw lines of the road with their metres, and the pairs, over a copy of `frame`."""
     picture: Frame = np.array(frame, order="C")
-    labels = Labels(picture, width := _fine(picture))
-    for pair in pairs:
-        labels.add(Box(*pair.pixel, 0, 0), _TEXT, f"{pair.road[0]:g},{pair.road[1]:g}")
+    width = _fine(picture)
+    labels: Labels = [
+        (Box.around(pair.pixel, 0, 0), _TEXT, (f"{pair.road[0]:g},{pair.road[1]:g}",))
+        for pair in pairs
+    ]
     points = np.array([pair.road for pair in pairs])
     low, high = points.min(axis=0), points.max(axis=0)
     for axis in (0, 1):
@@ -279,14 +259,13 @@ def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Fra
         line[:, 1 - axis] = np.linspace(low[1 - axis], high[1 - axis], _PIECES)
         for number in np.arange(first, last + 1) * step:
             line[:, axis] = number
-            pixels = plane.to_image(line)
-            pixels = pixels[np.isfinite(pixels).all(axis=1)]
-            draw_path(picture, pixels, _ROAD, width=width)
-            for u, v in pixels[:1].tolist():  # no words where others are
-                labels.add(Box(u, v, 0, 0), _TEXT, f"{'xy'[axis]}={number:g}", "")
+            pixels = np.clip(np.floor(plane.to_image(line)), -(2**14), 2**14).astype(np.int32)
+            cv2.polylines(picture, [pixels.reshape(-1, 1, 2)], False, _ROAD, width, cv2.LINE_AA)
+            at = Box.around(pixels[0].tolist(), 0, 0)
+            labels.append((at, _TEXT, (f"{'xy'[axis]}={number:g}", "")))  # left out without room
     for centre in pixels_at(np.array([pair.pixel for pair in pairs])):
         cv2.drawMarker(picture, centre, _POINT, cv2.MARKER_CROSS, 11 * width, width)
-    labels.write()
+    write_labels(picture, labels, width)
     return picture
 
 

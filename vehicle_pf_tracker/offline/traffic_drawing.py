@@ -29,6 +29,7 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline import drawing
+from vehicle_pf_tracker.offline.drawing import Labels
 from vehicle_pf_tracker.offline.output_files import write_picture
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, reference_point
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -66,13 +67,9 @@ class Trails:
 
 
 def draw_vehicle(
-    picture: Frame,
-    labels: drawing.Labels,
-    estimate: TrackEstimate,
-    kmh: float | None = None,
-    trail: Iterable[Position] = (),
+    picture: Frame, labels: Labels, estimate: TrackEstimate, kmh: float | None = None
 ) -> None:
-    """Draw box, number, class, speed and trail of a vehicle.
+    """Draw the box of a vehicle, and label it with number, class and speed.
 
     The box is in the colour of its number, dashed where it is predicted, and grey without a number
     while it is tentative; a lost vehicle has none.
@@ -84,24 +81,21 @@ def draw_vehicle(
         drawing.draw_box(picture, estimate.box, drawing.NEUTRAL, width)
         return
     colour, is_hidden = identity_colour(estimate.identity), estimate.mode is TrackMode.OCCLUDED
-    drawing.draw_path(picture, trail, colour)
     drawing.draw_box(picture, estimate.box, colour, width, dashed=is_hidden)
     words = [str(estimate.identity), estimate.label, "" if kmh is None else f"{kmh:.0f} km/h"]
     words += [estimate.mode.value] if is_hidden else []
-    labels.add(estimate.box, colour, " ".join(filter(None, words)), words[0])
+    labels.append((estimate.box, colour, (" ".join(filter(None, words)), words[0])))
 
 
-def draw_counts(
-    picture: Frame, labels: drawing.Labels, counter: Counter, scale: float = 1.0
-) -> None:
+def draw_counts(picture: Frame, labels: Labels, counter: Counter, scale: float = 1.0) -> None:
     """Draw lines with the crossings of each direction, and zones with their occupancy.
 
     Parameters
     ----------
     picture : Frame
         Written to.
-    labels : Labels
-        Take the words.
+    labels : list of Label
+        Takes the words.
     counter : Counter
         Counts, with their lines and zones.
     scale : float
@@ -111,32 +105,30 @@ def draw_counts(
         ends = np.array([line.start, line.end]) * scale
         drawing.draw_path(picture, ends, _PLAN)
         counts = ", ".join(f"{counter.count(line.name, to)} {to}" for to in line.directions)
-        labels.add(Box(*ends[0], 0, 0), _PLAN, f"{line.name}: {counts}")
+        labels.append((Box.around(ends[0].tolist(), 0, 0), _PLAN, (f"{line.name}: {counts}",)))
     for zone in counter.plan.zones:
         corners = np.array(zone.corners) * scale
         drawing.draw_path(picture, corners, _PLAN, closed=True)
         entries, exits = (counter.count(zone.name, to) for to in (ENTRY, EXIT))
         there = counter.occupancy[zone.name]
         words = f"{zone.name}: {there} ({entries} entered, {exits} left)"
-        labels.add(Box(*corners[corners[:, 1].argmin()], 0, 0), _PLAN, words)
+        highest = corners[corners[:, 1].argmin()].tolist()
+        labels.append((Box.around(highest, 0, 0), _PLAN, (words,)))
 
 
 def annotated(
-    frame: Frame,
-    words: str,
-    estimates: Iterable[TrackEstimate],
-    counter: Counter,
-    trails: Trails | None = None,
+    frame: Frame, words: str, estimates: Iterable[TrackEstimate], counter: Counter, trails: Trails
 ) -> Frame:
     """Return a copy of `frame` with counts, vehicles and a line of words."""
     picture: Frame = np.array(frame, order="C")
-    labels, width = drawing.Labels(picture), drawing.line_width(picture)
-    labels.add(Box(5 * width, 19 * width, 0, 0), drawing.NEUTRAL, words)
+    width = drawing.line_width(picture)
+    labels: Labels = [(Box(5 * width, 19 * width, 0, 0), drawing.NEUTRAL, (words,))]
     draw_counts(picture, labels, counter)
     for one in estimates:
-        trail = trails.of.get(one.serial, ()) if trails is not None else ()
-        draw_vehicle(picture, labels, one, counter.speed_kmh(one.serial), trail)
-    labels.write()
+        trail, colour = trails.of.get(one.serial, ()), identity_colour(one.identity)
+        drawing.draw_path(picture, trail, colour)
+        draw_vehicle(picture, labels, one, counter.speed_kmh(one.serial))
+    drawing.write_labels(picture, labels)
     return picture
 
 
@@ -197,18 +189,16 @@ class PathPicture:
         if self.ground is None:
             return
         scale, (height, width) = self._scale, self._size
-        enlarged = cv2.resize(
-            self.ground, (width * scale, height * scale), interpolation=cv2.INTER_CUBIC
-        )
-        picture: Frame = np.asarray(enlarged, np.uint8)
+        size = width * scale, height * scale
+        picture = np.asarray(cv2.resize(self.ground, size, interpolation=cv2.INTER_CUBIC), np.uint8)
         drawn = self._layer.any(axis=2)
         picture[drawn] = self._layer[drawn]
-        labels = drawing.Labels(picture)
+        labels: Labels = []
         draw_counts(picture, labels, counter, scale)
         for one in self._on_ground:
             box = Box(*(scale * value for value in astuple(one.box)))
             draw_vehicle(picture, labels, replace(one, box=box))
-        labels.write()
+        drawing.write_labels(picture, labels)
         write_picture(path, picture)
 
 
@@ -243,12 +233,10 @@ class HeatPicture:
         for one in estimates:
             if one.mode in CONFIRMED:
                 box, speed = one.box, float(np.hypot(*one.velocity)) / period
-                ends = (box.x, box.x + box.width), (
-                    box.y + (1 - _FOOTPRINT) * box.height, box.y + box.height,
-                )  # fmt: skip
-                (left, right), (top, bottom) = np.clip(
-                    np.round(ends), 0, [[width], [height]]
-                ).astype(int)
+                (left, _), (right, bottom) = box.corners[0], box.corners[2]
+                edges = [left, bottom - _FOOTPRINT * box.height, right, bottom]
+                within = np.clip(np.round(edges), 0, [width, height] * 2)
+                left, top, right, bottom = within.astype(int).tolist()
                 stands = int(speed < _STANDING * box.width)
                 self._seconds[stands, top:bottom, left:right] += seconds
 

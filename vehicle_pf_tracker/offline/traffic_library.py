@@ -123,7 +123,7 @@ class TrafficTracker(CountedVehicles):
         ValueError
             If a box has not four numbers, or there are not as many scores or labels as boxes.
         """
-        if np.size(boxes) and np.shape(boxes)[-1:] not in {(), (4,)}:
+        if boxes is not None and np.ndim(boxes) > 1 and np.shape(boxes)[-1] not in {0, 4}:
             raise ValueError("a box is left, top, width and height in px")
         check_frame(np.asarray(frame))
         self._images += 1

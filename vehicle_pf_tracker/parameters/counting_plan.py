@@ -126,13 +126,10 @@ class CountingPlan:
 
     def outside(self, width: int, height: int) -> list[str]:
         """Return the names of the lines and zones of which nothing is in an image of this size."""
-        shapes = [(one.name, (one.start, one.end)) for one in self.lines]
-        shapes += [(one.name, one.corners) for one in self.zones]
-        return [
-            name
-            for name, points in shapes
-            if (np.max(points, 0) < 0).any() or (np.min(points, 0) > (width, height)).any()
-        ]
+        shapes = [(one.name, np.array([one.start, one.end])) for one in self.lines]
+        shapes += [(one.name, np.array(one.corners)) for one in self.zones]
+        low, high = (0, 0), (width, height)
+        return [n for n, at in shapes if (at.max(0) < low).any() or (at.min(0) > high).any()]
 
 
 def read_counting_plan(path: Path) -> CountingPlan:
