@@ -231,7 +231,7 @@ _PIECES = 60
 def draw_pixel_grid(frame: Frame) -> Frame:
     """Draw lines with their pixel coordinates over a copy of `frame`."""
     picture = np.array(frame, order="C")
-    (width, height), pen = frame_size(frame), _fine(picture)
+    (width, height), pen = frame_size(frame), max(1, line_width(picture) // 2)
     step = _step(max(width, height) / _LINES)
     for x in range(step, width, step):
         cv2.line(picture, (x, 0), (x, height - 1), _LINE, pen)
@@ -245,7 +245,7 @@ def draw_pixel_grid(frame: Frame) -> Frame:
 def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Frame:
     """Draw lines of the road with their metres, and the pairs, over a copy of `frame`."""
     picture: Frame = np.array(frame, order="C")
-    width = _fine(picture)
+    width = max(1, line_width(picture) // 2)
     labels: Labels = [
         (Box.around(pair.pixel, 0, 0), _TEXT, (f"{pair.road[0]:g},{pair.road[1]:g}",))
         for pair in pairs
@@ -267,11 +267,6 @@ def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Fra
         cv2.drawMarker(picture, centre, _POINT, cv2.MARKER_CROSS, 11 * width, width)
     write_labels(picture, labels, width)
     return picture
-
-
-def _fine(picture: Frame) -> int:
-    """Return the width of lines that hide little of what is read off beside them, px."""
-    return max(1, line_width(picture) // 2)
 
 
 def _step(least: float) -> int:

@@ -173,10 +173,8 @@ class PathPicture:
                 (end,) = drawing.pixels_at(np.array([one.box.centre]) * self._scale)
                 begin, self._ends[one.identity] = self._ends.get(one.identity, end), end
                 share = _HIDDEN if one.mode is TrackMode.OCCLUDED else 1.0
-                red, green, blue = (int(share * value) for value in identity_colour(one.identity))
-                cv2.line(
-                    self._layer, begin, end, (red, green, blue), drawing.line_width(self._layer)
-                )
+                colour = [int(share * value) for value in identity_colour(one.identity)]
+                cv2.line(self._layer, begin, end, colour, drawing.line_width(self._layer))
 
     def write(self, path: Path, counter: Counter) -> None:
         """Write the picture, where there was a frame.
@@ -256,8 +254,7 @@ class HeatPicture:
             picture += opacity[:, :, None] * (np.array(colour, np.float32) - picture)
         drawn: Frame = picture.astype(np.uint8)
         width = drawing.line_width(drawn)
-        most = [f"{seconds.max():.1f} s" for seconds in self._seconds]
-        words = f"drove (blue): at most {most[0]}", f"stood (red): at most {most[1]}"
-        for row, line in enumerate(words, start=1):
+        for row, words in enumerate(("drove (blue)", "stood (red)"), start=1):
+            line = f"{words}: at most {self._seconds[row - 1].max():.1f} s"
             drawing.write_words(drawn, line, (5 * width, 16 * width * row), drawing.NEUTRAL, width)
         write_picture(path, drawn)

@@ -124,8 +124,7 @@ class TrafficRun(CountedVehicles):
         InputError
             If a target is invalid in its frame, or something cannot be written.
         """
-        pictures = pictures or Pictures()
-        self._targets = {name: dict(boxes) for name, boxes in targets.items()}
+        pictures, self._targets = pictures or Pictures(), {n: dict(b) for n, b in targets.items()}
         start_ns: int | None = None
         with pictures.drawing(frames) as (take, all_frames):
             for number, found in all_frames:
@@ -134,12 +133,8 @@ class TrafficRun(CountedVehicles):
                 if found.frame is None or crossings is None:
                     continue
                 if not self.summary.frames:
-                    size = frame_size(found.frame)
-                    for name in self.counter.plan.outside(*size):
-                        self._note(
-                            f"{name!r} of the counting lines is outside the image of "
-                            f"{size[0]}x{size[1]} px, where nothing is counted"
-                        )
+                    for name in self.counter.plan.outside(*frame_size(found.frame)):
+                        self._note(f"{name!r} is outside the image, so that nothing counts there")
                 estimates = self.estimates
                 files.write(number, found.stamp_ns, estimates, crossings)
                 self.summary.add(estimates, self.counter.occupancy)

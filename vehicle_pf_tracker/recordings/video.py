@@ -116,9 +116,8 @@ class VideoFile(Footage):
             raise InputError(f"the video {path} states no frame rate; give it with --fps")
         check_fps(self.fps, path)
         images = Images(range(1, (self.frame_count or _MOST_FRAMES) + 1), lambda: size, {})
-        self._truth, self._notices = (
-            ({}, []) if truth is None else read_truth([truth], images, identity)
-        )
+        stated_truth = ({}, []) if truth is None else read_truth([truth], images, identity)
+        self._truth, self._notices = stated_truth
 
     def frames(self) -> Iterator[Picture]:
         """Yield the frames with their stamps."""
