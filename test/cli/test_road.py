@@ -12,13 +12,18 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
+import re
+from pathlib import Path
+
 import cv2
+import numpy as np
 import pytest
 from small_recordings import record
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.parameters.road import parse_pairs
+from vehicle_pf_tracker.road.plane import RoadPlane
 
 PAIRS = ["0,0=0,0", "90,0=9,0", "90,60=9,6", "0,60=0,6"]
 
@@ -115,3 +120,12 @@ def test_a_picture_of_an_unknown_kind_is_refused(bag, tmp_path, capsys):
         main(["road", "calibrate", bag, *words(PAIRS), "--grid", str(tmp_path / "grid.xyz")]) == 1
     )
     assert "grid.xyz must end in .png or .jpg" in capsys.readouterr().err
+
+
+def test_the_pairs_of_the_page_fit_each_other():
+    page = (Path(__file__).parents[2] / "docs" / "road.md").read_text("utf-8")
+    pairs = parse_pairs(" ".join(re.findall(r"--pair (\d\S+)", page)))
+    plane = RoadPlane.of_pairs(pairs, None, margin=0.1, coarsest=1.0)
+    off = plane.to_image(np.array([one.road for one in pairs])) - [one.pixel for one in pairs]
+    assert off.shape == (6, 2)
+    assert np.abs(off).max() < 0.5  # as well as a pixel can be read

@@ -301,6 +301,14 @@ def test_targets_given_by_hand_are_followed_from_their_frame(run):
     }
 
 
+def test_what_can_have_no_effect_is_said(run, tmp_path, capsys):
+    (tmp_path / "far.yaml").write_text("lines: {far: {from: [500, 0], to: [500, 90]}}")
+    run("--lines", tmp_path / "far.yaml", "--target", "van@99:50,50,20,10")
+    err = capsys.readouterr().err
+    assert "'far' is outside the image, so that nothing counts there" in err
+    assert "the target 50,50,20,10 is in frame 99, and no such frame was read" in err
+
+
 @pytest.mark.parametrize(
     ("words", "detections", "said", "status"),
     [

@@ -14,17 +14,17 @@
 
 """Vehicles and counts drawn into images."""
 
+import cv2
 import numpy as np
 import pytest
 from traffic_samples import vehicle
 
-from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.box import Box, intersections
 from vehicle_pf_tracker.offline import drawing
-from vehicle_pf_tracker.offline.drawing import NEUTRAL, draw_box
+from vehicle_pf_tracker.offline.drawing import NEUTRAL, draw_box, draw_pixel_grid, write_labels
 from vehicle_pf_tracker.offline.traffic_drawing import (
     Trails,
     annotated,
-    draw_counts,
     draw_vehicle,
     identity_colour,
 )
@@ -39,7 +39,9 @@ BLACK = np.zeros((240, 320, 3), np.uint8)
 
 def drawn(mode, identity=3):
     picture = BLACK.copy()
-    draw_vehicle(picture, vehicle(identity, 160, 200, mode, size=(100, 80)))
+    labels = []
+    draw_vehicle(picture, labels, vehicle(identity, 160, 200, mode, size=(100, 80)))
+    write_labels(picture, labels)
     return picture
 
 
@@ -98,7 +100,7 @@ def test_a_speed_is_written_where_the_road_is_known(monkeypatch):
         for index in range(25):
             estimates = [vehicle(1, 50 + 4 * index, 200)]  # 4 px in 40 ms are 10 m/s
             counter.update(estimates, index * 40_000_000)
-        annotated(BLACK, "", estimates, counter)
+        annotated(BLACK, "", estimates, counter, Trails())
         assert said in written
         written.clear()
 
@@ -124,7 +126,7 @@ def test_colours_of_neighbouring_numbers_differ():
 
 def test_the_frame_stays_as_it_was():
     frame = BLACK.copy()
-    picture = annotated(frame, "0:00.0", [vehicle(1, 160, 200)], Counter(CountingPlan()))
+    picture = annotated(frame, "0:00.0", [vehicle(1, 160, 200)], Counter(CountingPlan()), Trails())
     assert picture.any()
     assert not frame.any()
 
@@ -134,12 +136,51 @@ def test_lines_and_zones_are_drawn_with_their_counts():
         (CountingLine("exit", (0.0, 150.0), (320.0, 150.0)),),
         (CountingZone("yard", ((10.0, 200.0), (90.0, 200.0), (90.0, 230.0), (10.0, 230.0))),),
     )
-    picture, other = BLACK.copy(), BLACK.copy()
     counter = Counter(plan)
-    draw_counts(picture, counter)
+    picture = annotated(BLACK, "", [], counter, Trails())
     assert picture[150, 5:315].all()
     assert picture[200:230, 10].all()
     for index, bottom in enumerate([120, 180]):
         counter.update([vehicle(1, 200, bottom)], index)
-    draw_counts(other, counter)
+    other = annotated(BLACK, "", [], counter, Trails())
     assert (picture != other).any()  # 1 in
+
+
+def written(monkeypatch, estimates, words=""):
+    """Return the rectangles of the words that are written, by the words."""
+    places = {}
+
+    def note(picture, words, corner, colour, width=1):
+        (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, width)
+        places[words] = (corner[0], corner[1] - 11 * width, corner[0] + across, corner[1])
+
+    monkeypatch.setattr(drawing, "write_words", note)
+    annotated(BLACK, words, estimates, Counter(CountingPlan()), Trails())
+    return places
+
+
+def test_words_do_not_cover_each_other_nor_leave_the_picture(monkeypatch):
+    beside = [(150, 120), (165, 122), (150, 140), (300, 30), (20, 24), (318, 32)]
+    estimates = [vehicle(n, x, y, size=(24, 18)) for n, (x, y) in enumerate(beside, start=1)]
+    places = written(monkeypatch, estimates, "0:01.0  frame 30  6 vehicles")
+    assert len(places) == 7
+    edges = np.array(list(places.values()), float)
+    assert not np.triu(intersections(edges[:, None], edges[None]), 1).any()
+    assert edges.min() >= 0
+    assert (edges[:, 2:] <= (320, 240)).all()
+
+
+def test_a_vehicle_in_a_crowd_still_has_its_number(monkeypatch):
+    estimates = [vehicle(n, 150, 120, size=(24, 18)) for n in range(1, 9)]
+    assert {words.split()[0] for words in written(monkeypatch, estimates) if words} == set(
+        map(str, range(1, 9))
+    )
+
+
+def test_a_grid_can_be_read_in_4k():
+    """The words grow with the image: seven of them are not as small as those of VGA."""
+    vga, uhd = (
+        draw_pixel_grid(np.zeros(size, np.uint8)) for size in ((480, 640, 3), (2160, 3840, 3))
+    )
+    white_vga, white_uhd = ((one == 255).all(axis=2).sum() for one in (vga, uhd))
+    assert white_uhd > 4 * white_vga

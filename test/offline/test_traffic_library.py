@@ -69,8 +69,22 @@ def test_stamps_tell_a_dropped_frame_and_mistakes_are_said():
     assert tracks[0].velocity == pytest.approx((4, 0), abs=0.3)
     with pytest.raises(ValueError, match="as many"):
         tracker.update(frame, [(1, 1, 5, 5)], [0.1, 0.2])
-    with pytest.raises(InputError):
-        tracker.update(np.zeros((4, 4), np.uint8))
+    with pytest.raises(ValueError, match="left, top, width and height"):
+        tracker.update(frame, np.ones((4, 5)))  # corners and a score, for instance
+    for image in (np.zeros((4, 4), np.uint8), None):  # None: the video has ended
+        with pytest.raises(InputError, match="a frame must be"):
+            tracker.update(image)
+
+
+def test_what_cannot_be_meant_is_refused_at_the_start():
+    with pytest.raises(InputError, match=r"'lost_aftr'.*did you mean 'lost_after'"):
+        TrafficTracker(25, {"lost_aftr": 1.0})
+    with pytest.raises(InputError, match="frame rate"):
+        TrafficTracker(0)  # as OpenCV states for many a camera
+
+
+def test_rows_may_lack_the_score():
+    assert TrafficTracker(25).update_with_rows(GROUND, [[1, -1, 5, 5, 20, 20]]).shape == (0, 10)
 
 
 def truth(index):

@@ -82,6 +82,13 @@ def test_a_late_class_counts():
     assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences(NOWHERE)
 
 
+def test_a_lorry_that_is_a_car_from_far_away_is_a_lorry():
+    summary = TrafficSummary()
+    for label in ("car", "truck", "", "truck", "truck", "car"):
+        summary.add([estimate(1, "T", label=label)], {})
+    assert "(1 truck)" in summary.sentences(NOWHERE)[0]
+
+
 def drive(picture, count=30, width=320):
     frame = np.zeros((240, width, 3), np.uint8)
     for index in range(count):

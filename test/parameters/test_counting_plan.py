@@ -64,8 +64,8 @@ def test_lines_zones_and_regions_are_read(read):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "must have the keys lines and zones and roi"),
-        ("[]", "must have the keys lines and zones and roi"),
+        ("", "must have keys of these: lines, zones, roi"),
+        ("[]", "must have keys of these: lines, zones, roi"),
         ("lines: {}", "neither a line nor a zone nor a region"),
         ("line: {a: {from: [0, 0], to: [9, 9]}}", "did you mean 'lines'"),
         ("lines: [{from: [0, 0], to: [9, 9]}]", "lines must be a mapping by name"),
@@ -80,7 +80,7 @@ def test_lines_zones_and_regions_are_read(read):
         ("lines: {a: {from: [0, 0], to: [0, true]}}", "which is not [x, y] in px"),
         ("lines: {a: {from: [0, 0], to: [0, '9']}}", "which is not [x, y] in px"),
         ("lines: {a: {from: [0, 0], to: 5}}", "which is not [x, y] in px"),
-        ("lines: {a: 3}", "the line 'a' must have the keys from and to"),
+        ("lines: {a: 3}", "the line 'a' must have keys of these: from, to"),
         ("lines: {no: {from: [0, 0], to: [9, 9]}}", "name False, which is no text"),
         ("lines: {'': {from: [0, 0], to: [9, 9]}}", "which is no text"),
         ("lines: {a: {from: [0, 0], to: [9, 9], directions: [in]}}", "two different names"),
@@ -107,3 +107,15 @@ def test_a_mistake_is_one_sentence_that_names_the_file(read, text, said):
     assert said in str(error.value)
     assert "lines.yaml" in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_what_lies_outside_the_image_is_named():
+    lines = (
+        CountingLine("in", (-50.0, 100.0), (700.0, 100.0)),
+        CountingLine("right", (700.0, 0.0), (700.0, 300.0)),
+    )
+    zones = (
+        CountingZone("above", ((0.0, -9.0), (90.0, -9.0), (90.0, -60.0))),
+        CountingZone("corner", ((600.0, 300.0), (900.0, 300.0), (900.0, 900.0))),
+    )
+    assert CountingPlan(lines, zones).outside(640, 360) == ["right", "above"]

@@ -95,7 +95,7 @@ def with_file(configuration: Configuration, variant: Variant, path: Path) -> Con
     own = [name for name in values if name not in _OF_ROS and not name.startswith(_OF_ROS_PREFIX)]
     problems = [unknown_name(name, known) for name in own if name not in known]
     if problems and (others := _variants_with(own, type(configuration))):
-        problems.append(f"it is a file for {', '.join(others)}")
+        problems = [problems[0], f"it is a file for {', '.join(others)}"]
     try:
         configuration = configuration.updated(values)
     except InputError as error:

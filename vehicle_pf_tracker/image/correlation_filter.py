@@ -190,12 +190,9 @@ class CorrelationFilter:
     def _wide(self, size: int) -> tuple[PartialFourier, PartialFourier]:
         """Return transforms of a larger square of cells, and of the target in its middle."""
         margin = (size - self._cells) // 2
-        rows, columns = (
-            slice(side.start + margin, side.stop + margin) for side in (self._rows, self._columns)
-        )
-        return _transforms(size, 0, size, 0, size), _transforms(
-            size, rows.start, rows.stop, columns.start, columns.stop
-        )
+        edges = self._rows.start, self._rows.stop, self._columns.start, self._columns.stop
+        inside = _transforms(size, *(edge + margin for edge in edges))
+        return _transforms(size, 0, size, 0, size), inside
 
 
 @functools.cache

@@ -107,10 +107,8 @@ class Foreground:
 
     def history(self) -> Iterator[tuple[float, Array]]:
         """Learn the whole background; give the ages of kept frames, and the boxes in them."""
-        self._whole, self._learnt_at = (
-            median([each.image for each in self._background]),
-            self._frames,
-        )
+        self._whole = median([each.image for each in self._background])
+        self._learnt_at = self._frames
         kept, since = list(self._background)[::-1], (self._frames - 1) % _KEPT_EVERY
         return (
             (float(since + _KEPT_EVERY * back), self._boxes(kept[back]))

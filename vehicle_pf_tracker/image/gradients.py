@@ -44,10 +44,8 @@ DIRECTION_BINS = 64
 
 def gradients_of(grey: Grey) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.int16]]:
     """Gradient of equation 6 along x and y, the image mirrored at its border."""
-    gx, gy = (
-        np.asarray(cv2.Sobel(grey, cv2.CV_16S, dx, 1 - dx, ksize=3), np.int16) for dx in (1, 0)
-    )
-    return gx, gy
+    gx, gy = (cv2.Sobel(grey, cv2.CV_16S, dx, 1 - dx, ksize=3) for dx in (1, 0))
+    return np.asarray(gx, np.int16), np.asarray(gy, np.int16)
 
 
 def squared_strength(gx: npt.NDArray[Any], gy: npt.NDArray[Any]) -> Strengths:

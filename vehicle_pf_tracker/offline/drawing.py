@@ -19,16 +19,20 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
+from typing import TypeAlias
 
 import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import Box, Position
+from vehicle_pf_tracker.core.box import Box, Position, intersections
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline.estimates import EstimateRow, clock_words
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+
+Colour = tuple[int, int, int]
+"""Red, green, blue."""
 
 
 def line_width(picture: Frame) -> int:
@@ -42,11 +46,7 @@ def line_width_of(size: tuple[int, int]) -> int:
 
 
 def write_words(
-    picture: Frame,
-    words: str,
-    corner: tuple[int, int],
-    colour: tuple[int, int, int],
-    width: int = 1,
+    picture: Frame, words: str, corner: tuple[int, int], colour: Colour, width: int = 1
 ) -> None:
     """Write words with a dark edge.
 
@@ -70,9 +70,6 @@ def write_words(
         cv2.putText(picture, words, (x + across, y + down), font, scale, (0, 0, 0), width, smooth)
     cv2.putText(picture, words, corner, font, scale, colour, width, smooth)
 
-
-Colour = tuple[int, int, int]
-"""Red, green, blue."""
 
 LETTER = 14
 """Height of a line of words, in line widths."""
@@ -107,10 +104,34 @@ def draw_path(
     cv2.polylines(picture, [path], closed, colour, line_width(picture), cv2.LINE_AA)
 
 
-def write_above(picture: Frame, words: str, box: Box, colour: Colour) -> None:
-    """Write words above a box, in the picture."""
-    width, ((x, y),) = line_width(picture), pixels_at(np.array([[box.x, box.y]]))
-    write_words(picture, words, (max(x, 0), max(y - 3 * width, LETTER * width)), colour, width)
+Label: TypeAlias = tuple[Box, Colour, tuple[str, ...]]
+"""Box in px, and words for it: the first that find room."""
+Labels: TypeAlias = list[Label]
+
+
+def write_labels(picture: Frame, labels: Iterable[Label], width: int = 0) -> None:
+    """Write words around boxes, in the picture, where no others are; the first go first.
+
+    Strokes are `width` px wide or, with 0, as suits the picture.
+    """
+    width, taken = width or line_width(picture), np.zeros((0, 4))
+    for box, colour, choice in labels:
+        options = [(words, at) for words in choice for at in _places(picture, words, box, width)]
+        free = (one for one in options if not intersections(one[1], taken).any())
+        # Without room the shortest words cover others: a vehicle always has its number.
+        words, place = next(free, options[-4])
+        taken = np.vstack([taken, place])
+        corner = int(place[0]), int(place[3]) - 3 * width
+        write_words(picture, words, corner, colour, width)
+
+
+def _places(picture: Frame, words: str, box: Box, width: int) -> Array:
+    """Return the edges (4, 4) of words above, below, right and left of a box."""
+    (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, width)
+    (left, top), (right, bottom), size = box.corners[0], box.corners[2], (across, LETTER * width)
+    corners = (left, top - size[1]), (left, bottom), (right, top), (left - across, top)
+    inside = np.clip(corners, 0, np.maximum(np.subtract(frame_size(picture), size), 0))
+    return np.hstack([inside, inside + size])
 
 
 def dashes(corners: Sequence[Position], dash: float) -> Iterator[Array]:
@@ -171,7 +192,7 @@ class Annotator:
         is_predicted = estimate.mode is Mode.OCCLUDED
         draw_box(picture, estimate.box, colour, width, dashed=is_predicted)
         if self.name:
-            write_above(picture, self.name, estimate.box, colour)
+            write_labels(picture, [(estimate.box, colour, (self.name,))])
 
 
 def estimate_words(name: str, row: EstimateRow) -> str:
@@ -210,20 +231,25 @@ _PIECES = 60
 def draw_pixel_grid(frame: Frame) -> Frame:
     """Draw lines with their pixel coordinates over a copy of `frame`."""
     picture = np.array(frame, order="C")
-    width, height = frame_size(frame)
+    (width, height), pen = frame_size(frame), max(1, line_width(picture) // 2)
     step = _step(max(width, height) / _LINES)
     for x in range(step, width, step):
-        cv2.line(picture, (x, 0), (x, height - 1), _LINE, 1)
-        write_words(picture, str(x), (x + 2, 11), _TEXT)
+        cv2.line(picture, (x, 0), (x, height - 1), _LINE, pen)
+        write_words(picture, str(x), (x + 2 * pen, 11 * pen), _TEXT, pen)
     for y in range(step, height, step):
-        cv2.line(picture, (0, y), (width - 1, y), _LINE, 1)
-        write_words(picture, str(y), (2, y - 3), _TEXT)
+        cv2.line(picture, (0, y), (width - 1, y), _LINE, pen)
+        write_words(picture, str(y), (2 * pen, y - 3 * pen), _TEXT, pen)
     return picture
 
 
 def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Frame:
     """Draw lines of the road with their metres, and the pairs, over a copy of `frame`."""
-    picture = np.array(frame, order="C")
+    picture: Frame = np.array(frame, order="C")
+    width = max(1, line_width(picture) // 2)
+    labels: Labels = [
+        (Box.around(pair.pixel, 0, 0), _TEXT, (f"{pair.road[0]:g},{pair.road[1]:g}",))
+        for pair in pairs
+    ]
     points = np.array([pair.road for pair in pairs])
     low, high = points.min(axis=0), points.max(axis=0)
     for axis in (0, 1):
@@ -234,14 +260,12 @@ def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Fra
         for number in np.arange(first, last + 1) * step:
             line[:, axis] = number
             pixels = np.clip(np.floor(plane.to_image(line)), -(2**14), 2**14).astype(np.int32)
-            cv2.polylines(picture, [pixels.reshape(-1, 1, 2)], False, _ROAD, 1, cv2.LINE_AA)
-            u, v = pixels[0].tolist()
-            write_words(picture, f"{'xy'[axis]}={number:g}", (u + 2, v + 12), _TEXT)
-    for pair in pairs:
-        u, v = np.floor(pair.pixel).astype(int).tolist()
-        cv2.drawMarker(picture, (u, v), _POINT, cv2.MARKER_CROSS, 11, 1)
-        words = f"{pair.road[0]:g},{pair.road[1]:g}"
-        write_words(picture, words, (u + 6, v - 4), _TEXT)
+            cv2.polylines(picture, [pixels.reshape(-1, 1, 2)], False, _ROAD, width, cv2.LINE_AA)
+            at = Box.around(pixels[0].tolist(), 0, 0)
+            labels.append((at, _TEXT, (f"{'xy'[axis]}={number:g}", "")))  # left out without room
+    for centre in pixels_at(np.array([pair.pixel for pair in pairs])):
+        cv2.drawMarker(picture, centre, _POINT, cv2.MARKER_CROSS, 11 * width, width)
+    write_labels(picture, labels, width)
     return picture
 
 

@@ -95,7 +95,7 @@ class OfflineTracker:
         self._localisation = Localisation(variant.name, road) if has_road else None
         self._on_road: list[Mapping[str, float]] = []
         self._off_road: Counter[str] = Counter()
-        self._targets = targets
+        self._targets = dict(targets)
         self.estimate: Estimate | None = None
 
     def rows(
@@ -126,7 +126,7 @@ class OfflineTracker:
         if truth and is_nearest(stamp_ns, next_ns, truth.stamp_ns, self._limit_ns):
             self._configure_target(truth.box)
             self._first_truth = None
-        if (box := self._targets.get(number)) is not None:
+        if (box := self._targets.pop(number, None)) is not None:
             if is_first:
                 self._configure_target(box)
             else:
@@ -157,7 +157,7 @@ class OfflineTracker:
             f"no place on the road in {count} frame{'s' * (count > 1)}: {reason}"
             for reason, count in self._off_road.items()
         )
-        return [*self._notices, *off_road]
+        return [*self._notices, *off_road, *map(unreached, self._targets.items())]
 
     def _configure_target(self, box: Box) -> None:
         """Start on `box`, and again where the recording loops."""
@@ -196,6 +196,11 @@ class OfflineTracker:
             self._on_road[-1] = self._localisation.road.scalars()
         else:
             self._off_road[self._localisation.objection] += 1
+
+
+def unreached(target: tuple[int, Box]) -> str:
+    """Say that the source ended before the frame of a target."""
+    return f"the target {target[1]} is in frame {target[0]}, and no such frame was read"
 
 
 def with_target(settings: SessionParameters, box: Box) -> SessionParameters:

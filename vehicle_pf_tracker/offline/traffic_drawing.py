@@ -26,10 +26,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline import drawing
+from vehicle_pf_tracker.offline.drawing import Labels
 from vehicle_pf_tracker.offline.output_files import write_picture
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter, reference_point
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -45,7 +45,9 @@ _TRAIL = 60
 @functools.lru_cache(maxsize=1024)
 def identity_colour(identity: int) -> drawing.Colour:
     """Return the colour of a vehicle; numbers that follow each other have unlike ones."""
-    red, green, blue = colorsys.hsv_to_rgb(identity * _GOLDEN % 1.0, 0.75, 1.0)
+    hue = identity * _GOLDEN % 1.0
+    # Paler from blue to violet, which the eye sees darker: thin words of full blue are illegible.
+    red, green, blue = colorsys.hsv_to_rgb(hue, 0.5 if 0.58 < hue < 0.85 else 0.75, 1.0)
     return round(255 * red), round(255 * green), round(255 * blue)
 
 
@@ -65,12 +67,9 @@ class Trails:
 
 
 def draw_vehicle(
-    picture: Frame,
-    estimate: TrackEstimate,
-    kmh: float | None = None,
-    trail: Iterable[Position] = (),
+    picture: Frame, labels: Labels, estimate: TrackEstimate, kmh: float | None = None
 ) -> None:
-    """Draw box, number, class, speed and trail of a vehicle.
+    """Draw the box of a vehicle, and label it with number, class and speed.
 
     The box is in the colour of its number, dashed where it is predicted, and grey without a number
     while it is tentative; a lost vehicle has none.
@@ -82,20 +81,21 @@ def draw_vehicle(
         drawing.draw_box(picture, estimate.box, drawing.NEUTRAL, width)
         return
     colour, is_hidden = identity_colour(estimate.identity), estimate.mode is TrackMode.OCCLUDED
-    drawing.draw_path(picture, trail, colour)
     drawing.draw_box(picture, estimate.box, colour, width, dashed=is_hidden)
     words = [str(estimate.identity), estimate.label, "" if kmh is None else f"{kmh:.0f} km/h"]
     words += [estimate.mode.value] if is_hidden else []
-    drawing.write_above(picture, " ".join(filter(None, words)), estimate.box, colour)
+    labels.append((estimate.box, colour, (" ".join(filter(None, words)), words[0])))
 
 
-def draw_counts(picture: Frame, counter: Counter, scale: float = 1.0) -> None:
+def draw_counts(picture: Frame, labels: Labels, counter: Counter, scale: float = 1.0) -> None:
     """Draw lines with the crossings of each direction, and zones with their occupancy.
 
     Parameters
     ----------
     picture : Frame
         Written to.
+    labels : list of Label
+        Takes the words.
     counter : Counter
         Counts, with their lines and zones.
     scale : float
@@ -105,41 +105,31 @@ def draw_counts(picture: Frame, counter: Counter, scale: float = 1.0) -> None:
         ends = np.array([line.start, line.end]) * scale
         drawing.draw_path(picture, ends, _PLAN)
         counts = ", ".join(f"{counter.count(line.name, to)} {to}" for to in line.directions)
-        _write_at(picture, f"{line.name}: {counts}", ends[0])
+        labels.append((Box.around(ends[0].tolist(), 0, 0), _PLAN, (f"{line.name}: {counts}",)))
     for zone in counter.plan.zones:
         corners = np.array(zone.corners) * scale
         drawing.draw_path(picture, corners, _PLAN, closed=True)
         entries, exits = (counter.count(zone.name, to) for to in (ENTRY, EXIT))
         there = counter.occupancy[zone.name]
         words = f"{zone.name}: {there} ({entries} entered, {exits} left)"
-        _write_at(picture, words, corners[corners[:, 1].argmin()])
+        highest = corners[corners[:, 1].argmin()].tolist()
+        labels.append((Box.around(highest, 0, 0), _PLAN, (words,)))
 
 
 def annotated(
-    frame: Frame,
-    words: str,
-    estimates: Iterable[TrackEstimate],
-    counter: Counter,
-    trails: Trails | None = None,
+    frame: Frame, words: str, estimates: Iterable[TrackEstimate], counter: Counter, trails: Trails
 ) -> Frame:
     """Return a copy of `frame` with counts, vehicles and a line of words."""
     picture: Frame = np.array(frame, order="C")
-    draw_counts(picture, counter)
-    for one in estimates:
-        trail = trails.of.get(one.serial, ()) if trails is not None else ()
-        draw_vehicle(picture, one, counter.speed_kmh(one.serial), trail)
     width = drawing.line_width(picture)
-    drawing.write_words(picture, words, (5 * width, 16 * width), drawing.NEUTRAL, width)
+    labels: Labels = [(Box(5 * width, 19 * width, 0, 0), drawing.NEUTRAL, (words,))]
+    draw_counts(picture, labels, counter)
+    for one in estimates:
+        trail, colour = trails.of.get(one.serial, ()), identity_colour(one.identity)
+        drawing.draw_path(picture, trail, colour)
+        draw_vehicle(picture, labels, one, counter.speed_kmh(one.serial))
+    drawing.write_labels(picture, labels)
     return picture
-
-
-def _write_at(picture: Frame, words: str, point: Array) -> None:
-    """Write words above a point, moved into the picture where it is outside."""
-    width, (height, across) = drawing.line_width(picture), picture.shape[:2]
-    x = min(max(point[0] + 3 * width, 0), 0.8 * across)
-    # Not in the topmost line, which has the time.
-    y = min(max(point[1] - 3 * width, 2.3 * drawing.LETTER * width), height - 3 * width)
-    drawing.write_words(picture, words, (int(x), int(y)), _PLAN, width)
 
 
 _LEAST_WIDTH = 640
@@ -183,10 +173,8 @@ class PathPicture:
                 (end,) = drawing.pixels_at(np.array([one.box.centre]) * self._scale)
                 begin, self._ends[one.identity] = self._ends.get(one.identity, end), end
                 share = _HIDDEN if one.mode is TrackMode.OCCLUDED else 1.0
-                red, green, blue = (int(share * value) for value in identity_colour(one.identity))
-                cv2.line(
-                    self._layer, begin, end, (red, green, blue), drawing.line_width(self._layer)
-                )
+                colour = [int(share * value) for value in identity_colour(one.identity)]
+                cv2.line(self._layer, begin, end, colour, drawing.line_width(self._layer))
 
     def write(self, path: Path, counter: Counter) -> None:
         """Write the picture, where there was a frame.
@@ -199,16 +187,16 @@ class PathPicture:
         if self.ground is None:
             return
         scale, (height, width) = self._scale, self._size
-        enlarged = cv2.resize(
-            self.ground, (width * scale, height * scale), interpolation=cv2.INTER_CUBIC
-        )
-        picture: Frame = np.asarray(enlarged, np.uint8)
+        size = width * scale, height * scale
+        picture = np.asarray(cv2.resize(self.ground, size, interpolation=cv2.INTER_CUBIC), np.uint8)
         drawn = self._layer.any(axis=2)
         picture[drawn] = self._layer[drawn]
+        labels: Labels = []
+        draw_counts(picture, labels, counter, scale)
         for one in self._on_ground:
             box = Box(*(scale * value for value in astuple(one.box)))
-            draw_vehicle(picture, replace(one, box=box))
-        draw_counts(picture, counter, scale)
+            draw_vehicle(picture, labels, replace(one, box=box))
+        drawing.write_labels(picture, labels)
         write_picture(path, picture)
 
 
@@ -243,12 +231,10 @@ class HeatPicture:
         for one in estimates:
             if one.mode in CONFIRMED:
                 box, speed = one.box, float(np.hypot(*one.velocity)) / period
-                ends = (box.x, box.x + box.width), (
-                    box.y + (1 - _FOOTPRINT) * box.height, box.y + box.height,
-                )  # fmt: skip
-                (left, right), (top, bottom) = np.clip(
-                    np.round(ends), 0, [[width], [height]]
-                ).astype(int)
+                (left, _), (right, bottom) = box.corners[0], box.corners[2]
+                edges = [left, bottom - _FOOTPRINT * box.height, right, bottom]
+                within = np.clip(np.round(edges), 0, [width, height] * 2)
+                left, top, right, bottom = within.astype(int).tolist()
                 stands = int(speed < _STANDING * box.width)
                 self._seconds[stands, top:bottom, left:right] += seconds
 
@@ -268,8 +254,7 @@ class HeatPicture:
             picture += opacity[:, :, None] * (np.array(colour, np.float32) - picture)
         drawn: Frame = picture.astype(np.uint8)
         width = drawing.line_width(drawn)
-        most = [f"{seconds.max():.1f} s" for seconds in self._seconds]
-        words = f"drove (blue): at most {most[0]}", f"stood (red): at most {most[1]}"
-        for row, line in enumerate(words, start=1):
+        for row, words in enumerate(("drove (blue)", "stood (red)"), start=1):
+            line = f"{words}: at most {self._seconds[row - 1].max():.1f} s"
             drawing.write_words(drawn, line, (5 * width, 16 * width * row), drawing.NEUTRAL, width)
         write_picture(path, drawn)

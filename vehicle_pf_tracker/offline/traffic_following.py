@@ -24,6 +24,7 @@ from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles
+from vehicle_pf_tracker.offline.driver import unreached
 from vehicle_pf_tracker.offline.estimates import clock_words
 from vehicle_pf_tracker.offline.page_server import LivePage
 from vehicle_pf_tracker.offline.pictures import Numbered, Pictures
@@ -79,14 +80,15 @@ class TrafficRun(CountedVehicles):
         self._more_notices = 0
         self._last_events: list[str] = []
         self._detections_of = detections_of
-        self._targets: Mapping[str, Mapping[int, Box]] = {}
+        self._targets: dict[str, dict[int, Box]] = {}
         self._by_name: dict[str, int] = {}
 
     @property
     def notices(self) -> list[str]:
         """Irregularities, a sentence each; of very many only the first."""
         more = self._more_notices
-        return [*self._notices, *([f"and {more} more notices"] if more else [])]
+        later = [unreached(one) for boxes in self._targets.values() for one in boxes.items()]
+        return [*self._notices, *([f"and {more} more notices"] if more else []), *later]
 
     def _note(self, sentence: str) -> None:
         if len(self._notices) < _MOST_NOTICES:
@@ -122,7 +124,7 @@ class TrafficRun(CountedVehicles):
         InputError
             If a target is invalid in its frame, or something cannot be written.
         """
-        pictures, self._targets = pictures or Pictures(), targets
+        pictures, self._targets = pictures or Pictures(), {n: dict(b) for n, b in targets.items()}
         start_ns: int | None = None
         with pictures.drawing(frames) as (take, all_frames):
             for number, found in all_frames:
@@ -130,6 +132,9 @@ class TrafficRun(CountedVehicles):
                 crossings = self._step(number, found)
                 if found.frame is None or crossings is None:
                     continue
+                if not self.summary.frames:
+                    for name in self.counter.plan.outside(*frame_size(found.frame)):
+                        self._note(f"{name!r} is outside the image, so that nothing counts there")
                 estimates = self.estimates
                 files.write(number, found.stamp_ns, estimates, crossings)
                 self.summary.add(estimates, self.counter.occupancy)
@@ -203,10 +208,10 @@ class TrafficRun(CountedVehicles):
     def _add_targets(self, frame: Frame, number: int) -> None:
         """Follow the vehicles given for this frame; a name given again replaces the one before."""
         for name, boxes in self._targets.items():
-            if number not in boxes:
+            if (box := boxes.pop(number, None)) is None:
                 continue
             try:
-                box = check_target(boxes[number], *frame_size(frame))
+                check_target(box, *frame_size(frame))
             except InputError as error:
                 raise InputError(f"in frame {number}, {error}") from None
             if name in self._by_name:

@@ -25,10 +25,13 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.offline.traffic_results import mot_numbers
 from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.table import unknown_name
+from vehicle_pf_tracker.recordings.footage import check_fps
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -74,9 +77,12 @@ class TrafficTracker(CountedVehicles):
     ) -> None:
         named = {"detector.kind": MODEL, "detector.model": str(model)} if model else {}
         given = {"frame_rate": frame_rate, "lines": str(lines), **named, **parameters}
-        super().__init__(*session_and_counter(Configuration.of(TRAFFIC).updated(given)))
+        known = (configuration := Configuration.of(TRAFFIC)).specs()
+        if unknown := [unknown_name(one, known) for one in given if one not in known]:
+            raise InputError("; ".join(unknown))
+        super().__init__(*session_and_counter(configuration.updated(given)))
         self.crossings: tuple[Crossing, ...] = ()
-        self._period_ns = round(1e9 / frame_rate)
+        self._period_ns = round(1e9 / check_fps(frame_rate, "frame_rate"))
         self._stamp_ns = self._images = 0
         self._class_ids: dict[str, int] = {}
 
@@ -115,8 +121,11 @@ class TrafficTracker(CountedVehicles):
         InputError
             If the image is not usable.
         ValueError
-            If there are not as many scores or labels as boxes.
+            If a box has not four numbers, or there are not as many scores or labels as boxes.
         """
+        if boxes is not None and np.ndim(boxes) > 1 and np.shape(boxes)[-1] not in {0, 4}:
+            raise ValueError("a box is left, top, width and height in px")
+        check_frame(np.asarray(frame))
         self._images += 1
         self._stamp_ns = self._stamp_ns + self._period_ns if stamp_ns is None else stamp_ns
         detections = None if boxes is None else Detections.make(boxes, scores, labels)
@@ -165,8 +174,9 @@ class TrafficTracker(CountedVehicles):
         ----------
         frame : Frame
             RGB image.
-        rows : array-like, shape (N, 7 or more)
-            Detections of this image: frame, id (neither is used), left, top, width, height, score.
+        rows : array-like, shape (N, 6 or more)
+            Detections of this image: frame, id (neither is used), left, top, width, height, and a
+            score if there is one.
         stamp_ns : int, optional
             As for `update`.
 
@@ -177,6 +187,7 @@ class TrafficTracker(CountedVehicles):
             confidence (half of it of an occluded vehicle) and three times -1.
         """
         given = np.asarray(rows, np.float64).reshape(-1, np.shape(rows)[-1] or 7)
-        tracks = self.update(frame, given[:, 2:6], given[:, 6], stamp_ns=stamp_ns)
+        scores = given[:, 6] if given.shape[1] > 6 else None
+        tracks = self.update(frame, given[:, 2:6], scores, stamp_ns=stamp_ns)
         found = [mot_numbers(self._images, one) for one in tracks]
         return np.array(found, np.float64).reshape(-1, 10)

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections import Counter as Tally
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
@@ -32,17 +32,22 @@ class VehicleLog:
 
     Attributes
     ----------
-    label : str
-        Class; "" where it is unknown.
+    labels : Counter of str
+        Frames in which it was visible as each class.
     survived : int
         Occlusions after which it was visible under the same number.
     is_hidden : bool
         True from the beginning of an occlusion until it is visible again; leaving is none.
     """
 
-    label: str = ""
+    labels: Tally[str] = field(default_factory=Tally)
     survived: int = 0
     is_hidden: bool = False
+
+    @property
+    def label(self) -> str:
+        """Class of most frames: a lorry far away looks like a car; "" where it is unknown."""
+        return max(self.labels, key=self.labels.__getitem__, default="")
 
 
 class TrafficSummary:
@@ -78,17 +83,13 @@ class TrafficSummary:
             self._most_in_zone[zone] = max(count, self._most_in_zone.get(zone, 0))
 
     def _follow(self, one: TrackEstimate) -> None:
-        is_visible = one.mode is TrackMode.TRACKING
-        vehicle = self.vehicles.get(one.identity)
-        if vehicle is None:
-            if is_visible:
-                self.vehicles[one.identity] = VehicleLog(one.label)
-            return
-        if is_visible:
+        if one.mode is TrackMode.TRACKING:
+            vehicle = self.vehicles.setdefault(one.identity, VehicleLog())
             vehicle.survived += vehicle.is_hidden
-            vehicle.label = one.label or vehicle.label
-        if is_visible or one.hidden_by != BORDER:
-            vehicle.is_hidden = not is_visible
+            vehicle.labels.update([one.label] * bool(one.label))
+            vehicle.is_hidden = False
+        elif one.identity in self.vehicles and one.hidden_by != BORDER:
+            self.vehicles[one.identity].is_hidden = True
 
     @property
     def survived(self) -> int:

@@ -23,6 +23,8 @@ from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.parameters.files import read_yaml_file
@@ -122,6 +124,13 @@ class CountingPlan:
         """Tell whether there is anything to count at."""
         return bool(self.lines or self.zones)
 
+    def outside(self, width: int, height: int) -> list[str]:
+        """Return the names of the lines and zones of which nothing is in an image of this size."""
+        shapes = [(one.name, np.array([one.start, one.end])) for one in self.lines]
+        shapes += [(one.name, np.array(one.corners)) for one in self.zones]
+        low, high = (0, 0), (width, height)
+        return [n for n, at in shapes if (at.max(0) < low).any() or (at.min(0) > high).any()]
+
 
 def read_counting_plan(path: Path) -> CountingPlan:
     """Read a file of lines and zones.
@@ -168,7 +177,7 @@ def parse_counting_plan(document: Any) -> CountingPlan:
 
 def _mapping(value: Any, what: str, known: Sequence[str]) -> Mapping[str, Any]:
     if not isinstance(value, Mapping):
-        raise InputError(f"{what} must have the keys {' and '.join(known)}")
+        raise InputError(f"{what} must have keys of these: {', '.join(known)}")
     for key in value:
         if key not in known:
             hint = suggestion(str(key), known) or f" (known: {', '.join(known)})"

@@ -178,9 +178,9 @@ class VideoFile(Footage):
 def _opened(source: int | str, failure: str) -> cv2.VideoCapture:
     """Open a video, by FFmpeg where OpenCV has it: other decoders complain on the terminal."""
     has_ffmpeg = cv2.CAP_FFMPEG in cv2.videoio_registry.getStreamBackends()
-    is_file = isinstance(source, str) and has_ffmpeg
+    backend = cv2.CAP_FFMPEG if has_ffmpeg and isinstance(source, str) else cv2.CAP_ANY
     with quiet_opencv():
-        video = cv2.VideoCapture(source, cv2.CAP_FFMPEG if is_file else cv2.CAP_ANY)
+        video = cv2.VideoCapture(source, backend)
     if not video.isOpened():
         raise InputError(failure)
     return video

@@ -101,9 +101,8 @@ def read_sequence(folder: Path) -> TrafficSequence:
     try:
         parser.read_string(read_text(info, "the file"))
         frame_rate = parser.getfloat("Sequence", "frameRate")
-        frame_count, width, height = (
-            parser.getint("Sequence", name) for name in ("seqLength", "imWidth", "imHeight")
-        )
+        names = "seqLength", "imWidth", "imHeight"
+        frame_count, width, height = (parser.getint("Sequence", name) for name in names)
     except (configparser.Error, ValueError) as error:
         raise InputError(f"{info} does not describe a sequence: {error}") from None
     if not (0 < frame_rate < math.inf and min(frame_count, width, height) > 0):

@@ -121,9 +121,8 @@ class View:
     def peak_near(self, position: Array, reach: int) -> tuple[Array, float]:
         """Find the peak within `reach` places of a position: its position in px, and height."""
         inner = len(self.response) - 2 - reach
-        column, row = (
-            min(max(place, reach + 1), inner) for place in self.places(position).tolist()
-        )
+        places = self.places(position).tolist()
+        column, row = (min(max(place, reach + 1), inner) for place in places)
         near = self.response[row - reach : row + reach + 1, column - reach : column + reach + 1]
         dy, dx = divmod(int(near.argmax()), 2 * reach + 1)
         y, x = row - reach + dy, column - reach + dx

@@ -69,8 +69,7 @@ class Strangers:
         Highest response elsewhere, relative to the vehicle's usual one.
     """
 
-    def __init__(self) -> None:
-        self.response = 0.0
+    response = 0.0
 
     @property
     def level(self) -> float:

@@ -69,10 +69,8 @@ class Emergence:
         earlier: Iterable[tuple[float, Array]],
     ) -> None:  # fmt: skip
         self._centre, self._size, self._image_size = last.position, last.size, image_size
-        self._extent, self._speed = (
-            float(np.sqrt(last.size.prod())),
-            float(np.hypot(*motion.velocity)),
-        )
+        self._extent = float(np.sqrt(last.size.prod()))
+        self._speed = float(np.hypot(*motion.velocity))
         self.motion, self._age = motion, 0.0
         self._sides: list[Array] = []
         self._unlike: list[float] = []

@@ -56,10 +56,8 @@ class MsTracker(BaseTracker[MsParameters]):
     The paper finds that step needed in one of a thousand cases.
     """
 
-    def __init__(self, parameters: MsParameters) -> None:
-        super().__init__(parameters)
-        self._reference = Reference(np.zeros(0))
-        self._velocity = MeanVelocity(VELOCITY_WINDOW)
+    _reference: Reference
+    _velocity: MeanVelocity
 
     def _learn(self) -> None:
         bits = self.parameters.histogram_bits

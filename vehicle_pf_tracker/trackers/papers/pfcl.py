@@ -69,9 +69,7 @@ class PfclParameters(ColourParameters):
 class PfclTracker(ColourTracker[PfclParameters]):
     """The colour and line filter."""
 
-    def __init__(self, parameters: PfclParameters) -> None:
-        super().__init__(parameters)
-        self.line_reference: Array = np.zeros(1)
+    line_reference: Array
 
     def _learn(self) -> None:
         super()._learn()
