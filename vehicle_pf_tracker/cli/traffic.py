@@ -47,8 +47,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.parameters.configuration import Configuration
 
 PICTURE = "summary.png"
-HEAT = "heat.png"
-PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE, HEAT)
+PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,8 +56,8 @@ class Request(TrackingRequest):
 
     output: Path | None = option(
         "-o", metavar="DIR",
-        help="folder for tracks.csv, tracks.txt, counts.csv, run.json, summary.png and heat.png "
-        "(default: results/ and the source's name with _traffic)",
+        help="folder for tracks.csv, tracks.txt, counts.csv, run.json and summary.png (default: "
+        "results/ and the source's name with _traffic)",
     )  # fmt: skip
     detections: Path | None = option(
         help="detections as MOTChallenge has them, det.txt, instead of a detector",
@@ -144,12 +143,8 @@ def _follow(
         with suppress(StillAtWork):
             tracking.follow_all(frames, files, pictures, page, targets)
     ended = cut_short(stop, source, tracking.summary.frames)
-    if tracking.paths.ground is None:
-        for name in (PICTURE, HEAT):
-            (folder / name).unlink(missing_ok=True)
-    else:
-        tracking.paths.write(folder / PICTURE, tracking.counter)
-        tracking.heat.write(folder / HEAT, tracking.paths.ground)
+    (folder / PICTURE).unlink(missing_ok=True)  # an earlier run's, where this one has no frame
+    tracking.paths.write(folder / PICTURE, tracking.counter)
     return pictures, ended
 
 
