@@ -55,8 +55,6 @@ _GRID_ONLY = (
 class TrafficRequest(EvaluationRequest):
     """Request of the comparison on many vehicles."""
 
-    GROUP = "many vehicles"
-
     traffic: bool = switch(
         help="compare `traffic` with SORT, ByteTrack, OC-SORT and C-BIoU instead; REC are folders "
         "as MOTChallenge has them; see docs/traffic.md",
