@@ -30,7 +30,7 @@ from vehicle_pf_tracker.cli.requests import (
     positive,
     switch,
 )
-from vehicle_pf_tracker.cli.tracking_options import with_file
+from vehicle_pf_tracker.cli.tracking_options import configure
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines import MODELS, Baseline, unknown_baseline
 from vehicle_pf_tracker.evaluation.systems import BASELINE, System
@@ -76,20 +76,6 @@ def parameter_sets(
         else:
             everywhere.append(word)
     return everywhere, sets
-
-
-def configure(variant: Variant, files: Iterable[Path], assignments: Iterable[str]) -> Configuration:
-    """Put files, and then ``name=value`` words, over a variant's defaults.
-
-    Raises
-    ------
-    InputError
-        If a file, a name or a value does not fit.
-    """
-    configuration = Configuration.of(variant)
-    for file in files:
-        configuration = with_file(configuration, variant, file)
-    return configuration.updated(parse_assignments(settable(variant), assignments))
 
 
 def settable(variant: Variant) -> dict[str, ParameterSpec]:
@@ -214,8 +200,8 @@ def _variant_system(
     table, (files, assignments) = settable(variant), own
     words = [word for word in everywhere if word.partition("=")[0] in table] + assignments
     try:
-        configuration = configure(variant, files, words)
-        return make_system(variant, label, configuration, parse_assignments(table, words))
+        values = parse_assignments(table, words)
+        return make_system(variant, label, configure(variant, files, values), values)
     except InputError as error:
         if not label:
             raise

@@ -21,17 +21,15 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, VerbRequest, option
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
 from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
-from vehicle_pf_tracker.parameters.table import parse_assignments, specs, unknown_name
+from vehicle_pf_tracker.parameters.table import Value, parse_assignments, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
-
-if TYPE_CHECKING:
-    from vehicle_pf_tracker.parameters.configuration import Configuration
 
 EntryT = TypeVar("EntryT")
 
@@ -69,17 +67,27 @@ def chosen(variant: Variant, request: TrackingRequest) -> Configuration:
     InputError
         If the file cannot be used, or a name or a value does not fit.
     """
-    from vehicle_pf_tracker.parameters.configuration import Configuration
-
-    configuration = Configuration.of(variant)
-    if request.params is not None:
-        configuration = with_file(configuration, variant, request.params)
     # Those of the node alone would change nothing here, so they are refused as unknown.
-    table = {**specs(variant.parameters), **specs(type(configuration.session))}
-    configuration = configuration.updated(parse_assignments(table, request.assignments))
-    if request.seed is not None:
-        configuration = configuration.updated({"seed": request.seed})
-    return configuration
+    table = {**specs(variant.parameters), **specs(SessionParameters)}
+    values = parse_assignments(table, request.assignments)
+    seed = {} if request.seed is None else {"seed": request.seed}
+    return configure(variant, [request.params] if request.params else [], {**values, **seed})
+
+
+def configure(
+    variant: Variant, files: Iterable[Path], values: Mapping[str, Value]
+) -> Configuration:
+    """Put files, and then values by name, over a variant's defaults.
+
+    Raises
+    ------
+    InputError
+        If a file, a name or a value does not fit.
+    """
+    configuration = Configuration.of(variant)
+    for file in files:
+        configuration = with_file(configuration, variant, file)
+    return configuration.updated(values)
 
 
 def with_file(configuration: Configuration, variant: Variant, path: Path) -> Configuration:
