@@ -134,7 +134,7 @@ class TrafficRun(CountedVehicles):
                         self._note(f"{name!r} is outside the image, so that nothing counts there")
                 estimates = self.estimates
                 files.write(number, found.stamp_ns, estimates, crossings)
-                self.summary.add(estimates, self.counter.occupancy)
+                self.summary.add(estimates)
                 self.paths.add(found.frame, estimates)
                 elapsed = clock_words(found.stamp_ns - start_ns)
                 draw = partial(self.drawn, found.frame, f"{elapsed}  frame {number}  ")
