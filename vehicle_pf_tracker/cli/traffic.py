@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notice, tell_notices
-from vehicle_pf_tracker.cli.requests import option, switch
+from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, cut_short, numbered_part, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.errors import InputError
@@ -76,9 +76,6 @@ class Request(TrackingRequest):
         help="show picture and counts meanwhile on a page for this machine's browsers; without "
         "PORT at any free one",
     )  # fmt: skip
-    visible_only: bool = switch(
-        help="leave vehicles that are occluded, and so predicted, out of tracks.txt"
-    )
 
 
 def run(request: Request) -> int:
@@ -135,7 +132,7 @@ def _follow(
         stopping(stop),
         counting("tracked") as progress,
         closing(LivePage(port)) if port >= 0 else nullcontext() as page,
-        track_files(folder, counting=counts, visible_only=request.visible_only) as files,
+        track_files(folder, counting=counts) as files,
     ):
         first, frames = numbered_part(source, request.start, request.end, stop, progress)
         targets = by_name(request.given_targets(), first[0])

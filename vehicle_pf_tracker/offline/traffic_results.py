@@ -112,22 +112,14 @@ class TrackFiles:
         Files to write to.
     counts_file : text stream or None
         File for crossings; None where nothing is counted.
-    visible_only : bool
-        Leave occluded vehicles out of the MOTChallenge file.
     """
 
     def __init__(
-        self,
-        csv_file: TextIO,
-        mot_file: TextIO,
-        counts_file: TextIO | None = None,
-        *,
-        visible_only: bool = False,
+        self, csv_file: TextIO, mot_file: TextIO, counts_file: TextIO | None = None
     ) -> None:
         self._tracks = csv.writer(csv_file, lineterminator="\n")
         self._mot = mot_file
         self._counts = csv.writer(counts_file, lineterminator="\n") if counts_file else None
-        self._in_mot = IN_TRACKS - ({TrackMode.OCCLUDED} if visible_only else set())
         self._backdating = Backdating()
         self._tracks.writerow(TRACK_COLUMNS)
         if self._counts:
@@ -152,14 +144,12 @@ class TrackFiles:
     def _write(self, frames: Frames) -> None:
         for frame, stamp_ns, estimates in frames:
             self._tracks.writerows(_track_row(frame, stamp_ns, one) for one in estimates)
-            shown = (one for one in estimates if one.mode in self._in_mot)
+            shown = (one for one in estimates if one.mode in IN_TRACKS)
             self._mot.writelines(_MOT_ROW.format(*mot_numbers(frame, one)) for one in shown)
 
 
 @contextmanager
-def track_files(
-    folder: Path, *, counting: bool = False, visible_only: bool = False
-) -> Iterator[TrackFiles]:
+def track_files(folder: Path, *, counting: bool = False) -> Iterator[TrackFiles]:
     """Open the files of a run in `folder`; they appear under their names when all is written.
 
     Until then, and if anything goes wrong, those of an earlier run stay as they are.
@@ -177,7 +167,7 @@ def track_files(
                 opened.enter_context(partial.open("w", encoding="utf-8", newline="\n"))
                 for partial in partials
             ]
-            tracks = TrackFiles(*files, visible_only=visible_only)
+            tracks = TrackFiles(*files)
             yield tracks
             tracks.finish()
     if not counting:  # none of an earlier run beside the tracks of this one
