@@ -52,9 +52,16 @@ _GRID_ONLY = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrafficRequest(EvaluationRequest):
-    """Request of the comparison on many vehicles."""
+class Request(EvaluationRequest, ReportParts, TopicOption, IdOption, MaxDiffOption):
+    """Request of `evaluate`."""
 
+    shifted_starts: bool = switch(
+        help="also start on twelve boxes that are a little off, as OTB does; first seed only"
+    )
+    max_rmse: float | None = option(
+        metavar="PX",
+        help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
+    )  # fmt: skip
     traffic: bool = switch(
         help="compare `traffic` with SORT, ByteTrack, OC-SORT and C-BIoU instead; REC are folders "
         "as MOTChallenge has them; see docs/traffic.md",
@@ -65,7 +72,7 @@ class TrafficRequest(EvaluationRequest):
     )  # fmt: skip
 
 
-def check(request: TrafficRequest) -> None:
+def check(request: Request) -> None:
     """Refuse options that go with the grid only, or with this comparison only.
 
     Raises
@@ -81,7 +88,7 @@ def check(request: TrafficRequest) -> None:
             )
 
 
-def run_traffic(request: TrafficRequest) -> int:
+def run_traffic(request: Request) -> int:
     """Run the comparison, write its report, and print its tables."""
     from vehicle_pf_tracker.evaluation.traffic import comparison
     from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
@@ -118,19 +125,6 @@ def run_traffic(request: TrafficRequest) -> int:
 
 _SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "failures")
 """Metrics of the table on the terminal, few enough for its width."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Request(TrafficRequest, ReportParts, TopicOption, IdOption, MaxDiffOption):
-    """Request of `evaluate`."""
-
-    shifted_starts: bool = switch(
-        help="also start on twelve boxes that are a little off, as OTB does; first seed only"
-    )
-    max_rmse: float | None = option(
-        metavar="PX",
-        help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
-    )  # fmt: skip
 
 
 def run(request: Request) -> int:
