@@ -29,8 +29,7 @@ from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.recordings.footage import Footage
-    from vehicle_pf_tracker.recordings.reader import Recording
+    from vehicle_pf_tracker.recordings.source import Source
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -201,7 +200,7 @@ class SourceOptions(TopicOption):
         metavar="HZ", help="frame rate, instead of the one that SOURCE states"
     )
 
-    def open_source(self, **truth: Any) -> Recording | Footage:
+    def open_source(self, **truth: Any) -> Source:
         """Open the source, with the settings of its truth."""
         from vehicle_pf_tracker.recordings.source import open_source
 

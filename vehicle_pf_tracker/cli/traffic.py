@@ -21,7 +21,7 @@ from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notice, tell_notices
 from vehicle_pf_tracker.cli.requests import option
@@ -38,13 +38,11 @@ from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import RUN, describe
 from vehicle_pf_tracker.offline.traffic_following import TrafficRun
 from vehicle_pf_tracker.offline.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
+from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, NONE, TOPIC
-
-if TYPE_CHECKING:
-    from vehicle_pf_tracker.parameters.configuration import Configuration
 
 PICTURE = "summary.png"
 PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE)
