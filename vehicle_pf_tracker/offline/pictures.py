@@ -146,8 +146,8 @@ class ContactSheet:
             self._last = draw
         self._modes = modes
 
-    def write(self, path: Path) -> bool:
-        """Write the sheet; False where there was no frame.
+    def write(self, path: Path) -> None:
+        """Write the sheet, where there was a frame.
 
         Raises
         ------
@@ -156,7 +156,7 @@ class ContactSheet:
         """
         thumbs = [*self._kept, *([] if self._last is None else [_thumb(self._last())])]
         if not thumbs:
-            return False
+            return
         chosen = np.unique(np.linspace(0, len(thumbs) - 1, min(len(thumbs), _MOST)).round())
         shown = [thumbs[int(index)] for index in chosen]
         height, columns = max(thumb.shape[0] for thumb in shown), min(_COLUMNS, len(shown))
@@ -166,7 +166,6 @@ class ContactSheet:
             top, left = index // columns * height, index % columns * THUMB_WIDTH
             sheet[top : top + thumb.shape[0], left : left + THUMB_WIDTH] = thumb
         write_picture(path, sheet)
-        return True
 
 
 def _thumb(picture: Frame) -> Frame:
