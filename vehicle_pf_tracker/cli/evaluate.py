@@ -108,8 +108,7 @@ def run_traffic(request: Request) -> int:
         TrafficWorker(request.baselines_python) as worker,
         console.counting("compared") as progress,
     ):
-        run = comparison.compare(cases, worker, parameters, seeds, on_progress=progress)
-        results = list(run)
+        results = list(comparison.compare(cases, worker, parameters, seeds, on_progress=progress))
         options = {
             "command": list(request.command),
             "seeds": list(seeds),
@@ -158,7 +157,8 @@ def _judge(written: Report, limit: float | None) -> int:
     from vehicle_pf_tracker.evaluation.tables import overall_table, starts_table
 
     evaluation, aggregates = written.evaluation, written.aggregates
-    for system, reason in dict.fromkeys((cell.system, cell.reason) for cell in evaluation.failed):
+    failed = dict.fromkeys((cell.system, cell.reason) for cell in evaluation.failed)
+    for system, reason in failed:
         console.tell_notices([f"{system} did not run everywhere: {reason}"])
     if not evaluation.runs:
         console.tell_error("no system could run; the report says why")
@@ -166,14 +166,11 @@ def _judge(written: Report, limit: float | None) -> int:
     console.print_rows(*overall_table(aggregates, _SHOWN).texts())
     if starts := starts_table(aggregates):
         console.print_rows(*starts.texts(), "shifted starts")
-    status = 0
-    if failed := dict.fromkeys(cell.system for cell in evaluation.failed):
-        console.tell_error(f"not every run succeeded: {', '.join(failed)}; the report says why")
-        status = 1
+    if failed:
+        console.tell_error("not every run succeeded; the report says why")
     means = {label: found["rmse_px"] for label, found in aggregates.overall.items()}
     beyond = [f"{label} {found.mean:.1f} px" for label, found in means.items()
               if limit is not None and found is not None and found.mean > limit]  # fmt: skip
     if beyond:
         console.tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {', '.join(beyond)}")
-        status = 1
-    return status
+    return int(bool(failed or beyond))
