@@ -227,18 +227,18 @@ def by_name(targets: Iterable[TargetOption], first: int) -> dict[str, dict[int, 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """A point in a source: the number of a frame, or a time after the first one.
+    """A point in a source.
 
     Attributes
     ----------
-    frame : int or None
-        Number of the frame, from 1.
-    seconds : float or None
-        Time in s, by the stamps; given where `frame` is None.
+    value : float
+        Number of a frame, from 1, or time after the first one in s, by the stamps.
+    is_time : bool
+        True for a time.
     """
 
-    frame: int | None = None
-    seconds: float | None = None
+    value: float
+    is_time: bool
 
     @classmethod
     def parse(cls, text: str) -> Moment:
@@ -254,17 +254,14 @@ class Moment:
             raise InputError(
                 f"{text!r} is neither a frame (an integer >= 1) nor a time in seconds, as 4.3s"
             )
-        return cls(int(found[1])) if found[1] else cls(seconds=float(found[2]))
+        return cls(float(found[1] or found[2]), found[1] is None)
 
     def after(self, number: int, elapsed: float) -> float:
         """Return by how much the moment is later than frame `number`, `elapsed` s from the first.
 
         The result is negative where it is earlier, and its unit is the moment's own.
         """
-        if self.frame is not None:
-            return self.frame - number
-        assert self.seconds is not None
-        return round(self.seconds - elapsed, 9)  # a stamp's rounding
+        return round(self.value - (elapsed if self.is_time else number), 9)  # a stamp's rounding
 
 
 @dataclass(frozen=True, kw_only=True)
