@@ -88,13 +88,12 @@ def video_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[Wri
 def _h264(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
     import av  # noqa: PLC0415 - an extra
 
-    container: Any = av.open(str(path), "w")
-    exact = Fraction(rate).limit_denominator(1001)  # 30000/1001 is the oddest in use
-    stream = container.add_stream("libx264", rate=exact)
-    stream.codec_context.time_base = Fraction(1, _TICKS)
-    stream.width, stream.height = size
-    stream.pix_fmt, stream.options = "yuv420p", _QUALITY
-    try:
+    with av.open(str(path), "w") as container:
+        exact = Fraction(rate).limit_denominator(1001)  # 30000/1001 is the oddest in use
+        stream: Any = container.add_stream("libx264", rate=exact)
+        stream.codec_context.time_base = Fraction(1, _TICKS)
+        stream.width, stream.height = size
+        stream.pix_fmt, stream.options = "yuv420p", _QUALITY
 
         def write(frame: Frame, at: float) -> None:
             picture = av.VideoFrame.from_ndarray(frame, format="rgb24")
@@ -103,8 +102,6 @@ def _h264(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
 
         yield write
         container.mux(stream.encode())
-    finally:
-        container.close()
 
 
 def has_display() -> bool:
