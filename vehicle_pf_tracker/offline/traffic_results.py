@@ -162,14 +162,13 @@ def track_files(folder: Path, *, counting: bool = False) -> Iterator[TrackFiles]
     names = [TRACKS, MOT_TRACKS, COUNTS] if counting else [TRACKS, MOT_TRACKS]
     with ExitStack() as stack:
         partials = [stack.enter_context(replacing(folder / name)) for name in names]
-        with ExitStack() as opened:
-            files = [
-                opened.enter_context(partial.open("w", encoding="utf-8", newline="\n"))
-                for partial in partials
-            ]
-            tracks = TrackFiles(*files)
-            yield tracks
-            tracks.finish()
+        files = [
+            stack.enter_context(partial.open("w", encoding="utf-8", newline="\n"))
+            for partial in partials
+        ]
+        tracks = TrackFiles(*files)
+        yield tracks
+        tracks.finish()
     if not counting:  # none of an earlier run beside the tracks of this one
         with output_errors(folder / COUNTS):
             (folder / COUNTS).unlink(missing_ok=True)
