@@ -133,13 +133,8 @@ class TrafficSummary:
 
 
 def _direction(counter: Counter, place: str, direction: str) -> str:
-    classes = Tally(
-        {
-            label: count
-            for (at, to, label), count in counter.totals.items()
-            if (at, to) == (place, direction) and label
-        }
-    )
+    both, totals = [place, direction], counter.totals.items()
+    classes = Tally({label: count for (*at, label), count in totals if at == both and label})
     return f"{counter.count(place, direction)} {direction}{_listed(classes)}"
 
 
