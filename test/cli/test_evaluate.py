@@ -97,12 +97,6 @@ def test_parameter_sets_are_systems_of_their_own(bags, tmp_path, capsys):
     assert "ms is not run with mine" in told and "not run with sure" not in told
 
 
-def test_defaults_can_be_left_out(bags, tmp_path):
-    words = [bags / "one", *QUICK, "--set", "pf@narrow:sigma=2", "--without-defaults"]
-    assert evaluate(tmp_path / "out", *words) == 0
-    assert list(systems(tmp_path / "out")) == ["pf@narrow", "ms"]
-
-
 def test_shifted_first_boxes_are_run_and_shown(bags, tmp_path, capsys):
     words = [bags / "one", "--variants", "ms", "--shifted-starts"]
     assert evaluate(tmp_path / "out", *words) == 0

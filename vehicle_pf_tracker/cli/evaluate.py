@@ -45,8 +45,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.report.writing import Report
 
 _GRID_ONLY = (
-    "params", "without_defaults", "baseline_model", "max_rmse", "topic", "id",
-    "shifted_starts", "figures", "write",
+    "params", "baseline_model", "max_rmse", "topic", "id", "shifted_starts", "figures", "write",
 )  # fmt: skip
 """Options of the grid that do not apply."""
 

@@ -22,14 +22,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.requests import (
-    WorkersOption,
-    natural,
-    option,
-    positional,
-    positive,
-    switch,
-)
+from vehicle_pf_tracker.cli.requests import WorkersOption, natural, option, positional, positive
 from vehicle_pf_tracker.cli.tracking_options import configure
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines import MODELS, Baseline, unknown_baseline
@@ -118,7 +111,6 @@ class EvaluationRequest(WorkersOption):
         metavar="[[VARIANT@]LABEL:]NAME=VALUE",
         help="set a parameter: everywhere, or to make or complete the parameter set LABEL",
     )  # fmt: skip
-    without_defaults: bool = switch(help="leave out the defaults where there is a parameter set")
     baselines_python: Path | None = option(
         help="interpreter of the baselines (default: .venv-baselines/bin/python, else the one "
         "in your cache; without either, evaluate prints the command that builds it)",
@@ -151,9 +143,6 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
         if name not in known:
             raise InputError(unknown_name(name, known))
     systems, notes = _with_sets(variants, everywhere, sets)
-    if request.without_defaults:
-        having = {one.kind for one in systems if one.parameter_set}
-        systems = [one for one in systems if one.parameter_set or one.kind not in having]
     models = _models(request.baseline_model)
     baselines = [
         _baseline_system(word.removeprefix(BASELINE), request.baselines_python, models, notes)
