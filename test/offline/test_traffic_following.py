@@ -49,6 +49,7 @@ def driving(number):
 @pytest.fixture
 def follow():
     def call(stamps, *, unreadable=(), counter=None, targets=None, **options):
+        counter = counter or Counter(CountingPlan())
         run = TrafficRun(TrafficSession(TrafficTracker()), counter, **options)
         table, mot = io.StringIO(), io.StringIO()
         run.follow_all(

@@ -50,8 +50,8 @@ class TrafficRun(CountedVehicles):
     ----------
     session : TrafficSession
         Drives the tracker.
-    counter : Counter, optional
-        Counts at lines and in zones.
+    counter : Counter
+        Counts at lines and in zones, if there are any.
     detections_of : callable or None
         Gives the detections of a frame by its number, from 1; None leaves them to the session.
 
@@ -66,7 +66,7 @@ class TrafficRun(CountedVehicles):
     def __init__(
         self,
         session: TrafficSession,
-        counter: Counter | None = None,
+        counter: Counter,
         *,
         detections_of: Callable[[int], Detections] | None = None,
     ) -> None:
