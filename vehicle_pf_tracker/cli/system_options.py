@@ -46,7 +46,6 @@ _BASELINES_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not
 
 Set: TypeAlias = tuple[list[Path], list[str]]
 """Files and assignments of a set of parameters."""
-_NONE: Set = ([], [])
 
 
 def parameter_sets(
@@ -168,7 +167,7 @@ def _with_sets(
     found = [
         (label, _variant_system(variant, everywhere, label.rpartition("@")[2], own))
         for variant in variants
-        for label, own in {"": _NONE, **sets}.items()
+        for label, own in {"": ([], []), **sets}.items()
         if label.rpartition("@")[0] in {"", variant.name}
     ]
     notes = [(label, one) for label, one in found if isinstance(one, str)]
