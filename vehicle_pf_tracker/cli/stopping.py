@@ -69,11 +69,8 @@ def raising_terminated() -> Iterator[None]:
         raise Terminated(number)
 
     # Who has set a handler of their own, or ignores it as under nohup, keeps that.
-    unset = [
-        number
-        for number in (signal.SIGTERM, signal.SIGHUP)
-        if signal.getsignal(number) is signal.SIG_DFL
-    ]
+    ending = signal.SIGTERM, signal.SIGHUP
+    unset = [number for number in ending if signal.getsignal(number) is signal.SIG_DFL]
     with handled(unset, raise_terminated):
         yield
 

@@ -236,10 +236,9 @@ def _baseline_system(
     if name not in MODELS:
         raise unknown_baseline(name, MODELS)
     own = models.get(name, {})
-    files = {key: Path(path) for key, path in own.items()}
     build = ""
     try:
-        with Baseline(name, python, files) as baseline:
+        with Baseline(name, python, {key: Path(path) for key, path in own.items()}) as baseline:
             build = baseline.versions["opencv"]
     except InputError as error:
         notes.append(f"{BASELINE}{name} cannot run: {error}")
