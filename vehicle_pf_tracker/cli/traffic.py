@@ -153,21 +153,18 @@ def _document(
 ) -> dict[str, Any]:
     """Return the content of `run.json`; `topic` is that of the images."""
     kind = configuration.tracker.detector.kind
-    document = describe(
-        request.command,
-        request.source,
-        topic,
-        notices,
-        variant=TRAFFIC.name,
-        seed=tracking.session.tracker.seed,
-        parameters={**to_mapping(configuration.tracker), **to_mapping(configuration.session)},
-    )
+    facts = {
+        "variant": TRAFFIC.name,
+        "seed": tracking.session.tracker.seed,
+        "parameters": {**to_mapping(configuration.tracker), **to_mapping(configuration.session)},
+        "detector": str(request.detections or kind),
+        "images_with_detections": tracking.session.found.images,
+        "summary": tracking.summary.to_json(tracking.counter),
+    }
+    document = describe(request.command, request.source, topic, notices, **facts)
     if kind == MODEL:
         document["versions"]["onnxruntime"] = metadata.version("onnxruntime")
         document["model_sha256"] = model_file(configuration.tracker.detector.model)[1]
-    document["detector"] = str(request.detections or kind)
-    document["images_with_detections"] = tracking.session.found.images
-    document["summary"] = tracking.summary.to_json(tracking.counter)
     return document
 
 
