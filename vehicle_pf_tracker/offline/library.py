@@ -99,17 +99,9 @@ class Estimates(Sequence[EstimateRow]):
         write_estimates(Path(path), self.rows)
 
     def to_pandas(self) -> Any:
-        """Return the table as a data frame of pandas, with NaN where there is no estimate.
+        """Return the table as a data frame of pandas, with NaN where there is no estimate."""
+        from pandas import DataFrame  # noqa: PLC0415 - no dependency of ours
 
-        Raises
-        ------
-        InputError
-            If pandas is not installed.
-        """
-        try:
-            from pandas import DataFrame  # noqa: PLC0415 - no dependency of ours
-        except ImportError:
-            raise InputError("to_pandas needs pandas: pip install pandas") from None
         return DataFrame(map(asdict, self.rows))
 
     def show(self, number: int) -> ShownEstimate:
