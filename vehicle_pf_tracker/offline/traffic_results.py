@@ -25,7 +25,6 @@ from dataclasses import astuple, replace
 from pathlib import Path
 from typing import Any, TextIO
 
-from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.offline.output_files import replacing
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -170,8 +169,7 @@ def track_files(folder: Path, *, counting: bool = False) -> Iterator[TrackFiles]
         yield tracks
         tracks.finish()
     if not counting:  # none of an earlier run beside the tracks of this one
-        with output_errors(folder / COUNTS):
-            (folder / COUNTS).unlink(missing_ok=True)
+        (folder / COUNTS).unlink(missing_ok=True)
 
 
 def _track_row(frame: int, stamp_ns: int, one: TrackEstimate) -> list[Any]:
