@@ -93,8 +93,7 @@ def run(request: Request) -> int:
         tell_notices(notices)
         document = _document(request, configuration, tracking, source.image_topic, notices)
         write_json(folder / RUN, document)
-    detector = str(request.detections or configuration.tracker.detector.kind)
-    for sentence in tracking.sentences(detector):
+    for sentence in tracking.sentences(document["detector"]):
         print(sentence)
     print(f"results are in {folder}; {PICTURE} shows all paths")
     if request.video and not pictures.problem:
