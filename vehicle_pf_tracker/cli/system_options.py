@@ -33,7 +33,6 @@ from vehicle_pf_tracker.parameters.table import (
     Value,
     parse_assignments,
     specs,
-    to_mapping,
     unknown_name,
 )
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
@@ -214,7 +213,7 @@ def make_system(
             f"the parameters {parameter_set} set target.*; an evaluation starts on the first true "
             "box of each recording"
         )
-    values = {**to_mapping(configuration.tracker), **to_mapping(configuration.session)}
+    values = configuration.to_mapping()
     own = tuple((name, values[name]) for name in settable(variant))
     return System.of_variant(variant.name, own, parameter_set, tuple(overrides.items()))
 
