@@ -88,8 +88,7 @@ def run(request: Request) -> int:
     with claimed(outputs, inputs, overwrite=request.overwrite):
         tracking = _tracking(request, configuration, detections, stop)
         pictures, ended = _follow(request, tracking, source, make_folder(folder), stop)
-        notices = [*source.notices, *(detections.notices if detections is not None else [])]
-        notices += [*tracking.notices, *pictures.notices, *ended]
+        notices = [*source.notices, *tracking.notices, *pictures.notices, *ended]
         tell_notices(notices)
         document = _document(request, configuration, tracking, source.image_topic, notices)
         write_json(folder / RUN, document)
@@ -115,8 +114,7 @@ def _tracking(
     run_it = stop.leaving if parameters.detector.kind == MODEL else call
     if is_url(parameters.detector.model):
         tell_notice("fetching the network, unless it is in the cache")
-    parts = session_and_counter(configuration, run_it)
-    return TrafficRun(*parts, detections_of=detections.of if detections is not None else None)
+    return TrafficRun(*session_and_counter(configuration, run_it), detections)
 
 
 def _follow(
