@@ -79,14 +79,13 @@ class Request(TrackingRequest):
 def run(request: Request) -> int:
     """Follow all vehicles, write the results, and print a summary."""
     configuration = _configuration(request)
-    detections = DetectionFile(request.detections) if request.detections else None
     stop = Stop()
     source = request.open_source()
     folder = request.output or Path("results", f"{Path(request.source).stem or 'run'}_traffic")
     outputs = (Products(folder, PRODUCTS), request.video)
     inputs = (*request.inputs, request.detections, request.model, request.lines)
     with claimed(outputs, inputs, overwrite=request.overwrite):
-        tracking = _tracking(request, configuration, detections, stop)
+        tracking = _tracking(request, configuration, stop)
         pictures, ended = _follow(request, tracking, source, make_folder(folder), stop)
         notices = [*source.notices, *tracking.notices, *pictures.notices, *ended]
         tell_notices(notices)
@@ -100,9 +99,7 @@ def run(request: Request) -> int:
     return stop.ended(stop.status if ended else int(bool(pictures.problem)))
 
 
-def _tracking(
-    request: Request, configuration: Configuration, detections: DetectionFile | None, stop: Stop
-) -> TrafficRun:
+def _tracking(request: Request, configuration: Configuration, stop: Stop) -> TrafficRun:
     """Make the run, and check all that the options name before the first frame is read."""
     parameters = configuration.tracker
     if parameters.detector.kind == NONE and not (request.detections or request.given_targets()):
@@ -110,6 +107,7 @@ def _tracking(
             "without a detector nothing is followed; give vehicles with --target x,y,w,h, or "
             "--detections FILE"
         )
+    detections = DetectionFile(request.detections) if request.detections else None
     # A network that does not end after a signal is left, with what was tracked.
     run_it = stop.leaving if parameters.detector.kind == MODEL else call
     if is_url(parameters.detector.model):
