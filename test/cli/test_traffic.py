@@ -136,7 +136,7 @@ def table(path):
 def test_tracks_of_every_frame_are_written(run):
     out = run()
     assert {path.name for path in out.iterdir()} == {
-        "tracks.csv", "tracks.txt", "run.json", "summary.png",
+        "tracks.csv", "tracks.txt", "run.json", "summary.png", "heat.png",
     }  # fmt: skip
     rows = table(out / "tracks.csv")
     assert len(rows) == 2 * COUNT

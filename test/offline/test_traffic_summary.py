@@ -14,11 +14,14 @@
 
 """Summary and picture of a run over many vehicles."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.offline.traffic_drawing import PathPicture, identity_colour
+from vehicle_pf_tracker.offline import drawing
+from vehicle_pf_tracker.offline.traffic_drawing import HeatPicture, PathPicture, identity_colour
 from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
@@ -120,3 +123,25 @@ def test_frames_of_another_size_begin_the_picture_anew(tmp_path):
     drive(picture, width=320)
     picture.write(tmp_path / "paths.png", NOWHERE)
     assert cv2.imread(str(tmp_path / "paths.png")).shape == (480, 640, 3)
+
+
+def test_the_road_is_blue_where_vehicles_drove_and_red_where_they_stood(tmp_path, monkeypatch):
+    written = []
+    say = lambda _, words, *rest: written.append(words)  # noqa: E731
+    monkeypatch.setattr(drawing, "write_words", say)
+    heat, ground = HeatPicture(), np.full((240, 320, 3), 90, np.uint8)
+    heat.add(ground[:120], [estimate(9, "T", Box(0, 0, 300, 100))], 0, 0.04)
+    for index in range(50):
+        drives = replace(estimate(1, "T", Box(20 + 4 * index, 60, 20, 20)), velocity=(4.0, 0.0))
+        stands = replace(estimate(2, "O", Box(100, 150, 40, 40)), velocity=(0.1, 0.0))
+        away = [estimate(3, mode, Box(200, 200, 40, 30)) for mode in "tL"]
+        heat.add(ground, [drives, stands, *away], 10**12 + index * 80_000_000, 0.04)
+    heat.write(tmp_path / "heat.png", ground)
+    assert written[1] == "stood (red): at most 4.0 s"  # by the stamps
+    image = cv2.imread(str(tmp_path / "heat.png"))[:, :, ::-1].astype(int)
+    red, green, blue = image[78, 120]  # the lower part of the box
+    assert blue > green > red
+    red, _, blue = image[185, 120]
+    assert red > blue + 100
+    for row, column in ((62, 120), (155, 120), (225, 220), (5, 310)):
+        assert (image[row, column] == 90).all()  # upper parts, and those that are not there

@@ -45,7 +45,8 @@ from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, NONE, TOPIC
 
 PICTURE = "summary.png"
-PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE)
+HEAT = "heat.png"
+PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE, HEAT)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,8 +55,8 @@ class Request(TrackingRequest):
 
     output: Path | None = option(
         "-o", metavar="DIR",
-        help="folder for tracks.csv, tracks.txt, counts.csv, run.json and summary.png (default: "
-        "results/ and the source's name with _traffic)",
+        help="folder for tracks.csv, tracks.txt, counts.csv, run.json, summary.png and heat.png "
+        "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
     detections: Path | None = option(
         help="detections as MOTChallenge has them, det.txt, instead of a detector",
@@ -134,8 +135,12 @@ def _follow(
         with suppress(StillAtWork):
             tracking.follow_all(frames, files, pictures, page, targets)
     ended = cut_short(stop, source, tracking.summary.frames)
-    (folder / PICTURE).unlink(missing_ok=True)  # an earlier run's, where this one has no frame
-    tracking.paths.write(folder / PICTURE, tracking.counter)
+    if tracking.paths.ground is None:
+        for name in (PICTURE, HEAT):
+            (folder / name).unlink(missing_ok=True)
+    else:
+        tracking.paths.write(folder / PICTURE, tracking.counter)
+        tracking.heat.write(folder / HEAT, tracking.paths.ground)
     return pictures, ended
 
 

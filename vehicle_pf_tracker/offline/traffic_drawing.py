@@ -27,7 +27,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box, Position
-from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline import drawing
 from vehicle_pf_tracker.offline.drawing import Labels
 from vehicle_pf_tracker.offline.output_files import write_picture
@@ -142,6 +142,11 @@ class PathPicture:
     """Draws the path of every confirmed vehicle over the frame that shows the most of them.
 
     Paths are drawn as they grow: memory depends on the number of vehicles, not on the time.
+
+    Attributes
+    ----------
+    ground : Frame or None
+        The frame that shows the most vehicles; None before the first.
     """
 
     def __init__(self) -> None:
@@ -152,7 +157,7 @@ class PathPicture:
         self._size, self._scale = size, scale
         self._ends: dict[int, tuple[int, int]] = {}
         self._layer: Frame = np.zeros((size[0] * scale, size[1] * scale, 3), np.uint8)
-        self._ground: Frame | None = None
+        self.ground: Frame | None = None
         self._on_ground: list[TrackEstimate] = []
 
     def add(self, frame: Frame, estimates: Sequence[TrackEstimate]) -> None:
@@ -161,8 +166,8 @@ class PathPicture:
         if size != self._size:
             self._begin(size, max(1, round(_LEAST_WIDTH / frame.shape[1])))
         visible = [one for one in estimates if one.mode is TrackMode.TRACKING]
-        if self._ground is None or len(visible) > len(self._on_ground):
-            self._ground, self._on_ground = frame.copy(), visible
+        if self.ground is None or len(visible) > len(self._on_ground):
+            self.ground, self._on_ground = frame.copy(), visible
         for one in estimates:
             if one.mode in CONFIRMED:
                 (end,) = drawing.pixels_at(np.array([one.box.centre]) * self._scale)
@@ -179,11 +184,11 @@ class PathPicture:
         InputError
             If it cannot be written.
         """
-        if (ground := self._ground) is None:
+        if self.ground is None:
             return
         scale, (height, width) = self._scale, self._size
         size = width * scale, height * scale
-        picture = np.asarray(cv2.resize(ground, size, interpolation=cv2.INTER_CUBIC), np.uint8)
+        picture = np.asarray(cv2.resize(self.ground, size, interpolation=cv2.INTER_CUBIC), np.uint8)
         drawn = self._layer.any(axis=2)
         picture[drawn] = self._layer[drawn]
         labels: Labels = []
@@ -193,3 +198,63 @@ class PathPicture:
             draw_vehicle(picture, labels, replace(one, box=box))
         drawing.write_labels(picture, labels)
         write_picture(path, picture)
+
+
+_STANDING = 0.2
+"""Speed in widths per s below which a vehicle stands: a third of a metre per s, slower than anybody
+drives, and what the noise of a standing vehicle's box leaves of its speed."""
+_LONGEST_GAP = 1.0
+"""Longest time in s that a frame stands for; over a longer one nobody knows who was there."""
+_FOOTPRINT = 0.3
+"""Lower part of a box, as a share of its height, that is taken for the road below the vehicle."""
+_DROVE, _STOOD = (40, 160, 255), (255, 60, 30)
+_MOST_OPAQUE = 0.8
+"""Opacity of the place with the longest time, so that the road can be seen below it."""
+
+
+class HeatPicture:
+    """Shows where vehicles drove and where they stood, by the time that they were there."""
+
+    def __init__(self) -> None:
+        self._seconds = np.zeros((2, 0, 0), np.float32)
+        self._last_ns = 0
+
+    def add(
+        self, frame: Frame, estimates: Sequence[TrackEstimate], stamp_ns: int, period: float
+    ) -> None:
+        """Take the next frame and the nominal period in s; another size begins anew."""
+        gap, self._last_ns = (stamp_ns - self._last_ns) * 1e-9, stamp_ns
+        seconds = gap if 0 < gap < _LONGEST_GAP else period
+        if self._seconds.shape[1:] != frame.shape[:2]:
+            self._seconds = np.zeros((2, *frame.shape[:2]), np.float32)
+        width, height = frame_size(frame)
+        for one in estimates:
+            if one.mode in CONFIRMED:
+                box, speed = one.box, float(np.hypot(*one.velocity)) / period
+                (left, _), (right, bottom) = box.corners[0], box.corners[2]
+                edges = [left, bottom - _FOOTPRINT * box.height, right, bottom]
+                within = np.clip(np.round(edges), 0, [width, height] * 2)
+                left, top, right, bottom = within.astype(int).tolist()
+                stands = int(speed < _STANDING * box.width)
+                self._seconds[stands, top:bottom, left:right] += seconds
+
+    def write(self, path: Path, ground: Frame) -> None:
+        """Write the picture, over `ground` in grey.
+
+        Raises
+        ------
+        InputError
+            If it cannot be written.
+        """
+        grey = cv2.cvtColor(ground, cv2.COLOR_RGB2GRAY)
+        picture = np.repeat(grey[:, :, None], 3, axis=2).astype(np.float32)
+        for seconds, colour in zip(self._seconds, (_DROVE, _STOOD), strict=True):
+            # By the logarithm: a car that is parked for an hour leaves the others visible.
+            opacity = np.log1p(seconds) / max(np.log1p(seconds.max()), 1e-9) * _MOST_OPAQUE
+            picture += opacity[:, :, None] * (np.array(colour, np.float32) - picture)
+        drawn: Frame = picture.astype(np.uint8)
+        width = drawing.line_width(drawn)
+        for row, words in enumerate(("drove (blue)", "stood (red)"), start=1):
+            line = f"{words}: at most {self._seconds[row - 1].max():.1f} s"
+            drawing.write_words(drawn, line, (5 * width, 16 * width * row), drawing.NEUTRAL, width)
+        write_picture(path, drawn)

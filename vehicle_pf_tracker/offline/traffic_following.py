@@ -29,7 +29,7 @@ from vehicle_pf_tracker.offline.driver import unreached
 from vehicle_pf_tracker.offline.estimates import clock_words
 from vehicle_pf_tracker.offline.page_server import LivePage
 from vehicle_pf_tracker.offline.pictures import Numbered, Pictures
-from vehicle_pf_tracker.offline.traffic_drawing import PathPicture
+from vehicle_pf_tracker.offline.traffic_drawing import HeatPicture, PathPicture
 from vehicle_pf_tracker.offline.traffic_results import TrackFiles
 from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.recordings.reader import StampedFrame
@@ -61,6 +61,8 @@ class TrafficRun(CountedVehicles):
         Vehicles and occlusions.
     paths : PathPicture
         Picture of all paths.
+    heat : HeatPicture
+        Picture of where vehicles drove and stood.
     """
 
     def __init__(
@@ -69,6 +71,7 @@ class TrafficRun(CountedVehicles):
         super().__init__(session, counter)
         self.summary = TrafficSummary()
         self.paths = PathPicture()
+        self.heat = HeatPicture()
         self._notices = list(detections.notices) if detections is not None else []
         self._more_notices = 0
         self._last_events: list[str] = []
@@ -132,6 +135,8 @@ class TrafficRun(CountedVehicles):
                 files.write(number, found.stamp_ns, estimates, crossings)
                 self.summary.add(estimates)
                 self.paths.add(found.frame, estimates)
+                period = self.session.tracker.frame_period
+                self.heat.add(found.frame, estimates, found.stamp_ns, period)
                 elapsed = clock_words(found.stamp_ns - start_ns)
                 draw = partial(self.drawn, found.frame, f"{elapsed}  frame {number}  ")
                 take((), draw, found.frame, found.stamp_ns)
