@@ -29,6 +29,8 @@ if TYPE_CHECKING:  # `as` makes them names of this package for type checkers
     from vehicle_pf_tracker.offline.library import Estimates as Estimates
     from vehicle_pf_tracker.offline.library import track as track
     from vehicle_pf_tracker.offline.traffic_library import TrafficTracker as TrafficTracker
+    from vehicle_pf_tracker.offline.traffic_results import read_counts as read_counts
+    from vehicle_pf_tracker.offline.traffic_results import read_tracks as read_tracks
     from vehicle_pf_tracker.recordings.source import open_source as open_source
     from vehicle_pf_tracker.trackers.estimate import Estimate as Estimate
     from vehicle_pf_tracker.trackers.estimate import Mode as Mode
@@ -44,6 +46,8 @@ _HOMES = {
     "TrafficTracker": "offline.traffic_library",
     "make_tracker": "trackers.registry",
     "open_source": "recordings.source",
+    "read_counts": "offline.traffic_results",
+    "read_tracks": "offline.traffic_results",
     "track": "offline.library",
 }
 """Module of each public name."""

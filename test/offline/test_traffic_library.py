@@ -26,7 +26,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker import TrafficTracker
+from vehicle_pf_tracker import TrafficTracker, read_counts, read_tracks
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines import DEFAULT, VARIABLE
 from vehicle_pf_tracker.offline.pictures import video_writer
@@ -215,6 +215,11 @@ def test_a_folder_of_clips_gives_tables(program, clips):
     said = program("The tables of a run").splitlines()
     assert said[0].startswith("2 vehicles, the widest of ")
     assert said[1].split() == ["min", "max"]
+    rows = read_tracks(clips / "results" / "a")
+    assert rows.dtype["stamp_ns"] == rows.dtype["id"] == np.int64
+    assert np.isnan(rows.score[rows.mode == "OCCLUDED"]).all()
+    with pytest.raises(InputError, match=r"cannot read the table .*counts\.csv"):
+        read_counts(clips / "results" / "a")
 
 
 DETECT = """
