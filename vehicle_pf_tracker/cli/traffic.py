@@ -23,7 +23,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.cli.console import UsageError, counting, tell_notice, tell_notices
+from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, cut_short, numbered_part, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
@@ -31,7 +31,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.offline.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.offline.detectors import DetectionFile, call
-from vehicle_pf_tracker.offline.model_files import is_url, model_file
+from vehicle_pf_tracker.offline.model_files import model_file
 from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.page_server import LivePage
 from vehicle_pf_tracker.offline.pictures import Pictures
@@ -111,9 +111,8 @@ def _tracking(request: Request, configuration: Configuration, stop: Stop) -> Tra
     detections = DetectionFile(request.detections) if request.detections else None
     # A network that does not end after a signal is left, with what was tracked.
     run_it = stop.leaving if parameters.detector.kind == MODEL else call
-    if is_url(parameters.detector.model):
-        tell_notice("fetching the network, unless it is in the cache")
-    return TrafficRun(*session_and_counter(configuration, run_it), detections)
+    with shown_progress() as show:
+        return TrafficRun(*session_and_counter(configuration, run_it, show), detections)
 
 
 def _follow(

@@ -23,6 +23,7 @@ from pathlib import Path
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.offline.detectors import PacedDetector, Run, call, detector_maker
+from vehicle_pf_tracker.offline.model_files import Progress, silent
 from vehicle_pf_tracker.offline.traffic_drawing import Trails, annotated
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
@@ -112,7 +113,7 @@ class CountedVehicles:
 
 
 def session_and_counter(
-    configuration: Configuration, run: Run = call
+    configuration: Configuration, run: Run = call, progress: Progress = silent
 ) -> tuple[TrafficSession, Counter]:
     """Make what parameters of `TRAFFIC` ask for.
 
@@ -122,6 +123,8 @@ def session_and_counter(
         The parameters.
     run : callable
         Calls the network.
+    progress : Progress
+        Shows how a network is fetched.
 
     Raises
     ------
@@ -131,7 +134,7 @@ def session_and_counter(
     check_library()
     parameters, plane = configuration.tracker, configuration.session.road.fixed_plane()
     plan = read_counting_plan(Path(parameters.lines)) if parameters.lines else CountingPlan()
-    make, tracker = detector_maker(parameters.detector), TrafficTracker(parameters, plane)
+    make, tracker = detector_maker(parameters.detector, progress), TrafficTracker(parameters, plane)
     session = TrafficSession(
         tracker,
         (lambda: PacedDetector(make(), lambda: tracker.parameters.detector.every, run))

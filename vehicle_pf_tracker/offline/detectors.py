@@ -30,7 +30,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.offline.model_files import model_file
+from vehicle_pf_tracker.offline.model_files import Progress, model_file, silent
 from vehicle_pf_tracker.recordings.truth_formats import numbers_in, table_rows
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
@@ -40,7 +40,7 @@ from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, Detect
 from vehicle_pf_tracker.trackers.traffic.session import Detector
 
 
-def open_network(model: str) -> Network:
+def open_network(model: str, progress: Progress = silent) -> Network:
     """Load a network from its file or URL.
 
     Raises
@@ -55,7 +55,7 @@ def open_network(model: str) -> Network:
             "networks need ONNX Runtime: install the extra [video], "
             "pip install 'vehicle_pf_tracker[video]'"
         ) from None
-    path, _ = model_file(model)
+    path, _ = model_file(model, progress)
     options = runtime.SessionOptions()
     options.log_severity_level = 3  # errors: it warns of every unused weight
     try:
@@ -68,7 +68,9 @@ def open_network(model: str) -> Network:
     return network
 
 
-def detector_maker(parameters: DetectorParameters) -> Callable[[], Detector] | None:
+def detector_maker(
+    parameters: DetectorParameters, progress: Progress = silent
+) -> Callable[[], Detector] | None:
     """Return a function that makes the detector; None where there shall be none.
 
     Raises
@@ -80,7 +82,7 @@ def detector_maker(parameters: DetectorParameters) -> Callable[[], Detector] | N
         return MotionDetector
     if parameters.kind == MODEL:
         model = parameters.model
-        network = NetworkDetector(open_network(model), model, parameters)
+        network = NetworkDetector(open_network(model, progress), model, parameters)
         return lambda: network  # it keeps nothing between images
     return None
 

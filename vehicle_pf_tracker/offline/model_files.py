@@ -19,8 +19,10 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+from collections.abc import Callable, Iterator
 from http.client import HTTPException
 from pathlib import Path, PurePosixPath
+from typing import TypeAlias
 from urllib.error import HTTPError
 from urllib.parse import unquote, urldefrag, urlsplit
 from urllib.request import urlopen
@@ -30,10 +32,19 @@ from vehicle_pf_tracker.offline.output_files import make_folder, replacing
 
 _SECONDS = 30.0
 """Silence of a server after which it is given up: a slow one sends something meanwhile."""
+_CHUNK = 1 << 16
 _UNSAFE = re.compile(r"[^A-Za-z0-9._-]")
 
 
-def model_file(model: str) -> tuple[Path, str]:
+Progress: TypeAlias = Callable[[str, float | None], None]
+"""Takes words about a transfer, and its share done, None if unknown."""
+
+
+def silent(words: str, share: float | None) -> None:
+    """Show no progress."""
+
+
+def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
     """Return the file of a network, and its SHA-256.
 
     Parameters
@@ -41,6 +52,8 @@ def model_file(model: str) -> tuple[Path, str]:
     model : str
         A path; or a URL, whose file is fetched unless the cache has it. At its end may stand
         ``#sha256=`` with the sum that the file must have.
+    progress : Progress
+        Shows the transfer.
 
     Raises
     ------
@@ -56,11 +69,7 @@ def model_file(model: str) -> tuple[Path, str]:
         raise InputError(f"after # of a network's URL stands sha256= and 64 digits, not {demand!r}")
     path = cached(url)
     if not path.is_file():
-        content = _fetched(url)
-        _check(url, hashlib.sha256(content).hexdigest(), demand[7:], "it is not kept")
-        make_folder(path.parent)
-        with replacing(path) as partial:
-            partial.write_bytes(content)
+        _fetch(url, path, demand[7:], progress)
     found = _sum_of(path)
     _check(url, found, demand[7:], f"delete {path} to fetch it again")
     return path, found
@@ -91,10 +100,26 @@ def _check(url: str, found: str, demanded: str, remedy: str) -> None:
         raise InputError(f"the network {url} has the SHA-256 {found}, not {demanded}; {remedy}")
 
 
-def _fetched(url: str) -> bytes:
+def _fetch(url: str, path: Path, demanded: str, progress: Progress) -> None:
+    """Fetch a file, which is there when it is whole and has the sum demanded."""
+    make_folder(path.parent)
+    with replacing(path) as partial:
+        with partial.open("wb") as file:
+            for chunk, share in _chunks(url):
+                file.write(chunk)
+                progress(f"fetching {url}", share)
+        _check(url, _sum_of(partial), demanded, "it is not kept")
+
+
+def _chunks(url: str) -> Iterator[tuple[bytes, float | None]]:
+    """Yield the parts of a file, with the share of it that is there by then."""
+    done = 0
     try:
         with urlopen(url, timeout=_SECONDS) as answer:  # noqa: S310 - the scheme was checked
-            content: bytes = answer.read()
+            length = int(answer.headers.get("Content-Length") or 0)
+            while chunk := answer.read(_CHUNK):
+                done += len(chunk)
+                yield chunk, done / length if length else None
     except HTTPError as error:
         raise InputError(
             f"the network {url}: the server answers {error.code} {error.reason}"
@@ -105,4 +130,5 @@ def _fetched(url: str) -> bytes:
             f"the network {url} cannot be fetched: {reason}; without a network connection, name a "
             "file"
         ) from None
-    return content
+    if done < length or not done:
+        raise InputError(f"the network {url} broke off after {done} bytes; try again")
