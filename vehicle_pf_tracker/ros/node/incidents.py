@@ -12,17 +12,14 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Incidents of a node: its last seconds as a recording, its target kept, and steps that hang."""
+"""Incidents of a node: its last seconds as a recording, and its target kept."""
 
 from __future__ import annotations
 
 import json
 import os
-import sys
 import threading
 import time
-import traceback
-import weakref
 from collections import deque
 from collections.abc import Callable
 from importlib import import_module
@@ -174,56 +171,3 @@ class KeptTarget:
             return Box(*map(float, json.loads(self._path.read_text(encoding="utf-8"))))
         except (OSError, ValueError, TypeError):
             return None
-
-
-_LOOK_EVERY = 0.1
-"""Seconds between two looks at the step: a fifth of the least patience."""
-
-
-class Watchdog:
-    """Looks at the steps of the thread that makes it, from a thread of its own.
-
-    `faulthandler` would look without Python's lock: it has read frames while they changed, and
-    ended a node with a segmentation fault.
-
-    Parameters
-    ----------
-    say : callable
-        Takes the report; called in the watching thread.
-    """
-
-    def __init__(self, say: Callable[[str], object]) -> None:
-        self._say = say
-        self._watched = threading.get_ident()
-        self._deadline: tuple[float, float] | None = None
-        # It holds no reference to the watchdog between two looks, and so ends after it.
-        threading.Thread(target=_watch, args=[weakref.ref(self)], daemon=True).start()
-
-    def begin(self, patience: float) -> None:
-        """Begin a step that should take `patience` s at most."""
-        self._deadline = time.monotonic() + patience, patience
-
-    def end(self) -> None:
-        """End the step."""
-        self._deadline = None
-
-    def look(self) -> None:
-        """Report a step that takes longer, once."""
-        deadline = self._deadline
-        frame = sys._current_frames().get(self._watched)
-        # Compared last: a step that ended meanwhile is not reported with the next one's frames.
-        if deadline is None or frame is None or time.monotonic() < deadline[0]:
-            return
-        if self._deadline is deadline:
-            self._deadline = None
-            place = "".join(traceback.format_stack(frame))
-            self._say(f"an image takes longer than {deadline[1]:.1f} s; it is at\n{place}")
-
-
-def _watch(watchdog: weakref.ref[Watchdog]) -> None:
-    while True:
-        time.sleep(_LOOK_EVERY)
-        if (present := watchdog()) is None:
-            return
-        present.look()
-        del present

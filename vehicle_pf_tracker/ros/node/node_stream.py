@@ -20,7 +20,6 @@ import time
 import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import Any
 
 from rclpy.node import Node
@@ -36,13 +35,10 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.image_input import read_image
-from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder, KeptTarget, Watchdog
+from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder, KeptTarget
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
 
-_PATIENCE, _LEAST_PATIENCE = 10.0, 0.5
-"""Periods of the images, and s at least, after which a step is reported with where it was: by then
-images are lost, and a camera of 100 Hz is no reason to report a busy machine."""
 _PERIOD = 5.0
 """Interval between two lines of the same kind in the log, s."""
 
@@ -117,7 +113,6 @@ class NodeStream(ABC):
         own, name = configuration.node, str(node.get_name())
         memory = own.incident_memory * 10**6
         self.incidents = IncidentRecorder(name, memory) if memory else None
-        self._watchdog = Watchdog(partial(self.warnings.say, "slow"))
         self._kept = KeptTarget(node.get_fully_qualified_name()) if own.keep_target else None
         box = self._kept.load() if self._kept else None
         if box is not None:
@@ -146,11 +141,6 @@ class NodeStream(ABC):
     def judge(self) -> str:
         """Name what is not as usual, empty where all is; called once a second."""
         return ""
-
-    @property
-    @abstractmethod
-    def period(self) -> float:
-        """Nominal period of the images, s."""
 
     @abstractmethod
     def start_on(self, box: Box) -> None:
@@ -217,7 +207,6 @@ class NodeStream(ABC):
         header = message.header
         if self.incidents is not None:
             self.incidents.keep(message)
-        self._watchdog.begin(max(_PATIENCE * self.period, _LEAST_PATIENCE))
         try:
             image = read_image(message)
             self.feed(image, stamp_ns(header), extra)
@@ -230,8 +219,6 @@ class NodeStream(ABC):
             self.frame_id = header.frame_id
             self.answer(header, frame)
             self._keep_target()
-        finally:
-            self._watchdog.end()
 
     def _keep_target(self) -> None:
         """Save the target for a new start; a disk that is full costs no image its answer."""

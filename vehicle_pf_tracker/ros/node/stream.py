@@ -28,7 +28,6 @@ from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box, check_target
-from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
@@ -168,11 +167,6 @@ class Stream(NodeStream):
         """Box of the target while it is visible; None where there is none."""
         estimate = self.estimate
         return estimate.box if estimate and estimate.mode is Mode.TRACKING else None
-
-    @property
-    def period(self) -> float:
-        """Nominal period of the images, s."""
-        return self._session.tracker.frame_period if self._session else DEFAULT_PERIOD
 
     def start_on(self, box: Box) -> None:
         """Start on `box` with the next image, if it fits into that.

@@ -238,11 +238,6 @@ class TrafficStream(NodeStream):
         one = self.vehicles.selected
         return one.box if one is not None and one.mode is TrackMode.TRACKING else None
 
-    @property
-    def period(self) -> float:
-        """Nominal period of the images, s."""
-        return self.vehicles.session.tracker.frame_period
-
     def start_on(self, box: Box) -> None:
         """Follow and select the vehicle in `box` of the first image."""
         self.vehicles.select_first(box)
