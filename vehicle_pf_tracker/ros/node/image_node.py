@@ -97,9 +97,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
             given = self.overrides
             self.table = ParameterTable(self, defaults, given, self._check, self._reconfigure)
             self.diagnostics = Diagnostics(
-                self,
-                lambda: self.stream.facts if self.stream is not None else {},
-                lambda: self.stream.judge() if self.stream is not None else "",
+                self, lambda: self.stream.facts if self.stream is not None else {}
             )
             for loss in rclpy_internals.missing(self):
                 words = f"this release of rclpy is not one of those tried: {loss}"

@@ -138,10 +138,6 @@ class NodeStream(ABC):
     def followed(self) -> Box | None:
         """Box of the target while it is visible; None where there is none."""
 
-    def judge(self) -> str:
-        """Name what is not as usual, empty where all is; called once a second."""
-        return ""
-
     @abstractmethod
     def start_on(self, box: Box) -> None:
         """Start on `box` with the next image."""

@@ -42,11 +42,10 @@ from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import RELIABLE, Outputs, in_pixels
 from vehicle_pf_tracker.ros.traffic import messages
-from vehicle_pf_tracker.ros.traffic.rates import Rates
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
+from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
@@ -144,7 +143,6 @@ class TrafficStream(NodeStream):
         self._awaits_detections = configuration.tracker.detector.kind == TOPIC
         self._waiting: WaitingImages[Image | CompressedImage] = WaitingImages()
         self._began = 0.0
-        self._rates = Rates()
         self._detections: Detections | None = None
         self._events: list[str] = []
         self.tell_drawn_seed(self.vehicles.session.tracker.seed)
@@ -156,7 +154,11 @@ class TrafficStream(NodeStream):
     @property
     def facts(self) -> Mapping[str, object]:
         """Values for the node's report: seed, detector, vehicles."""
-        waiting = self._waiting
+        tracker, detector = self.vehicles.session.tracker, self.vehicles.session.detector
+        waiting, found = self._waiting, len(self._detections or ())
+        seconds = waiting.latency
+        if isinstance(detector, PacedDetector):
+            found, seconds = detector.found, detector.seconds
         detections = {
             "images with detections": waiting.matched,
             "images without detections": waiting.missed,
@@ -165,10 +167,12 @@ class TrafficStream(NodeStream):
         }
         return {
             "variant": TRAFFIC.name,
-            "seed": self.vehicles.session.tracker.seed,
+            "seed": tracker.seed,
             "detector": self._configuration.tracker.detector.kind,
             **self.vehicles.summary(),
-            **{name: round(value, 2) for name, value in self._rates.values.items()},
+            "detections of the last image": found,
+            "detector's latency (ms)": round(seconds * 1e3, 2),
+            "places with false alarms": tracker.cluttered_places,
             **(detections if self._awaits_detections else {}),
         }
 
@@ -299,7 +303,6 @@ class TrafficStream(NodeStream):
         if events:
             values["event"] = "; ".join(events)
         self.health.answered(mode, step_ms)
-        self._note_rates(estimates)
         self.publish_mode(header, mode, values)
 
     def _show(self, header: Header, frame: Frame) -> None:
@@ -308,18 +311,3 @@ class TrafficStream(NodeStream):
             self._outputs.publish_overlay(header, frame, self.vehicles)
         if self.page is not None:
             self.page.show(partial(self.vehicles.drawn, frame), self.vehicles.facts)
-
-    def judge(self) -> str:
-        """Name the rates that are not as usual; called once a second."""
-        return self._rates.judge()
-
-    def _note_rates(self, estimates: Sequence[TrackEstimate]) -> None:
-        detector, found, seconds = self.vehicles.session.detector, len(self._detections or ()), 0.0
-        if self._awaits_detections:
-            seconds = self._waiting.latency
-        elif isinstance(detector, PacedDetector):
-            found, seconds = detector.found, detector.seconds
-        known = [one.identity for one in estimates if one.mode in CONFIRMED]
-        visible = sum(one.mode is TrackMode.TRACKING for one in estimates)
-        cluttered = self.vehicles.session.tracker.cluttered_places
-        self._rates.note(known, found, visible, seconds, cluttered)
