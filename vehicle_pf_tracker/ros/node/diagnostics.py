@@ -186,11 +186,6 @@ class Diagnostics:
             self.source.close()
         self.source = None
 
-    def arrived(self, info: Mapping[str, Any], age: float) -> None:
-        """Count an image; see `Health.arrived`."""
-        if self.source is not None:
-            self.health.arrived(info, age, self.source.publisher_count)
-
     def publish(self) -> None:
         """Publish one report."""
         publishers = self.source.publisher_count if self.source else 0

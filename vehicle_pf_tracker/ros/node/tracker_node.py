@@ -70,7 +70,7 @@ class TrackerNode(ImageNode):
         """Make session, outputs and services."""
         configuration = self.table.configuration
         outputs = TrackerOutputs(self, image_topic(self, configuration.node.image_transport))
-        self._outputs = outputs
+        self.held.callback(outputs.close)
         health = self.diagnostics.begin()
         self.stream = Stream(self, self._variant, configuration, outputs, health, self._cameras)
         self._has_logged_ready = False

@@ -80,8 +80,10 @@ class TrafficNode(ImageNode):
         if is_url(configuration.tracker.detector.model):
             self.get_logger().info("fetching the network, unless it is in the cache")
         outputs = TrafficOutputs(self, image_topic(self, configuration.node.image_transport))
-        self._outputs = outputs
+        self.held.callback(outputs.close)
         self.stream = TrafficStream(self, configuration, outputs, self.diagnostics.begin())
+        if self.stream.page is not None:
+            self.held.callback(self.stream.page.close)
         self._look_timer = self.poll(_LOOK_EVERY, self._look)
         self._free_timer = self.poll(_FREE_AFTER, self._free)
         for timer in (self._look_timer, self._free_timer):
@@ -105,12 +107,6 @@ class TrafficNode(ImageNode):
         super().deactivate()
         if self.stream is not None:
             self.stream.drop_waiting()
-
-    def cleanup(self) -> None:
-        """Release all of it, the page too."""
-        if self.stream is not None and self.stream.page is not None:
-            self.stream.page.close()
-        super().cleanup()
 
     def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
         super()._on_image(message, info)
