@@ -98,9 +98,9 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
             self.diagnostics = Diagnostics(
                 self, lambda: self.stream.facts if self.stream is not None else {}
             )
-            for loss in rclpy_internals.missing(self):
-                words = f"this release of rclpy is not one of those tried: {loss}"
-                self.get_logger().warning(words)
+            if rclpy_internals.state_machine(self) is None:
+                words = "this release of rclpy was not tried: its state machine is hidden"
+                self.get_logger().warning(f"{words}; failed transitions are reported without why")
             self.warn_of(unknown_overrides(self, self.overrides, qos=False))
             if self.table.configuration.node.autostart:
                 self.start()
