@@ -94,13 +94,15 @@ def run_process(name: str, arguments: Sequence[str], serve: Callable[[list[str]]
         interrupts.left_to_ros = True
         return serve(remove_ros_args(list(arguments)))
     except InputError as error:
-        return _fail(name, str(error))
+        reason = str(error)
     except (RCLError, UnknownROSArgsError) as error:
         if interrupts.left_to_ros and not rclpy.ok():
             return 0  # a signal took the ground from under a call
-        return _fail(name, _first_sentence(error))
+        reason = _first_sentence(error)
     finally:
         rclpy.try_shutdown()
+    print(f"{name}: {reason}", file=sys.stderr)
+    return 1
 
 
 def answer_usage(name: str, words: Sequence[str], usage: str) -> int:
@@ -182,11 +184,6 @@ def _files_for_others(arguments: Sequence[str], nodes: Sequence[Node]) -> Iterat
                 refusals.append(str(error))
         if len(refusals) == len(nodes):
             yield refusals[0]
-
-
-def _fail(name: str, sentence: str) -> int:
-    print(f"{name}: {sentence}", file=sys.stderr)
-    return 1
 
 
 def _first_sentence(error: Exception) -> str:

@@ -20,7 +20,6 @@ import contextlib
 from dataclasses import dataclass
 from typing import Any
 
-from geometry_msgs.msg import TransformStamped
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
@@ -111,16 +110,13 @@ class CameraInputs:
 
     def _on_transforms(self, message: Any) -> None:
         for one in message.transforms:
-            self._put(one)
-
-    def _put(self, one: TransformStamped) -> None:
-        try:
             at, turn = one.transform.translation, one.transform.rotation
-            pose = Pose.of((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))
-        except InputError as error:
-            self._warn(f"a transform of {one.child_frame_id} is ignored: {error}")
-        else:
-            self.poses.put(one.header.frame_id, one.child_frame_id, pose)
+            try:
+                pose = Pose.of((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))
+            except InputError as error:
+                self._warn(f"a transform of {one.child_frame_id} is ignored: {error}")
+            else:
+                self.poses.put(one.header.frame_id, one.child_frame_id, pose)
 
     def _warn(self, words: str) -> None:
         self._node.get_logger().warning(words, throttle_duration_sec=_THROTTLE)

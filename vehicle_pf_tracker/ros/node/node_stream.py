@@ -267,7 +267,9 @@ class NodeStream(ABC):
 
     def decline(self, header: Header, error: InputError) -> None:
         """Answer an image that cannot be used."""
-        self._reject(header, str(error))
+        self.health.reject(str(error))
+        self.errors.say("rejected", f"image rejected: {error}")
+        self.answer_without_estimate(header, REJECTED, str(error))
 
     def answer_without_estimate(self, header: Header, mode: str, reason: str) -> None:
         """Publish a mode with its reason, and count it."""
@@ -279,17 +281,12 @@ class NodeStream(ABC):
         if self._configuration.tracker.seed < 0:
             self.log.info(f"drew the seed {seed}; set it to repeat this run")
 
-    def _reject(self, header: Header, reason: str) -> None:
-        self.health.reject(reason)
-        self.errors.say("rejected", f"image rejected: {reason}")
-        self.answer_without_estimate(header, REJECTED, reason)
-
     def _fail(self, header: Header, error: Exception) -> None:
         """Reject an image for an unexpected error, and raise it unless it concerns this image only.
 
         One image must not end a node that others rely on; a broken tracker must.
         """
         self.errors.say("error", traceback.format_exc())
-        self._reject(header, unexpected(error))
+        self.decline(header, InputError(unexpected(error)))
         if not isinstance(error, TrackerError) or error.persists:
             raise error
