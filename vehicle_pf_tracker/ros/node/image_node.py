@@ -125,9 +125,23 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         self.diagnostics.listen_to(source)
         return source
 
-    def listen(self, kind: Any, topic: str, callback: Callable[[Any], None]) -> None:
-        """Subscribe until the node is deactivated."""
-        self.inputs.append(self.create_subscription(kind, topic, callback, 10))
+    def listen(
+        self, kind: Any, topic: str, what: str, change: Callable[[Any, Any], object]
+    ) -> None:
+        """Subscribe until the node is deactivated, to requests for a change of `what`.
+
+        `change` takes a message and the stream; where it raises InputError, the reason is reported.
+        """
+
+        def take(message: Any) -> None:
+            if self.stream is None:
+                return
+            try:
+                change(message, self.stream)
+            except InputError as error:
+                self.stream.refuse(what, str(error))
+
+        self.inputs.append(self.create_subscription(kind, topic, take, 10))
 
     def serve(self, name: str, act: Callable[[], str]) -> None:
         """Offer a service until clean-up; `act` returns words for people, or raises InputError."""
@@ -140,15 +154,6 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
             return response
 
         self.held.callback(self.destroy_service, self.create_service(Trigger, name, respond))
-
-    def ask(self, what: str, change: Callable[[Any], object]) -> None:
-        """Ask the stream for a change; where it raises InputError, the reason is reported."""
-        if self.stream is None:
-            return
-        try:
-            change(self.stream)
-        except InputError as error:
-            self.stream.refuse(what, str(error))
 
     def poll(self, interval: float, callback: Callable[[], None]) -> Timer:
         """Call back every `interval` s until clean-up; of real time: simulated may stand still."""

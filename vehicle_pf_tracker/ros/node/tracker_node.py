@@ -17,7 +17,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from geometry_msgs.msg import PointStamped, PolygonStamped
@@ -102,7 +101,7 @@ class TrackerNode(ImageNode):
                 stream.check_frame_id(topic, message.header)
             stream.start_on(read(message))
 
-        self.listen(kind, topic, lambda message: self.ask("target", partial(start, message)))
+        self.listen(kind, topic, "target", start)
 
     def _box_at(self, message: PointStamped) -> Box:
         return messages.box_of_point(message, self.stream.box if self.stream is not None else None)

@@ -93,9 +93,9 @@ class TrafficNode(ImageNode):
     def activate(self) -> None:
         """Open the inputs."""
         source = self.open_images()
-        self.listen(RegionOfInterest, "~/add_target", self._on_region)
-        self.listen(PointStamped, "~/clicked_point", self._on_point)
-        self.listen(Int64, "~/select", self._on_select)
+        self.listen(RegionOfInterest, "~/add_target", "target", self._add)
+        self.listen(PointStamped, "~/clicked_point", "selection", self._choose_at)
+        self.listen(Int64, "~/select", "selection", self._choose)
         detector = self.table.configuration.tracker.detector.kind
         if detector == TOPIC:
             self._listen_to_detections()
@@ -146,29 +146,19 @@ class TrafficNode(ImageNode):
         elif self._look_timer.is_canceled():
             self._look_timer.reset()
 
-    def _on_region(self, message: RegionOfInterest) -> None:
+    def _add(self, message: RegionOfInterest, stream: TrafficStream) -> None:
         box = box_of_region(message)
+        identity = stream.vehicles.add(box)
+        if identity is not None:
+            self.get_logger().info(f"following {box} as {identity}")
 
-        def add(stream: TrafficStream) -> None:
-            identity = stream.vehicles.add(box)
-            if identity is not None:
-                self.get_logger().info(f"following {box} as {identity}")
+    def _choose_at(self, message: PointStamped, stream: TrafficStream) -> None:
+        stream.check_frame_id("~/clicked_point", message.header)
+        x, y = finite("~/clicked_point", message.point.x, message.point.y)
+        stream.vehicles.selection.choose_at((x, y), stream.vehicles.estimates)
 
-        self.ask("target", add)
-
-    def _on_point(self, message: PointStamped) -> None:
-        def choose(stream: TrafficStream) -> None:
-            stream.check_frame_id("~/clicked_point", message.header)
-            x, y = finite("~/clicked_point", message.point.x, message.point.y)
-            stream.vehicles.selection.choose_at((x, y), stream.vehicles.estimates)
-
-        self.ask("selection", choose)
-
-    def _on_select(self, message: Int64) -> None:
-        def choose(stream: TrafficStream) -> None:
-            stream.vehicles.selection.choose(message.data, stream.vehicles.estimates)
-
-        self.ask("selection", choose)
+    def _choose(self, message: Int64, stream: TrafficStream) -> None:
+        stream.vehicles.selection.choose(message.data, stream.vehicles.estimates)
 
     def _remove(self) -> str:
         assert self.stream is not None
