@@ -20,6 +20,7 @@ import contextlib
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
@@ -200,10 +201,8 @@ def lens_of_info(message: CameraInfo, *, rectified: bool) -> ImageLens:
     InputError
         If the camera is not calibrated, or its model is not known.
     """
-    matrix = message.p if rectified else message.k
-    fx, cx, fy, cy = (matrix[0], matrix[2], matrix[5], matrix[6]) if rectified else (
-        matrix[0], matrix[2], matrix[4], matrix[5]
-    )  # fmt: skip
+    rows = np.reshape(message.p if rectified else message.k, (3, -1)).tolist()
+    (fx, _, cx, *_), (_, fy, cy, *_) = rows[:2]
     if not (fx > 0 and fy > 0):
         raise InputError("camera_info has no calibration: its focal length is not above 0")
     across, down = max(message.binning_x, 1), max(message.binning_y, 1)
