@@ -36,7 +36,7 @@ from types import FrameType
 from typing import TypeVar
 
 import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
@@ -238,8 +238,6 @@ _FAILING = 10.0
 """This many failed callbacks within this many seconds mean a broken node, not malformed requests:
 it ends, so that ``respawn`` in a launch file can restart it."""
 
-_BROKEN = "a request could not be answered:"
-
 
 def run_nodes(
     name: str, makers: Sequence[Callable[[], Node]], arguments: Sequence[str], usage: str
@@ -279,26 +277,19 @@ def _spin(executor: SingleThreadedExecutor, node: Node) -> int:
     """Run callbacks until a signal comes; return 1 if they fail repeatedly."""
     failures: deque[float] = deque(maxlen=_MOST_FAILURES)
     while rclpy.ok():
-        if not _spin_once(executor, node):
+        try:
+            executor.spin_once()
+        except Exception:  # a malformed request, from which rclpy's own services are not safe
+            if not rclpy.ok():
+                break  # a signal took the ground from under a call
+            words = f"a request could not be answered: {traceback.format_exc()}"
+            node.get_logger().error(words, throttle_duration_sec=1.0)
             failures.append(time.monotonic())
-            if len(failures) == _MOST_FAILURES and failures[-1] - failures[0] < _FAILING:
-                words = f"{_MOST_FAILURES} callbacks failed within {_FAILING:g} s: ending"
-                node.get_logger().fatal(words)
-                return 1
+        if len(failures) == _MOST_FAILURES and failures[-1] - failures[0] < _FAILING:
+            words = f"{_MOST_FAILURES} callbacks failed within {_FAILING:g} s: ending"
+            node.get_logger().fatal(words)
+            return 1
     return 0
-
-
-def _spin_once(executor: SingleThreadedExecutor, node: Node) -> bool:
-    try:
-        executor.spin_once()
-    except ExternalShutdownException:
-        pass
-    except Exception:  # a malformed request, from which rclpy's own services are not safe
-        if rclpy.ok():
-            text = traceback.format_exc()
-            node.get_logger().error(f"{_BROKEN} {text}", throttle_duration_sec=1.0)
-            return False
-    return True
 
 
 def node_usage(name: str) -> str:

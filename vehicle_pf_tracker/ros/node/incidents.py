@@ -72,8 +72,7 @@ class IncidentRecorder:
         self, name: str, most_bytes: int, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self._name, self._most, self._clock = name, most_bytes, clock
-        self._kept: deque[tuple[float, int, type[Any], bytes]] = deque()
-        self._boxes: deque[tuple[int, Box]] = deque()
+        self._kept: deque[tuple[float, int, type[Any], bytes, Box | None]] = deque()
         self._bytes = 0
         self._writing: threading.Thread | None = None
 
@@ -82,20 +81,15 @@ class IncidentRecorder:
         """Number of messages that are kept."""
         return len(self._kept)
 
-    def keep(self, message: Image | CompressedImage | DiagnosticArray) -> None:
-        """Keep a message, and let go of old ones."""
+    def keep(
+        self, message: Image | CompressedImage | DiagnosticArray, box: Box | None = None
+    ) -> None:
+        """Keep a message, and let go of old ones; a run can start on the target's `box`."""
         now, data = self._clock(), serialize_message(message)
-        self._kept.append((now, stamp_ns(message.header), type(message), data))
+        self._kept.append((now, stamp_ns(message.header), type(message), data, box))
         self._bytes += len(data)
         while self._kept and (self._bytes > self._most or now - self._kept[0][0] > _LENGTH):
             self._bytes -= len(self._kept.popleft()[3])
-        first_ns = self._kept[0][1] if self._kept else 0
-        while self._boxes and self._boxes[0][0] < first_ns:
-            self._boxes.popleft()
-
-    def keep_box(self, stamp: int, box: Box) -> None:
-        """Keep where the target was, for a run to start on."""
-        self._boxes.append((stamp, box))
 
     def write(self, configuration: Configuration, tell: Callable[[str], object]) -> Path:
         """Begin to write a recording, with the parameters beside it, and return its folder.
@@ -118,8 +112,9 @@ class IncidentRecorder:
         with output_errors(ros_folder()):
             ros_folder().mkdir(parents=True, exist_ok=True)
         folder = ros_folder() / f"{self._name}_{time.strftime('%Y%m%d_%H%M%S')}"
-        messages = [(_TOPICS[kind], stamp, data) for _, stamp, kind, data in self._kept]
-        first, name = self._boxes[0] if self._boxes else None, self._name
+        messages = [(_TOPICS[kind], stamp, data) for _, stamp, kind, data, _ in self._kept]
+        name = self._name
+        first = next(((stamp, box) for _, stamp, _, _, box in self._kept if box is not None), None)
         text = to_yaml(configuration.specs(), configuration.to_mapping(), f"{name}'s.")
 
         def write() -> None:

@@ -230,9 +230,7 @@ class NodeStream(ABC):
         """Publish the one `~/mode` of an image; see `Outputs.publish_mode`."""
         answer = self._publish_mode(header, mode, values, level)
         if self.incidents is not None:
-            self.incidents.keep(answer)
-            if (box := self.followed) is not None:
-                self.incidents.keep_box(stamp_ns(header), box)
+            self.incidents.keep(answer, self.followed)
 
     def write_incident(self) -> str:
         """Begin to write the last seconds to a recording; return words about that.

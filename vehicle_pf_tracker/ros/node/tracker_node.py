@@ -72,7 +72,6 @@ class TrackerNode(ImageNode):
         self.held.callback(outputs.close)
         health = self.diagnostics.begin()
         self.stream = Stream(self, self._variant, configuration, outputs, health, self._cameras)
-        self._has_logged_ready = False
         self._ready_timer = self.poll(_POLL, self._await_kernels)
 
     def activate(self) -> None:

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
@@ -45,11 +45,9 @@ from vehicle_pf_tracker.ros.traffic import messages
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
-from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 _BY_PIXELS = "vehicles are followed by their pixels meanwhile"
 
@@ -79,23 +77,20 @@ class TrafficOutputs(Outputs):
         super().__init__(node, hardware_id, more)
 
     def publish_vehicles(
-        self, header: Header, there: Header, estimates: Sequence[TrackEstimate], period: float
+        self, header: Header, there: Header, vehicles: Vehicles, period: float
     ) -> None:
-        """Publish all vehicles, in px under the header `there`; `period` is that of frames, s."""
-        name = self.node_name
+        """Publish all vehicles, px under the header `there`, and what was counted.
+
+        The frame `period` is in s.
+        """
+        names, estimates = (self.node_name, self.hardware_id), vehicles.estimates
         self.send("tracks", messages.tracks_message, there, estimates, period)
-        self.send("modes", messages.modes_message, header, name, self.hardware_id, estimates)
+        self.send("modes", messages.modes_message, header, *names, estimates)
         self.send("detections", messages.detections_message, there, estimates)
         self.send("markers", messages.markers_message, there, estimates)
-
-    def publish_counts(
-        self, header: Header, counter: Counter, latest: Mapping[str, Crossing]
-    ) -> None:
-        """Publish what was counted, and the last crossing of each place."""
-        name = self.node_name
-        self.send(
-            "counts", messages.counts_message, header, name, self.hardware_id, counter, latest
-        )
+        if vehicles.counter.plan.is_counting:
+            counts = vehicles.counter, vehicles.latest
+            self.send("counts", messages.counts_message, header, *names, *counts)
 
     def publish_overlay(self, header: Header, frame: Frame, vehicles: Vehicles) -> None:
         """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
@@ -282,11 +277,8 @@ class TrafficStream(NodeStream):
         while vehicles.given:
             events += self.doubts(frame, vehicles.given.pop())
         period = vehicles.session.tracker.frame_period
-        estimates, selected = vehicles.estimates, vehicles.selected
-        there = in_pixels(header, own)
-        self._outputs.publish_vehicles(header, there, estimates, period)
-        if vehicles.counter.plan.is_counting:
-            self._outputs.publish_counts(header, vehicles.counter, vehicles.latest)
+        selected, there = vehicles.selected, in_pixels(header, own)
+        self._outputs.publish_vehicles(header, there, vehicles, period)
         if selected is not None:
             self._outputs.publish_vehicle(there, selected, own, period)
         self._show(header, frame)
