@@ -171,11 +171,6 @@ class TrafficStream(NodeStream):
             **(detections if self._awaits_detections else {}),
         }
 
-    @property
-    def is_waiting(self) -> bool:
-        """True while an image waits for its detections."""
-        return bool(self._waiting)
-
     def take(self, message: Image | CompressedImage) -> None:
         """Take an image, which is answered with exactly one `~/mode`, now or after its detector."""
         if not self._awaits_detections:

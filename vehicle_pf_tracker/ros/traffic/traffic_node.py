@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from geometry_msgs.msg import PointStamped
@@ -84,7 +83,7 @@ class TrafficNode(ImageNode):
         self.stream = TrafficStream(self, configuration, outputs, self.diagnostics.begin())
         if self.stream.page is not None:
             self.held.callback(self.stream.page.close)
-        self._look_timer = self.poll(_LOOK_EVERY, self._look)
+        self._look_timer = self.poll(_LOOK_EVERY, self.stream.go_on)
         self._free_timer = self.poll(_FREE_AFTER, self._free)
         for timer in (self._look_timer, self._free_timer):
             timer.cancel()
@@ -99,6 +98,7 @@ class TrafficNode(ImageNode):
         detector = self.table.configuration.tracker.detector.kind
         if detector == TOPIC:
             self._listen_to_detections()
+            self._look_timer.reset()
         self.warn_of_overrides()
         self.get_logger().info(f"ready: images on {source}, detections: {detector}")
 
@@ -106,12 +106,8 @@ class TrafficNode(ImageNode):
         """Close the inputs."""
         super().deactivate()
         if self.stream is not None:
+            self._look_timer.cancel()
             self.stream.drop_waiting()
-
-    def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
-        super()._on_image(message, info)
-        if self.stream is not None:
-            self._after_step(self.stream)
 
     def _listen_to_detections(self) -> None:
         # As many as images may wait: a detector may answer several at once.
@@ -125,7 +121,6 @@ class TrafficNode(ImageNode):
         if len(message) > LONGEST and self._free_timer.is_canceled():
             self._free_timer.reset()
         self.stream.take_detections(message)
-        self._after_step(self.stream)
 
     def _free(self) -> None:
         """Free what a flood took: Fast DDS keeps each of a reader's buffers at its longest."""
@@ -134,17 +129,6 @@ class TrafficNode(ImageNode):
             self.destroy_subscription(self.inputs.pop())
             self._listen_to_detections()
         return_memory()
-
-    def _look(self) -> None:
-        if self.stream is not None:
-            self.stream.go_on()
-            self._after_step(self.stream)
-
-    def _after_step(self, stream: TrafficStream) -> None:
-        if not stream.is_waiting:
-            self._look_timer.cancel()
-        elif self._look_timer.is_canceled():
-            self._look_timer.reset()
 
     def _add(self, message: RegionOfInterest, stream: TrafficStream) -> None:
         box = box_of_region(message)
