@@ -213,10 +213,8 @@ def keep_image_memory() -> bool:
         True if it was done: not where the C library has no such options, or where the environment
         already says what to do.
     """
-    if any(name in os.environ for name in _OPTIONS):
-        return False
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
-    if mallopt is None:
+    if mallopt is None or any(name in os.environ for name in _OPTIONS):
         return False
     taken = [mallopt(number, value) for number, value in _OPTIONS.values()]
     return all(taken)
