@@ -114,11 +114,16 @@ class Outputs:
             self.send("velocity", messages.velocity_message, header, estimate.velocity, period)
 
     def publish_mode(
-        self, header: Header, mode: str, values: Mapping[str, object], level: bytes | None = None
+        self, header: Header, mode: str, values: Mapping[str, object], level: bytes | None
     ) -> DiagnosticArray:
-        """Publish the one `~/mode` of an image; `level` is that of the mode unless it is higher."""
-        name = f"{self.node_name}: target"
-        message = messages.mode_message(header, name, self.hardware_id, mode, values, level)
+        """Publish the one `~/mode` of an image: of an estimate, `WAITING` or `REJECTED`.
+
+        Its values are the estimate's, or a reason; `level` is that of the mode unless it is higher.
+        """
+        name, least = f"{self.node_name}: target", messages.LEVELS[mode]
+        level, values = max(least, level or least), {"mode": mode, **values}
+        status = messages.status(level, name, mode, self.hardware_id, values)
+        message = DiagnosticArray(header=header, status=[status])
         self.send("mode", lambda: message)
         return message
 
