@@ -80,6 +80,9 @@ UNKNOWN_ANGLE = math.pi**2 / 3
 _DATATYPES = {"<u4": PointField.UINT32, "|u1": PointField.UINT8, "<f4": PointField.FLOAT32}
 _PARTICLE = np.dtype([(name, "<f4") for name in ("x", "y", "z", "weight")])
 
+Status = tuple[bytes, str, str, Mapping[str, object]]
+"""Level, subject, words and values of a status."""
+
 
 def stamp_ns(header: Header) -> int:
     """Stamp of a header in ns."""

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -73,16 +73,11 @@ class Outputs:
         Topic of the images, for the statuses.
     more : Topics
         Topics of this kind of node.
-
-    Attributes
-    ----------
-    node_name, hardware_id : str
-        Name of the node, and topic of its images.
     """
 
     def __init__(self, node: LifecycleNode, hardware_id: str, more: Topics) -> None:
         self._node = node
-        self.node_name, self.hardware_id = str(node.get_name()), hardware_id
+        self._hardware_id = hardware_id
         self._publishers = {
             name: node.create_lifecycle_publisher(kind, f"~/{name}", qos)
             for name, (kind, qos) in {**more, **_COMMON}.items()
@@ -120,12 +115,20 @@ class Outputs:
 
         Its values are the estimate's, or a reason; `level` is that of the mode unless it is higher.
         """
-        name, least = f"{self.node_name}: target", messages.LEVELS[mode]
-        level, values = max(least, level or least), {"mode": mode, **values}
-        status = messages.status(level, name, mode, self.hardware_id, values)
-        message = DiagnosticArray(header=header, status=[status])
+        least = messages.LEVELS[mode]
+        one = max(least, level or least), "target", mode, {"mode": mode, **values}
+        message = self.statuses(header, [one])
         self.send("mode", lambda: message)
         return message
+
+    def statuses(self, header: Header, found: Iterable[messages.Status]) -> DiagnosticArray:
+        """Make statuses of this node."""
+        name, topic = self._node.get_name(), self._hardware_id
+        made = [
+            messages.status(level, f"{name}: {subject}", words, topic, values)
+            for level, subject, words, values in found
+        ]
+        return DiagnosticArray(header=header, status=made)
 
 
 def in_frame(header: Header, frame_id: str) -> Header:

@@ -144,7 +144,7 @@ class Player:
         on_progress: Callable[[int, float | None], None],
         tell: Callable[[str], None],
     ) -> None:
-        self._frames = self._messages = 0
+        self._frames = 0
         self._node, self._spinner = node, spinner
         self._recording, self._options = recording, options
         self._on_progress, self._tell = on_progress, tell
@@ -178,7 +178,6 @@ class Player:
         notices = (f"skipped {len(skipped)} messages; the first, {skipped[0]}",) if skipped else ()
         return ReplayReport(
             frames=self._frames,
-            messages=self._messages,
             seconds=time.monotonic() - began,
             nodes=tuple(link.report() for link in self._links),
             notices=notices,
@@ -271,7 +270,6 @@ class Player:
         except InputError as error:
             self._skipped.append(f"of {message.topic} at {message.log_time_ns} ns: {error}")
             return False
-        self._messages += 1
         return True
 
     def _follow(self, message: RecordedMessage) -> None:

@@ -112,8 +112,6 @@ class ReplayReport:
     ----------
     frames : int
         Images published, in all passes of a loop.
-    messages : int
-        Messages published, the images among them.
     seconds : float
         Time from the first message to the last answer.
     nodes : tuple of NodeReport
@@ -125,7 +123,6 @@ class ReplayReport:
     """
 
     frames: int
-    messages: int
     seconds: float
     nodes: tuple[NodeReport, ...]
     notices: tuple[str, ...] = ()

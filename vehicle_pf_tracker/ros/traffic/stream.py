@@ -83,14 +83,14 @@ class TrafficOutputs(Outputs):
 
         The frame `period` is in s.
         """
-        names, estimates = (self.node_name, self.hardware_id), vehicles.estimates
+        estimates = vehicles.estimates
         self.send("tracks", messages.tracks_message, there, estimates, period)
-        self.send("modes", messages.modes_message, header, *names, estimates)
+        self.send("modes", self.statuses, header, messages.mode_statuses(estimates))
         self.send("detections", messages.detections_message, there, estimates)
         self.send("markers", messages.markers_message, there, estimates)
         if vehicles.counter.plan.is_counting:
-            counts = vehicles.counter, vehicles.latest
-            self.send("counts", messages.counts_message, header, *names, *counts)
+            counts = messages.count_statuses(vehicles.counter, vehicles.latest)
+            self.send("counts", self.statuses, header, counts)
 
     def publish_overlay(self, header: Header, frame: Frame, vehicles: Vehicles) -> None:
         """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
