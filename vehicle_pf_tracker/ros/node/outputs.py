@@ -77,7 +77,7 @@ class Outputs:
 
     def __init__(self, node: LifecycleNode, hardware_id: str, more: Topics) -> None:
         self._node = node
-        self._hardware_id = hardware_id
+        self._name, self._hardware_id = str(node.get_name()), hardware_id
         self._publishers = {
             name: node.create_lifecycle_publisher(kind, f"~/{name}", qos)
             for name, (kind, qos) in {**more, **_COMMON}.items()
@@ -123,7 +123,7 @@ class Outputs:
 
     def statuses(self, header: Header, found: Iterable[messages.Status]) -> DiagnosticArray:
         """Make statuses of this node."""
-        name, topic = self._node.get_name(), self._hardware_id
+        name, topic = self._name, self._hardware_id
         made = [
             messages.status(level, f"{name}: {subject}", words, topic, values)
             for level, subject, words, values in found
