@@ -101,7 +101,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
             if rclpy_internals.state_machine(self) is None:
                 words = "this release of rclpy was not tried: its state machine is hidden"
                 self.get_logger().warning(f"{words}; failed transitions are reported without why")
-            self.warn_of(unknown_overrides(self, self.overrides, qos=False))
+            self.warn_of_overrides(qos=False)
             if self.table.configuration.node.autostart:
                 self.start()
         except InputError:
@@ -202,13 +202,9 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         self.diagnostics.health.arrived(info, age * 1e-9, source.publisher_count)
         self.stream.take(image)
 
-    def warn_of_overrides(self) -> None:
-        """Warn of QoS overrides of topics that the node has not, once all are open."""
-        self.warn_of(unknown_overrides(self, self.overrides, qos=True))
-
-    def warn_of(self, sentences: list[str]) -> None:
-        """Log what is ignored, a line each."""
-        for sentence in sentences:
+    def warn_of_overrides(self, *, qos: bool) -> None:
+        """Log the overrides that are ignored, a line each: of QoS, once all topics are open."""
+        for sentence in unknown_overrides(self, self.overrides, qos=qos):
             self.get_logger().warning(f"ignored: {sentence}")
 
     def start(self) -> None:

@@ -77,7 +77,7 @@ class TrackerNode(ImageNode):
     def activate(self) -> None:
         """Open the inputs."""
         self.open_images()
-        self.warn_of_overrides()
+        self.warn_of_overrides(qos=True)
         self._cameras.open(self.table.configuration.session.road)
         self._take_target("~/set_target", RegionOfInterest, messages.box_of_region)
         self._take_target("~/set_box", PolygonStamped, messages.box_of_polygon)

@@ -99,7 +99,7 @@ class TrafficNode(ImageNode):
         if detector == TOPIC:
             self._listen_to_detections()
             self._look_timer.reset()
-        self.warn_of_overrides()
+        self.warn_of_overrides(qos=True)
         self.get_logger().info(f"ready: images on {source}, detections: {detector}")
 
     def deactivate(self) -> None:
