@@ -68,7 +68,6 @@ class CameraInputs:
         self._node = node
         self.lens: ImageLens | None = None
         self.poses = PoseTree()
-        self._info: CameraInfo | None = None
         self._asked: tuple[bool, bool, bool] | None = None
         self._subscriptions: list[Subscription] = []
 
@@ -97,13 +96,9 @@ class CameraInputs:
         """Destroy the subscriptions."""
         while self._subscriptions:
             self._node.destroy_subscription(self._subscriptions.pop())
-        self._asked = self._info = self.lens = None
+        self._asked = self.lens = None
 
     def _on_info(self, message: CameraInfo) -> None:
-        message.header.stamp.sec = message.header.stamp.nanosec = 0
-        if message == self._info:
-            return
-        self._info = message
         try:
             self.lens = lens_of_info(message, rectified=self._rectified)
         except InputError as error:
@@ -139,13 +134,11 @@ class StreamLocalisation(Localisation):
     def __init__(self, variant: str, parameters: RoadParameters, cameras: CameraInputs) -> None:
         super().__init__(variant, parameters)
         self._cameras = cameras
-        self._taken: ImageLens | None = None
 
     def locate(self, estimate: Estimate, header: Header, frame: Frame, period: float) -> None:
         """Take the estimate of the image `frame`, with the nominal frame period in s."""
         parameters, lens = self.parameters, self._cameras.lens
-        if lens is not None and lens is not self._taken:
-            self._taken = lens
+        if lens is not None:
             self.set_lens(lens.lens)
         if parameters.from_tf:
             with contextlib.suppress(InputError):  # TF does not have it yet
