@@ -28,7 +28,6 @@ from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box, check_target
-from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
@@ -169,11 +168,6 @@ class Stream(NodeStream):
         estimate = self.estimate
         return estimate.box if estimate and estimate.mode is Mode.TRACKING else None
 
-    @property
-    def period(self) -> float:
-        """Nominal period of the images, s."""
-        return self._session.tracker.frame_period if self._session else DEFAULT_PERIOD
-
     def start_on(self, box: Box) -> None:
         """Start on `box` with the next image, if it fits into that.
 
@@ -234,49 +228,46 @@ class Stream(NodeStream):
         """Publish the estimate of the last image, and its mode."""
         session, estimate = self._session, self.estimate
         assert session is not None
-        if session.refusal:
-            self.health.refuse_target(session.refusal)
-        events, level = self._events(session), None
+        own, mode, words = self._configuration.node, WAITING, ""
+        values: dict[str, object] = {}
+        sentences, level = self._report(session), None
         if estimate is None and self._target_problem:
-            events["reason"] = self._target_problem
-        mode = estimate.mode.value if estimate is not None else WAITING
-        own, words = self._configuration.node, ""
+            values["reason"] = self._target_problem
         if estimate is not None:
             self._target_problem = ""
-            period = session.tracker.frame_period
+            mode, period = estimate.mode.value, session.tracker.frame_period
             self.localisation.locate(estimate, header, frame, period)
             self._outputs.publish_estimate(header, estimate, own, self.localisation, period)
             words = self.localisation.words
             self.health.road = self.localisation.values
-            events |= self.health.road
-            level = self._doubt(header, frame, estimate, events)
+            sentences += self._doubts(header, frame, estimate)
+            level = DiagnosticStatus.WARN if self._stillness.is_suspect else None
+            values = {**estimate.scalars(), **self.health.road, "moved": self._stillness.moved}
         if own.publish.overlay:
             self._outputs.publish_overlay(header, frame, mode, estimate, words)
         self.health.answered(mode, estimate.duration * 1e3 if estimate else None)
-        scalars = estimate.scalars() if estimate else {}
-        self.publish_mode(header, mode, {**scalars, **events}, level)
+        if sentences:
+            values["event"] = "; ".join(sentences)
+        self.publish_mode(header, mode, values, level)
 
-    def _doubt(
-        self, header: Header, frame: Frame, estimate: Estimate, events: dict[str, object]
-    ) -> bytes | None:
-        """Ask what speaks against the target; return the level where that is a warning."""
-        still, words = self._stillness, []
+    def _doubts(self, header: Header, frame: Frame, estimate: Estimate) -> list[str]:
+        """Log what speaks against the target, and return it, a sentence each."""
+        still, sentences = self._stillness, []
         if estimate.regime == START:
             still.begin(estimate.box, stamp_ns(header))
-            words = self.doubts(frame, estimate.box)
-        words += still.look(frame, estimate.box, stamp_ns(header))
-        events["moved"] = still.moved
-        for sentence in words:
+            sentences = self.doubts(frame, estimate.box)
+        sentences += still.look(frame, estimate.box, stamp_ns(header))
+        for sentence in sentences:
             self.log.warning(sentence)
-        if words:
-            events["event"] = "; ".join([*map(str, filter(None, [events.get("event")])), *words])
-        return DiagnosticStatus.WARN if still.is_suspect else None
+        return sentences
 
-    def _events(self, session: Session) -> dict[str, object]:
-        words = "; ".join(session.events)
-        if not words:
-            return {}
+    def _report(self, session: Session) -> list[str]:
+        """Log what the session says of the last image, and return it, a sentence each."""
+        if session.refusal:
+            self.health.refuse_target(session.refusal)
         if session.recovered:
             self.note_restart()
-        (self.errors if session.recovered else self.warnings).say("event", words)
-        return {"event": words}
+        if session.events:
+            log = self.errors if session.recovered else self.warnings
+            log.say("event", "; ".join(session.events))
+        return [*session.events]
