@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 _GRID_ONLY = (
     "params", "without_defaults", "baseline_model", "max_rmse", "topic", "id",
-    "shifted_starts", "figures", "write",
+    "shifted_starts", "figures",
 )  # fmt: skip
 """Options of the grid that do not apply."""
 

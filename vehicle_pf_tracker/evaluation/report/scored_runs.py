@@ -28,7 +28,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source
 from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
-from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
+from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.systems import System
 
 _DECIDING = ("vehicle_pf_tracker", "opencv", "numpy")
@@ -47,8 +47,6 @@ class ScoredRun:
         Metrics of the run.
     errors : (N,) array
         Error of the centre in px by frame of the recording; NaN where nothing is scored.
-    frames : sequence of FrameScore
-        Estimate and truth by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
     versions : mapping of str to str or None
@@ -61,7 +59,6 @@ class ScoredRun:
     start: str
     metrics: Metrics
     errors: NDArray[np.float64]
-    frames: Sequence[FrameScore]
     curves: Mapping[str, Curve]
     versions: Mapping[str, str | None]
 
@@ -183,7 +180,6 @@ def _result(
         *key,
         metrics=measure(scores),
         errors=np.array(errors, dtype=np.float64),  # None is NaN
-        frames=scores.frames,
         curves=curves(scores.counted),
         versions=cell.run.get("versions", {}),
     )

@@ -12,29 +12,23 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The files of a report: its page, tables, figures and exports."""
+"""The files of a report: its page, tables and figures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, astuple
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation import tables
 from vehicle_pf_tracker.evaluation.columns import COLUMNS, NO_VALUE, PAPER
-from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, safe_name
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, aggregate
 from vehicle_pf_tracker.evaluation.report.figures import write_figures
 from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
-from vehicle_pf_tracker.evaluation.report.scored_runs import (
-    ScoredEvaluation,
-    ScoredRun,
-    score_folder,
-)
-from vehicle_pf_tracker.offline.output_files import csv_text, make_folder, write_json, write_text
-from vehicle_pf_tracker.trackers.estimate import Mode
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, score_folder
+from vehicle_pf_tracker.offline.output_files import csv_text, write_json, write_text
 
 ALL_RECORDINGS = "(all)"
 """Stands for the name of a recording where values are means over all of them."""
@@ -134,7 +128,6 @@ def write_report(
     folder: Path,
     *,
     figures: Sequence[str] = (),
-    toolkits: Sequence[str] = (),
     on_stage: Callable[[str], object] = lambda _: None,
 ) -> Report:
     """Write the report of the evaluation in `folder` there.
@@ -147,8 +140,6 @@ def write_report(
         Folder of an evaluation.
     figures : sequence of str
         Formats of the figures in ``figures/``: ``pdf``, ``svg`` and ``png``.
-    toolkits : sequence of str
-        Formats of the runs in ``results/``: ``otb``, ``vot`` and ``mot``.
     on_stage : callable
         Called with a few words when a part is begun.
 
@@ -175,58 +166,4 @@ def write_report(
     if figures:
         on_stage("drawing the figures")
         written += write_figures(evaluation, aggregates, styled(aggregates), figures)
-    written += write_toolkits(evaluation, toolkits)
     return Report(written, evaluation, aggregates)
-
-
-def write_toolkits(evaluation: ScoredEvaluation, toolkits: Sequence[str]) -> list[Path]:
-    """Write every run from the true box in the formats `toolkits`, and return the files.
-
-    Raises
-    ------
-    InputError
-        If one cannot be written.
-    """
-    written = []
-    for run in evaluation.runs:
-        system, name = safe_name(run.system), run.recording
-        files = {
-            "otb": (f"{system}/{name}_{run.seed}.txt", _otb),
-            "vot": (f"{system}/unsupervised/{name}/{name}_{run.seed + 1:03d}.txt", _vot),
-            "mot": (f"{system}_seed-{run.seed}/data/{name}.txt", _mot),
-        }
-        for toolkit in toolkits:
-            place, lines = files[toolkit]
-            path = evaluation.folder.path / "results" / toolkit / place
-            make_folder(path.parent)
-            write_text(path, "".join(f"{line}\n" for line in lines(run)))
-            written.append(path)
-    return written
-
-
-def _otb(run: ScoredRun) -> Iterator[str]:
-    """Give the scored box of each frame; NaN before the start."""
-    for frame in run.frames:
-        box = None if frame.waiting or frame.scored_row is None else frame.scored_row.box
-        yield "nan,nan,nan,nan" if box is None else _numbers(box)
-
-
-def _vot(run: ScoredRun) -> Iterator[str]:
-    """Give the scored box of each frame, with VOT's 0 (unknown) before and 1 in the first one."""
-    started = False
-    for line in _otb(run):
-        known = not line.startswith("nan")
-        yield line if known and started else "1" if known else "0"
-        started = started or known
-
-
-def _mot(run: ScoredRun) -> Iterator[str]:
-    """Give the boxes that the system reports, as the track 1; none where it is lost."""
-    for row in (frame.row for frame in run.frames):
-        if row.box is not None and row.mode != Mode.LOST.value:
-            confidence = 1.0 if row.confidence is None else row.confidence
-            yield f"{row.frame},1,{_numbers(row.box)},{confidence:.4f},-1,-1,-1"
-
-
-def _numbers(box: Box) -> str:
-    return ",".join(f"{value:.3f}" for value in astuple(box))
