@@ -103,13 +103,6 @@ def test_defaults_can_be_left_out(bags, tmp_path):
     assert list(systems(tmp_path / "out")) == ["pf@narrow", "ms"]
 
 
-def test_shifted_first_boxes_are_run_and_shown(bags, tmp_path, capsys):
-    words = [bags / "one", "--variants", "ms", "--shifted-starts"]
-    assert evaluate(tmp_path / "out", *words) == 0
-    assert "shifted starts" in capsys.readouterr().out
-    assert len(list((tmp_path / "out" / "cells" / "one" / "ms").iterdir())) == 13
-
-
 def test_a_baseline_that_is_not_there_is_named_and_the_rest_goes_on(bags, tmp_path, capsys):
     words = ["--variants", "ms,baseline:csrt", "--baselines-python", tmp_path / "none"]
     assert evaluate(tmp_path / "out", bags / "one", *words) == 1

@@ -19,7 +19,7 @@ from __future__ import annotations
 import functools
 import shutil
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import astuple, dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -70,10 +70,8 @@ def run_cell(cell: GridCell) -> CellResult:
     cv2.setNumThreads(1)
     try:
         recording = footage(cell.source)
-        true = recording.truth[0]
-        first = replace(true, box=cell.start.box(true.box))
         run_it = _run_baseline if cell.system.is_baseline else _run_variant
-        rows, run = run_it(cell, recording, first)
+        rows, run = run_it(cell, recording, recording.truth[0])
         metrics = measure(score_frames(rows, recording.truth, cell.max_diff))
         return CellResult(rows, run, metrics)
     except InputError as error:

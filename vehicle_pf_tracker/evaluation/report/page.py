@@ -63,7 +63,6 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
         overall=tables.overall_table(aggregates),
         figures=figures,
         behind=tables.behind_table(aggregates),
-        starts=tables.starts_table(aggregates),
         curves=[name for name in CURVES if name in figures],
         recordings=[_section(evaluation, aggregates, entry) for entry in evaluation.recordings],
         systems=evaluation.systems,
@@ -118,7 +117,7 @@ def _failed_groups(failed: Sequence[FailedCell]) -> list[tuple[str, str, str]]:
     groups: dict[tuple[str, str], dict[str, list[str]]] = {}
     for cell in failed:
         by_recording = groups.setdefault((cell.system, cell.reason), {})
-        by_recording.setdefault(cell.recording, []).append(cell.run)
+        by_recording.setdefault(cell.recording, []).append(str(cell.seed))
     return [
         (*key, "; ".join(f"{name}: seed {', '.join(seeds)}" for name, seeds in cells.items()))
         for key, cells in groups.items()

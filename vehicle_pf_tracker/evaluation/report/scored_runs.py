@@ -41,8 +41,8 @@ class ScoredRun:
 
     Attributes
     ----------
-    recording, system, seed, start : str, str, int, str
-        Cell of the grid; `start` names a shifted first box, and is empty for the true one.
+    recording, system, seed : str, str, int
+        Cell of the grid.
     metrics : Metrics
         Metrics of the run.
     errors : (N,) array
@@ -56,7 +56,6 @@ class ScoredRun:
     recording: str
     system: str
     seed: int
-    start: str
     metrics: Metrics
     errors: NDArray[np.float64]
     curves: Mapping[str, Curve]
@@ -70,13 +69,7 @@ class FailedCell:
     recording: str
     system: str
     seed: int
-    start: str
     reason: str
-
-    @property
-    def run(self) -> str:
-        """Seed, and start if it is shifted."""
-        return f"{self.seed} {self.start}".rstrip()
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,17 +82,15 @@ class ScoredEvaluation:
         Folder the runs were read from.
     truths : mapping of str to mapping of int to Truth
         Truths by recording and number of the frame.
-    runs, shifted : tuple of ScoredRun
-        Runs from the true box in the order of the plan (recordings, systems, seeds), and those from
-        shifted first boxes.
+    runs : tuple of ScoredRun
+        Runs in the order of the plan: recordings, systems, seeds.
     failed : tuple of FailedCell
-        Failed cells in the same order, from any start.
+        Failed cells in the same order.
     """
 
     folder: EvaluationFolder
     truths: Mapping[str, Mapping[int, Truth]]
     runs: tuple[ScoredRun, ...]
-    shifted: tuple[ScoredRun, ...]
     failed: tuple[FailedCell, ...]
 
     @property
@@ -124,7 +115,7 @@ class ScoredEvaluation:
     def notes(self) -> list[str]:
         """Say how many cells have a result, and whether versions are mixed."""
         failed = len(self.failed)
-        cells = len(self.runs) + len(self.shifted) + failed
+        cells = len(self.runs) + failed
         result = f"All {cells} cells of the grid have a result."
         if failed:
             result = f"{failed} of {cells} cells have no result; see Failed cells."
@@ -134,7 +125,7 @@ class ScoredEvaluation:
     def mixed_versions(self) -> list[str]:
         """A sentence where runs were made with different versions; baselines have their own."""
         ours = {one.label for one in self.systems if not one.is_baseline}
-        runs = [run for run in (*self.runs, *self.shifted) if run.system in ours]
+        runs = [run for run in self.runs if run.system in ours]
         found = {key: {str(run.versions.get(key)) for run in runs} for key in _DECIDING}
         mixed = [f"{key} {' and '.join(sorted(v))}" for key, v in found.items() if len(v) > 1]
         words = "Results of different versions are compared"
@@ -149,23 +140,20 @@ def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
     """Score all cells; those that cannot be read or scored are failed cells."""
     truths = {entry.name: folder.truth(entry.name) for entry in folder.recordings}
     results = [
-        _result(folder, (recording.name, system.label, seed, start), truths[recording.name])
+        _result(folder, (recording.name, system.label, seed), truths[recording.name])
         for recording, system in itertools.product(folder.recordings, folder.systems)
-        for start in ("", *folder.shifted)
-        for seed in system.seeds(folder.seeds[:1] if start else folder.seeds)
+        for seed in system.seeds(folder.seeds)
     ]
-    runs = [result for result in results if isinstance(result, ScoredRun)]
     return ScoredEvaluation(
         folder,
         truths,
-        tuple(run for run in runs if not run.start),
-        tuple(run for run in runs if run.start),
+        tuple(result for result in results if isinstance(result, ScoredRun)),
         tuple(result for result in results if isinstance(result, FailedCell)),
     )
 
 
 def _result(
-    folder: EvaluationFolder, key: tuple[str, str, int, str], truth: Mapping[int, Truth]
+    folder: EvaluationFolder, key: tuple[str, str, int], truth: Mapping[int, Truth]
 ) -> ScoredRun | FailedCell:
     max_diff = float(folder.plan.get("options", {}).get("max_diff", MAX_DIFF))
     try:

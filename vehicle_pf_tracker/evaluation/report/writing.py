@@ -42,11 +42,9 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     """Return the notes, the means, the differences and each recording as Markdown."""
     parts = [f"# {title(evaluation)}\n"]
     parts.append("".join(f"- {line}\n" for line in evaluation.notes))
-    starts = tables.starts_table(aggregates)
     shown = {
         "Means over recordings": tables.overall_table(aggregates),
         "Differences to the first": tables.behind_table(aggregates),
-        **({"Shifted starts": starts} if starts else {}),
         **{
             entry.name: tables.recording_table(aggregates, entry.name, COLUMNS)
             for entry in evaluation.recordings
@@ -55,7 +53,7 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     for heading, table in shown.items():
         parts.append(f"## {heading}\n\n{tables.markdown(*table.texts())}")
     if evaluation.failed:
-        cells = [[c.system, c.recording, c.run, c.reason] for c in evaluation.failed]
+        cells = [[c.system, c.recording, str(c.seed), c.reason] for c in evaluation.failed]
         header = ["system", "recording", "seed", "reason"]
         parts.append("## Failed cells\n\n" + tables.markdown(header, cells))
     return "\n".join(parts)
@@ -63,18 +61,16 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
 
 def summary_csv(aggregates: Aggregates) -> str:
     """Return every mean with its spread and interval, a line each, with every digit."""
-    starts = {"true": aggregates, "shifted": aggregates.shifted}
+    means = {ALL_RECORDINGS: aggregates.overall, **aggregates.recordings}
     rows = [
-        [recording, system, column.key, column.unit, *astuple(found), start]
-        for start, some in starts.items()
-        if some is not None
-        for recording, by_system in {ALL_RECORDINGS: some.overall, **some.recordings}.items()
+        [recording, system, column.key, column.unit, *astuple(found)]
+        for recording, by_system in means.items()
         for system, summaries in by_system.items()
         for column in COLUMNS
         if (found := summaries.get(column.key)) is not None
     ]
     numbers = ("count", "mean", "spread", "low", "high")
-    return csv_text(("recording", "system", "metric", "unit", *numbers, "start"), rows)
+    return csv_text(("recording", "system", "metric", "unit", *numbers), rows)
 
 
 def summary_tex(aggregates: Aggregates) -> str:
@@ -100,7 +96,7 @@ def _tex(text: str) -> str:
 def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, Any]:
     """Return everything as plain values."""
     return {
-        "format": 3,
+        "format": 4,
         "metrics": {
             column.key: {
                 "label": column.label,
