@@ -154,11 +154,11 @@ def test_things_that_are_no_recordings_say_what_to_do(tmp_path, capsys):
     (frames / "groundtruth.old").write_text("m4,5,2")
     record(tmp_path / "untrue", truths=())
     for name, said in {
-        "clip.mp4": "is a video; make a recording of it first: `vehicle-pf-tracker import ",
+        "clip.mp4": "is not a video file that can be decoded",
         "frames": "groundtruth.old looks like truth, but is in no format that is read",
-        "notes.txt": "is not a recording: give a rosbag2 folder",
-        "empty": "is not a recording and holds none",
-        "none": "there is no recording",
+        "notes.txt": "is not a video file that can be decoded",
+        "empty": "has no images",
+        "none": "there is no file or folder",
         "untrue": "has no truth to compare with",
     }.items():
         assert evaluate(tmp_path / "out", tmp_path / name, *QUICK) == 1
