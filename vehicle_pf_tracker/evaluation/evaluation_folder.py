@@ -112,15 +112,6 @@ def _row(line: Mapping[str, str]) -> tuple[int, Truth]:
     return int(line["frame"]), truth
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """One run of the grid: its rows and `run.json`, or the reason why there are none."""
-
-    rows: tuple[EstimateRow, ...] | None
-    run: Mapping[str, Any]
-    reason: str
-
-
 class EvaluationFolder:
     """Reads the folder of an evaluation.
 
@@ -168,16 +159,22 @@ class EvaluationFolder:
         path = self.path / "recordings" / recording / TRUTH
         return read_truth(path) if path.is_file() else {}
 
-    def cell(self, recording: str, system: str, seed: int) -> Cell:
-        """Read one cell of the grid."""
+    def cell(
+        self, recording: str, system: str, seed: int
+    ) -> tuple[list[EstimateRow], dict[str, Any]]:
+        """Read the rows of one cell of the grid, and its `run.json`.
+
+        Raises
+        ------
+        InputError
+            If it has no result, with the reason, or cannot be read.
+        """
         folder = cell_folder(self.path, recording, system, seed)
         if (folder / FAILED).is_file():
-            reason = str(read_document(folder / FAILED).get("reason", "no reason was given"))
-            return Cell(None, {}, reason)
+            raise InputError(read_document(folder / FAILED).get("reason", "no reason was given"))
         if not (folder / ESTIMATES).is_file():
-            return Cell(None, {}, "it was not run")
-        rows = tuple(read_estimates(folder / ESTIMATES))
-        return Cell(rows, read_document(folder / RUN), "")
+            raise InputError("it was not run")
+        return read_estimates(folder / ESTIMATES), read_document(folder / RUN)
 
 
 def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:

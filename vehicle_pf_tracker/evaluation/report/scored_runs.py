@@ -157,10 +157,8 @@ def _result(
 ) -> ScoredRun | FailedCell:
     max_diff = float(folder.plan.get("options", {}).get("max_diff", MAX_DIFF))
     try:
-        cell = folder.cell(*key)
-        if cell.rows is None:
-            return FailedCell(*key, cell.reason)
-        scores = score_frames(cell.rows, list(truth.values()), max_diff)
+        rows, run = folder.cell(*key)
+        scores = score_frames(rows, list(truth.values()), max_diff)
     except InputError as error:
         return FailedCell(*key, str(error))
     errors = [frame.error if frame.counts else None for frame in scores.frames]
@@ -169,5 +167,5 @@ def _result(
         metrics=measure(scores),
         errors=np.array(errors, dtype=np.float64),  # None is NaN
         curves=curves(scores.counted),
-        versions=cell.run.get("versions", {}),
+        versions=run.get("versions", {}),
     )
