@@ -39,7 +39,6 @@ from vehicle_pf_tracker.scenes.compositing import (
     Image,
     PixelWindow,
     Sprite,
-    overlap,
     paint,
     stream,
 )
@@ -196,7 +195,8 @@ class Scene(Stage):
         sprite = self.actors[self.target].seen(index)
         seen = sprite.coverage(box, window)
         for actor in self.actors[self.target + 1 :]:
-            if actor.hides and overlap(place := self._in_image(actor.path(index), index), box):
+            place = self._in_image(actor.path(index), index)
+            if actor.hides and place.iou(box) > 0:
                 seen = seen * (1 - actor.seen(index).coverage(place, window))
         # Rounded because sums of floats must not make a free vehicle look 1e-16 hidden.
         return round(float(min(max(seen.sum() / sprite.area(box), 0.0), 1.0)), 9)
@@ -296,10 +296,8 @@ class OutdoorCamera:
 
     def gain(self, index: int) -> Colour:
         """Give the gains of red, green and blue in frame `index`."""
-        flicker = 1.0
-        if self.disturbance.flicker > 0:
-            noise = stream(self.seed, "flicker", index).standard_normal()
-            flicker += self.disturbance.flicker * float(noise)
+        noise = float(stream(self.seed, "flicker", index).standard_normal())
+        flicker = 1.0 + self.disturbance.flicker * noise
         return flicker, flicker, flicker
 
 
