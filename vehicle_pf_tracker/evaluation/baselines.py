@@ -264,17 +264,17 @@ class Baseline(Worker):
         return BaselineAnswer(self._box, found, float(answer["seconds"]))
 
 
-def unknown_baseline(name: str, known: Iterable[str]) -> InputError:
+def unknown_baseline(name: str) -> InputError:
     """Make the error about a baseline that there is not."""
-    names = list(known)
+    did_you_mean = suggestion(name, MODELS)
     return InputError(
-        f"unknown baseline {name!r}{suggestion(name, names)}; the baselines are {', '.join(names)}"
+        f"unknown baseline {name!r}{did_you_mean}; the baselines are {', '.join(MODELS)}"
     )
 
 
 def _checked_models(name: str, models: Mapping[str, Path]) -> dict[str, Path]:
     if name not in MODELS:
-        raise unknown_baseline(name, MODELS)
+        raise unknown_baseline(name)
     required = MODELS[name]
     if set(models) != set(required):
         words = f"these model files: {', '.join(required)}" if required else "no model files"

@@ -32,7 +32,7 @@ from scipy.optimize import linear_sum_assignment
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, intersections
-from vehicle_pf_tracker.evaluation.baselines import Worker, unknown_baseline
+from vehicle_pf_tracker.evaluation.baselines import Worker
 from vehicle_pf_tracker.evaluation.traffic.sequence import EVERY_FRAME, TrafficSequence
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
@@ -296,8 +296,6 @@ class TrafficWorker(Worker):
         seconds : float
             Processor time per frame, s.
         """
-        if name not in TRAFFIC_BASELINES:
-            raise unknown_baseline(name, TRAFFIC_BASELINES)
         content = {
             "tracker": name.removesuffix("-low"),
             "options": {**TRAFFIC_BASELINES[name], "frame_rate": sequence.frame_rate},
