@@ -64,5 +64,5 @@ def write(folder: Path, request: ReportParts) -> Report:
     with stages("report") as on_stage:
         report = write_report(folder, figures=request.figures, on_stage=on_stage)
     tell_notices(report.evaluation.mixed_versions)
-    print(f"the report is {report.paths[0]}")
+    print(f"the report is {report.page}")
     return report

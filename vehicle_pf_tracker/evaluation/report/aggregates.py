@@ -56,7 +56,8 @@ class Aggregates:
 
 def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     """Summarise all runs."""
-    runs = {s.label: some for s in evaluation.systems if (some := evaluation.of(system=s.label))}
+    labels = [system.label for system in evaluation.folder.systems]
+    runs = {label: some for label in labels if (some := evaluation.of(system=label))}
     values = {
         label: {column.key: _values(some, column) for column in COLUMNS}
         for label, some in runs.items()
@@ -82,7 +83,7 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
                 for label, columns in values.items()
                 if evaluation.of(entry.name, label)
             }
-            for entry in evaluation.recordings
+            for entry in evaluation.folder.recordings
         },
         overall={
             label: {key: summarise(list(found.values())) for key, found in means[label].items()}

@@ -21,7 +21,6 @@ import io
 import re
 import warnings
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -119,7 +118,7 @@ def draw_all(
     """
     with rc_context(SETTINGS):
         found = {name: _curves(evaluation, aggregates.order, slots, name) for name in CURVES}
-        for entry in evaluation.recordings:
+        for entry in evaluation.folder.recordings:
             runs = evaluation.by_system(entry.name, aggregates.order)
             truths = evaluation.truths[entry.name]
             found[ERRORS + safe_name(entry.name)] = _errors(runs, truths)
@@ -131,7 +130,7 @@ def write_figures(
     aggregates: Aggregates,
     slots: Mapping[str, int],
     formats: Sequence[str],
-) -> list[Path]:
+) -> None:
     """Write every figure to ``figures/`` in each of the formats, in the widths of a paper.
 
     Raises
@@ -140,7 +139,6 @@ def write_figures(
         If they cannot be written.
     """
     folder = make_folder(evaluation.folder.path / "figures")
-    written = []
     for name, drawn in draw_all(evaluation, aggregates, slots).items():
         width, height = drawn.figure.get_size_inches()
         drawn.figure.set_size_inches(_PAPER_WIDTHS[width], height)
@@ -152,8 +150,6 @@ def write_figures(
                 path = folder / f"{name}.{kind}"
                 with replacing(path) as partial:
                     drawn.figure.savefig(partial, format=kind, dpi=_DPI, metadata=_METADATA[kind])
-                written.append(path)
-    return written
 
 
 def _curves(
@@ -167,7 +163,7 @@ def _curves(
     for label in order:
         curves = [
             [run.curves[name] for run in evaluation.of(entry.name, label) if name in run.curves]
-            for entry in evaluation.recordings
+            for entry in evaluation.folder.recordings
         ]
         means = [np.mean([curve.shares for curve in some], axis=0) for some in curves if some]
         if means:

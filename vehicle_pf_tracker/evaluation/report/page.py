@@ -25,23 +25,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from vehicle_pf_tracker.evaluation import tables
 from vehicle_pf_tracker.evaluation.columns import COLUMNS
-from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, safe_name
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.figures import CURVES, ERRORS, draw_all, svg_element
 from vehicle_pf_tracker.evaluation.report.scored_runs import FailedCell, ScoredEvaluation
-
-
-def render(template: str, **values: Any) -> str:
-    """Return the text of a page from the template of this name."""
-    environment = Environment(
-        loader=PackageLoader("vehicle_pf_tracker.evaluation.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template(template).render(values)
 
 
 def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
@@ -54,19 +42,25 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
         )
     }
     folder = evaluation.folder
-    return render(
-        "report.html",
+    templates = Environment(
+        loader=PackageLoader("vehicle_pf_tracker.evaluation.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return templates.get_template("report.html").render(
         title=title(evaluation),
-        facts=_facts(evaluation),
+        facts=_facts(folder),
         notes=evaluation.notes,
         slots=slots,
         overall=tables.overall_table(aggregates),
         figures=figures,
         behind=tables.behind_table(aggregates),
         curves=[name for name in CURVES if name in figures],
-        recordings=[_section(evaluation, aggregates, entry) for entry in evaluation.recordings],
-        systems=evaluation.systems,
-        sources=evaluation.recordings,
+        recordings=[_section(evaluation, aggregates, entry) for entry in folder.recordings],
+        systems=folder.systems,
+        sources=folder.recordings,
         seeds=folder.seeds,
         plan={"versions": {}, "options": {}, **folder.plan},
         command=shlex.join(map(str, folder.plan.get("command", []))),
@@ -84,12 +78,8 @@ def styled(aggregates: Aggregates) -> dict[str, int]:
     return {label: slot for slot, label in enumerate(aggregates.order[: len(STYLES)])}
 
 
-def _facts(evaluation: ScoredEvaluation) -> str:
-    counts = {
-        "recording": evaluation.recordings,
-        "system": evaluation.systems,
-        "seed": evaluation.folder.seeds,
-    }
+def _facts(folder: EvaluationFolder) -> str:
+    counts = {"recording": folder.recordings, "system": folder.systems, "seed": folder.seeds}
     return " × ".join(tables.counted(len(some), noun) for noun, some in counts.items())
 
 

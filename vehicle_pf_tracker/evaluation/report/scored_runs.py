@@ -26,10 +26,9 @@ from numpy.typing import NDArray
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.evaluation.systems import System
 
 _DECIDING = ("vehicle_pf_tracker", "opencv", "numpy")
 """Programs whose version moves estimates."""
@@ -93,16 +92,6 @@ class ScoredEvaluation:
     runs: tuple[ScoredRun, ...]
     failed: tuple[FailedCell, ...]
 
-    @property
-    def recordings(self) -> tuple[Source, ...]:
-        """See `EvaluationFolder`."""
-        return self.folder.recordings
-
-    @property
-    def systems(self) -> tuple[System, ...]:
-        """See `EvaluationFolder`."""
-        return self.folder.systems
-
     def of(self, recording: str | None = None, system: str | None = None) -> list[ScoredRun]:
         """Return the runs on a recording, of a system, or both."""
         return [
@@ -124,7 +113,7 @@ class ScoredEvaluation:
     @property
     def mixed_versions(self) -> list[str]:
         """A sentence where runs were made with different versions; baselines have their own."""
-        ours = {one.label for one in self.systems if not one.is_baseline}
+        ours = {one.label for one in self.folder.systems if not one.is_baseline}
         runs = [run for run in self.runs if run.system in ours]
         found = {key: {str(run.versions.get(key)) for run in runs} for key in _DECIDING}
         mixed = [f"{key} {' and '.join(sorted(v))}" for key, v in found.items() if len(v) > 1]

@@ -47,7 +47,7 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
         "Differences to the first": tables.behind_table(aggregates),
         **{
             entry.name: tables.recording_table(aggregates, entry.name, COLUMNS)
-            for entry in evaluation.recordings
+            for entry in evaluation.folder.recordings
         },
     }
     for heading, table in shown.items():
@@ -113,9 +113,9 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
 
 
 class Report(NamedTuple):
-    """A report that was written: its files, the page first, and the results it shows."""
+    """A report that was written: its page, and the results it shows."""
 
-    paths: Sequence[Path]
+    page: Path
     evaluation: ScoredEvaluation
     aggregates: Aggregates
 
@@ -158,8 +158,7 @@ def write_report(
     for path, text in texts.items():
         write_text(path, text)
     write_json(folder / "summary.json", summary_json(evaluation, aggregates))
-    written = [*texts, folder / "summary.json"]
     if figures:
         on_stage("drawing the figures")
-        written += write_figures(evaluation, aggregates, styled(aggregates), figures)
-    return Report(written, evaluation, aggregates)
+        write_figures(evaluation, aggregates, styled(aggregates), figures)
+    return Report(page, evaluation, aggregates)
