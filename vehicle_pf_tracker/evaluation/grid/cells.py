@@ -20,7 +20,6 @@ import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
@@ -61,11 +60,6 @@ class GridCell:
     system: System
     seed: int
     max_diff: float
-
-    @property
-    def label(self) -> str:
-        """Name of the cell while it runs."""
-        return f"{self.source.name} {self.system.label} seed {self.seed}"
 
     def key(self) -> str:
         """Return its cache key: recording, parameters, seed, code and versions."""
@@ -135,11 +129,7 @@ class Plan:
         """Write `evaluation.json` and the truth of every recording."""
         for source, truths in self.recordings.items():
             write_truth(make_folder(folder / "recordings" / source.name) / TRUTH, truths)
-        write_json(folder / PLAN, self.to_json())
-
-    def to_json(self) -> dict[str, Any]:
-        """Return plain values for JSON."""
-        return {
+        plan = {
             "format": FORMAT,
             "command": self.command,
             "recordings": [asdict(source) for source in self.recordings],
@@ -151,3 +141,4 @@ class Plan:
             "versions": versions(),
             "options": {"max_diff": self.max_diff},
         }
+        write_json(folder / PLAN, plan)

@@ -23,8 +23,6 @@ from dataclasses import astuple, dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import cv2
-
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
@@ -66,7 +64,6 @@ class CellResult:
 
 def run_cell(cell: GridCell) -> CellResult:
     """Run a cell; a failure is reported in the outcome, so that the others go on."""
-    cv2.setNumThreads(1)
     try:
         seen = footage(cell.source)
         run_it = _run_baseline if cell.system.is_baseline else _run_variant
