@@ -154,17 +154,6 @@ def interpolate(grid: Array, y: Array, x: Array) -> Array:
     return values
 
 
-def paint(canvas: Image, sprite: Sprite, box: Box) -> None:
-    """Paint `sprite`, filling `box`, over `canvas` in place; what lies outside is clipped."""
-    window = PixelWindow.of(box, canvas.shape[1], canvas.shape[0])
-    if window.empty:
-        return
-    layer = sprite.layer(box, window)
-    region = canvas[window.slices]
-    region *= 1 - layer[..., 3:]
-    region += layer[..., :3]
-
-
 def cells_inside(
     outline: Array, rows: int, columns: int
 ) -> tuple[PixelWindow, npt.NDArray[np.bool_]]:

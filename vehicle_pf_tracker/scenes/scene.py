@@ -34,14 +34,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.compositing import (
-    Colour,
-    Image,
-    PixelWindow,
-    Sprite,
-    paint,
-    stream,
-)
+from vehicle_pf_tracker.scenes.compositing import Colour, Image, PixelWindow, Sprite, stream
 
 FIRST_STAMP_NS = 1_000_000_000
 """Stamp of frame 0: a stamp of zero means "unknown" to many tools."""
@@ -98,10 +91,14 @@ class Actor:
     hides: bool = True
 
     def paint(self, picture: Image, frame: float) -> None:
-        """Paint it over `picture` where it is in `frame`."""
+        """Paint it over `picture` where it is in `frame`; what lies outside is clipped."""
         box = self.path(frame)
-        if not PixelWindow.of(box, picture.shape[1], picture.shape[0]).empty:
-            paint(picture, self.seen(frame), box)
+        window = PixelWindow.of(box, picture.shape[1], picture.shape[0])
+        if not window.empty:
+            layer = self.seen(frame).layer(box, window)
+            region = picture[window.slices]
+            region *= 1 - layer[..., 3:]
+            region += layer[..., :3]
 
     def seen(self, frame: float) -> Sprite:
         """Give the sprite it shows in `frame`."""
