@@ -109,15 +109,15 @@ class Drawn(NamedTuple):
     spoken: str
 
 
-def draw_all(
-    evaluation: ScoredEvaluation, aggregates: Aggregates, slots: Mapping[str, int]
-) -> dict[str, Drawn]:
-    """Draw every figure of an evaluation that there are numbers for, by name.
+def styled(aggregates: Aggregates) -> dict[str, int]:
+    """Assign styles, by their number, to the first systems."""
+    return {label: slot for slot, label in enumerate(aggregates.order[: len(STYLES)])}
 
-    Systems in `slots` have the style of this number.
-    """
+
+def draw_all(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, Drawn]:
+    """Draw every figure of an evaluation that there are numbers for, by name."""
     with rc_context(SETTINGS):
-        found = {name: _curves(evaluation, aggregates.order, slots, name) for name in CURVES}
+        found = {name: _curves(evaluation, aggregates, name) for name in CURVES}
         for entry in evaluation.folder.recordings:
             runs = evaluation.by_system(entry.name, aggregates.order)
             truths = evaluation.truths[entry.name]
@@ -126,10 +126,7 @@ def draw_all(
 
 
 def write_figures(
-    evaluation: ScoredEvaluation,
-    aggregates: Aggregates,
-    slots: Mapping[str, int],
-    formats: Sequence[str],
+    evaluation: ScoredEvaluation, aggregates: Aggregates, formats: Sequence[str]
 ) -> None:
     """Write every figure to ``figures/`` in each of the formats, in the widths of a paper.
 
@@ -139,7 +136,7 @@ def write_figures(
         If they cannot be written.
     """
     folder = make_folder(evaluation.folder.path / "figures")
-    for name, drawn in draw_all(evaluation, aggregates, slots).items():
+    for name, drawn in draw_all(evaluation, aggregates).items():
         width, height = drawn.figure.get_size_inches()
         drawn.figure.set_size_inches(_PAPER_WIDTHS[width], height)
         with rc_context({**SETTINGS, "svg.fonttype": "path"}):  # the same in every program
@@ -152,15 +149,14 @@ def write_figures(
                     drawn.figure.savefig(partial, format=kind, dpi=_DPI, metadata=_METADATA[kind])
 
 
-def _curves(
-    evaluation: ScoredEvaluation, order: Sequence[str], slots: Mapping[str, int], name: str
-) -> Drawn | None:
+def _curves(evaluation: ScoredEvaluation, aggregates: Aggregates, name: str) -> Drawn | None:
     """Draw a curve of `CURVES`: means over the seeds of a recording, then over recordings.
 
     The first of those with a style is on top; the others are grey, and not in the legend.
     """
     lines: dict[str, Curve] = {}
-    for label in order:
+    slots = styled(aggregates)
+    for label in aggregates.order:
         curves = [
             [run.curves[name] for run in evaluation.of(entry.name, label) if name in run.curves]
             for entry in evaluation.folder.recordings

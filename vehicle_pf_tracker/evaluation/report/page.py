@@ -26,20 +26,16 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from vehicle_pf_tracker.evaluation import tables
 from vehicle_pf_tracker.evaluation.columns import COLUMNS
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, safe_name
-from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
-from vehicle_pf_tracker.evaluation.report.figures import CURVES, ERRORS, draw_all, svg_element
+from vehicle_pf_tracker.evaluation.report.figures import ERRORS, draw_all, styled, svg_element
 from vehicle_pf_tracker.evaluation.report.scored_runs import FailedCell, ScoredEvaluation
 
 
 def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
     """Return the text of the page that shows an evaluation and its summaries."""
-    slots = styled(aggregates)
     figures = {
         name: {"svg": svg_element(drawn, number), "caption": drawn.caption}
-        for number, (name, drawn) in enumerate(
-            draw_all(evaluation, aggregates, slots).items(), start=1
-        )
+        for number, (name, drawn) in enumerate(draw_all(evaluation, aggregates).items(), start=1)
     }
     folder = evaluation.folder
     templates = Environment(
@@ -53,11 +49,11 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
         title=title(evaluation),
         facts=_facts(folder),
         notes=evaluation.notes,
-        slots=slots,
+        slots=styled(aggregates),
         overall=tables.overall_table(aggregates),
         figures=figures,
         behind=tables.behind_table(aggregates),
-        curves=[name for name in CURVES if name in figures],
+        curves=[name for name in figures if not name.startswith(ERRORS)],
         recordings=[_section(evaluation, aggregates, entry) for entry in folder.recordings],
         systems=folder.systems,
         sources=folder.recordings,
@@ -71,11 +67,6 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
 def title(evaluation: ScoredEvaluation) -> str:
     """Return the title of the report."""
     return f"Trackers compared: {evaluation.folder.path.resolve().name}"
-
-
-def styled(aggregates: Aggregates) -> dict[str, int]:
-    """Assign styles to the first systems."""
-    return {label: slot for slot, label in enumerate(aggregates.order[: len(STYLES)])}
 
 
 def _facts(folder: EvaluationFolder) -> str:

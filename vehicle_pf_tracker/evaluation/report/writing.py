@@ -26,7 +26,7 @@ from vehicle_pf_tracker.evaluation.columns import COLUMNS, NO_VALUE, PAPER
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, aggregate
 from vehicle_pf_tracker.evaluation.report.figures import write_figures
-from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
+from vehicle_pf_tracker.evaluation.report.page import make_page, title
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, score_folder
 from vehicle_pf_tracker.offline.output_files import csv_text, write_json, write_text
 
@@ -160,5 +160,5 @@ def write_report(
     write_json(folder / "summary.json", summary_json(evaluation, aggregates))
     if figures:
         on_stage("drawing the figures")
-        write_figures(evaluation, aggregates, styled(aggregates), figures)
+        write_figures(evaluation, aggregates, figures)
     return Report(page, evaluation, aggregates)
