@@ -36,7 +36,7 @@ from vehicle_pf_tracker.cli.requests import (
 )
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, SEEDS, EvaluationRequest, chosen
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.grid.cells import Plan, shifted_starts
+from vehicle_pf_tracker.evaluation.grid.cells import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.report.writing import Report
 
 _GRID_ONLY = (
-    "params", "baseline_model", "max_rmse", "topic", "id", "shifted_starts", "figures", "write",
+    "params", "baseline_model", "max_rmse", "topic", "id", "figures",
 )  # fmt: skip
 """Options of the grid that do not apply."""
 
@@ -54,9 +54,6 @@ _GRID_ONLY = (
 class Request(EvaluationRequest, ReportParts, TopicOption, IdOption, MaxDiffOption):
     """Request of `evaluate`."""
 
-    shifted_starts: bool = switch(
-        help="also start on twelve boxes that are a little off, as OTB does; first seed only"
-    )
     max_rmse: float | None = option(
         metavar="PX",
         help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
@@ -143,9 +140,8 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
     with console.stages("evaluate") as on_stage:
         recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)
     console.tell_notices(notes)
-    shifted = shifted_starts() if request.shifted_starts else ()
     seeds, command = request.some_seeds(SEEDS), list(request.command)
-    plan = Plan(dict(recordings), systems, seeds, command, request.max_diff, shifted)
+    plan = Plan(dict(recordings), systems, seeds, command, request.max_diff)
     with console.counting("evaluated", "runs") as on_progress:
         complete(plan, request.output, on_this_machine(request.workers), on_progress)
     return _judge(report.write(request.output, request), request.max_rmse)
@@ -153,7 +149,7 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
 
 def _judge(written: Report, limit: float | None) -> int:
     """Print the means, and return the status that they give."""
-    from vehicle_pf_tracker.evaluation.tables import overall_table, starts_table
+    from vehicle_pf_tracker.evaluation.tables import overall_table
 
     evaluation, aggregates = written.evaluation, written.aggregates
     failed = dict.fromkeys((cell.system, cell.reason) for cell in evaluation.failed)
@@ -163,8 +159,6 @@ def _judge(written: Report, limit: float | None) -> int:
         console.tell_error("no system could run; the report says why")
         return 1
     console.print_rows(*overall_table(aggregates, _SHOWN).texts())
-    if starts := starts_table(aggregates):
-        console.print_rows(*starts.texts(), "shifted starts")
     if failed:
         console.tell_error("not every run succeeded; the report says why")
     means = {label: found["rmse_px"] for label, found in aggregates.overall.items()}

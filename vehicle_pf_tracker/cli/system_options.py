@@ -233,7 +233,7 @@ def _baseline_system(
     name: str, python: Path | None, models: dict[str, dict[str, str]], notes: list[str]
 ) -> System:
     if name not in MODELS:
-        raise unknown_baseline(name, MODELS)
+        raise unknown_baseline(name)
     own = models.get(name, {})
     build = ""
     try:

@@ -168,7 +168,7 @@ def _judge(
         complete(plan, folder, on_this_machine(request.workers), on_progress)
     report = write_report(folder)
     if report.evaluation.failed:
-        raise InputError(f"not every run succeeded; {report.paths[0]} says why")
+        raise InputError(f"not every run succeeded; {report.page} says why")
     held_out = [source.name for source, _ in recordings if source not in what.sources]
     rows, verdict = tuning.check_gain(report.evaluation, held_out, what.objective)
     header = [what.objective, "default", "best", "change"]
