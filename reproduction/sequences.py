@@ -22,11 +22,11 @@ from __future__ import annotations
 import argparse
 import math
 import statistics
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import Cell, EvaluationFolder
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 
@@ -80,16 +80,14 @@ def _measured(evaluation: EvaluationFolder) -> tuple[Table, list[str]]:
         row = table.setdefault(recording.name, {})
         for system in evaluation.systems:
             for seed in system.seeds(evaluation.seeds):
-                cell = evaluation.cell(recording.name, system.label, seed)
-                row.setdefault(system.label, []).extend(_metrics(cell, truth))
-                if cell.rows is None:
-                    missing.append(f"{recording.name}, {system.label}: {cell.reason}")
+                runs = row.setdefault(system.label, [])
+                try:
+                    rows, _ = evaluation.cell(recording.name, system.label, seed)
+                except InputError as error:
+                    missing.append(f"{recording.name}, {system.label}: {error}")
+                else:
+                    runs.append(measure(score_frames(rows, list(truth.values()))))
     return table, list(dict.fromkeys(missing))
-
-
-def _metrics(cell: Cell, truth: Mapping[int, Truth]) -> Iterator[Metrics]:
-    if cell.rows is not None:
-        yield measure(score_frames(cell.rows, list(truth.values())))
 
 
 def _on_target(metrics: Metrics) -> float:

@@ -24,7 +24,7 @@ import numpy as np
 from laboratory.scenes.turns import side_road
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, overlap, stream
+from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, stream
 from vehicle_pf_tracker.scenes.drive import LANE, PAINTS, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.models import Model, Pace, Pose, standing, straight
 from vehicle_pf_tracker.scenes.roads import convoy
@@ -166,7 +166,7 @@ def _clear_at_first(drive: Drive, others: list[Actor]) -> list[Actor]:
     return [
         actor
         for pair in zip(others[::2], others[1::2], strict=True)
-        if not any(overlap(pair[1].path(frame), own.path(frame)) for frame in range(CLEAR_FRAMES))
+        if not any(pair[1].path(frame).iou(own.path(frame)) > 0 for frame in range(CLEAR_FRAMES))
         for actor in pair
     ]
 

@@ -25,7 +25,7 @@ from laboratory.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.scenes.compositing import PixelWindow, overlap, stream
+from vehicle_pf_tracker.scenes.compositing import PixelWindow, stream
 from vehicle_pf_tracker.scenes.roads import PAINTS, Carriageway, Lane, Vehicle, any_car, countryside
 from vehicle_pf_tracker.scenes.scene import Actor, Camera, Path, Stage
 from vehicle_pf_tracker.scenes.scenery import bridge
@@ -149,7 +149,7 @@ class TrafficScene(Stage):
         shares: dict[int | str, float] = {}
         for name, actor in nearer:
             place = actor.path(index)
-            if actor.hides and overlap(place, box):
+            if actor.hides and place.iou(box) > 0:
                 cover = actor.seen(index).coverage(place, window)
                 seen = seen * (1 - cover)
                 shares[name] = shares.get(name, 0.0) + float((own * cover).sum()) / total

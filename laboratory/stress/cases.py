@@ -25,9 +25,29 @@ from laboratory.stress.footage import StressSource, open_footage
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.grid.cells import TRUE_START, Start
 from vehicle_pf_tracker.recordings.footage import stamp_of
 from vehicle_pf_tracker.scenes.compositing import stream
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Displacement of the first box, in its widths and heights, and the factor of its sides."""
+
+    name: str = ""
+    shift: tuple[float, float] = (0.0, 0.0)
+    scale: float = 1.0
+
+    def box(self, true: Box) -> Box:
+        """Return the box to start on."""
+        if self == TRUE_START:
+            return true
+        x, y = true.centre
+        centre = x + self.shift[0] * true.width, y + self.shift[1] * true.height
+        return Box.around(centre, true.width * self.scale, true.height * self.scale)
+
+
+TRUE_START = Start()
+"""The true box."""
 
 
 class StressFrame(NamedTuple):

@@ -23,12 +23,11 @@ from types import MappingProxyType
 from typing import Any
 
 from laboratory.stress import changes
-from laboratory.stress.cases import Case
+from laboratory.stress.cases import Case, Start
 from laboratory.stress.changes import Change
 from laboratory.stress.footage import StressSource, open_footage
 from laboratory.stress.occlusion_cases import lorries, poles, walls
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts
 
 LATER_STARTS = 20
 """As in OTB's temporal robustness evaluation."""
@@ -42,6 +41,13 @@ _SHAKES = (0.01, 0.03)
 """Amplitude in image widths: a mast in wind, a camera held by hand."""
 _DROPPED = 0.2
 """Share of dropped frames: a radio link at the edge of its range."""
+_SHIFT = 0.1
+"""Shift of OTB's spatial robustness (Wu, Lim and Yang 2013), in widths and heights of the box."""
+_SCALES = (0.8, 0.9, 1.1, 1.2)
+_SIDES = {
+    "left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1),
+    "left_up": (-1, -1), "right_up": (1, -1), "left_down": (-1, 1), "right_down": (1, 1),
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +141,12 @@ def _later_start(origin: StressSource, seed: int) -> Iterator[Case]:
         if len(truths) - first >= _LEAST_FRAMES:
             count = len(truths) - first
             yield Case(origin, "later_start", f"{first + 1:06d}", first, count, 1, seed)
+
+
+def shifted_starts() -> list[Start]:
+    """Return the twelve starts of OTB: eight shifts by a tenth of the box, and four scales."""
+    shifts = [Start(name, (_SHIFT * x, _SHIFT * y)) for name, (x, y) in _SIDES.items()]
+    return shifts + [Start(f"scale_{scale:g}", scale=scale) for scale in _SCALES]
 
 
 def _shifted_box(origin: StressSource, seed: int) -> Iterator[Case]:

@@ -97,19 +97,6 @@ def test_parameter_sets_are_systems_of_their_own(bags, tmp_path, capsys):
     assert "ms is not run with mine" in told and "not run with sure" not in told
 
 
-def test_defaults_can_be_left_out(bags, tmp_path):
-    words = [bags / "one", *QUICK, "--set", "pf@narrow:sigma=2", "--without-defaults"]
-    assert evaluate(tmp_path / "out", *words) == 0
-    assert list(systems(tmp_path / "out")) == ["pf@narrow", "ms"]
-
-
-def test_shifted_first_boxes_are_run_and_shown(bags, tmp_path, capsys):
-    words = [bags / "one", "--variants", "ms", "--shifted-starts"]
-    assert evaluate(tmp_path / "out", *words) == 0
-    assert "shifted starts" in capsys.readouterr().out
-    assert len(list((tmp_path / "out" / "cells" / "one" / "ms").iterdir())) == 13
-
-
 def test_a_baseline_that_is_not_there_is_named_and_the_rest_goes_on(bags, tmp_path, capsys):
     words = ["--variants", "ms,baseline:csrt", "--baselines-python", tmp_path / "none"]
     assert evaluate(tmp_path / "out", bags / "one", *words) == 1
@@ -161,11 +148,11 @@ def test_things_that_are_no_recordings_say_what_to_do(tmp_path, capsys):
     (frames / "groundtruth.old").write_text("m4,5,2")
     record(tmp_path / "untrue", truths=())
     for name, said in {
-        "clip.mp4": "is a video; make a recording of it first: `vehicle-pf-tracker import ",
+        "clip.mp4": "is not a video file that can be decoded",
         "frames": "groundtruth.old looks like truth, but is in no format that is read",
-        "notes.txt": "is not a recording: give a rosbag2 folder",
-        "empty": "is not a recording and holds none",
-        "none": "there is no recording",
+        "notes.txt": "is not a video file that can be decoded",
+        "empty": "has no images",
+        "none": "there is no file or folder",
         "untrue": "has no truth to compare with",
     }.items():
         assert evaluate(tmp_path / "out", tmp_path / name, *QUICK) == 1

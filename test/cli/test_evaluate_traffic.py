@@ -68,7 +68,7 @@ def test_a_comparison_is_written_and_shown(folder, tmp_path, monkeypatch, capsys
 @pytest.mark.parametrize(
     ("words", "status", "sentence"),
     [
-        (["--traffic", "{folder}", "--write", "otb"], 2, "--write does not go with --traffic"),
+        (["--traffic", "{folder}", "--figures", "pdf"], 2, "--figures does not go with --traffic"),
         (["{folder}", "--detections", "good"], 2, "--detections does not go without --traffic"),
         (["--traffic", "{folder}", "--detections", "god"], 1, "'god' is not a file of det/ (did"),
         (["--traffic", "{folder}", "--set", "lost=1"], 1, "lost"),

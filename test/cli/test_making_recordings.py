@@ -53,15 +53,6 @@ def test_a_scene_becomes_a_recording_with_its_frames_and_truth(tmp_path, capsys)
     assert f"{scene.frame_count} frames of 640x480 px" in capsys.readouterr().out
 
 
-def test_a_scene_can_be_kept_as_jpeg(tmp_path):
-    call("synth", "bar", tmp_path / "bag", "--format", "compressed", *SHORT)
-    recording = Recording(tmp_path / "bag")
-    assert recording.image_type == "sensor_msgs/msg/CompressedImage"
-    rendered = next(make_scene("bar", settings={"speed": 40.0, "width": 0.0}).frames()).frame
-    read = next(recording.frames()).frame
-    assert np.abs(read.astype(int) - rendered.astype(int)).mean() < 4
-
-
 def test_a_scene_becomes_a_video_with_its_truth_beside_it(tmp_path, capsys):
     call("synth", "bar", tmp_path / "clip.mp4", *SHORT)
     scene = make_scene("bar", settings={"speed": 40.0, "width": 0.0})
@@ -89,12 +80,6 @@ def test_a_video_replaces_nothing_unless_asked(tmp_path, capsys, there):
     assert [path.name for path in tmp_path.iterdir()] == [there]
     call(*words, "--overwrite")
     assert cv2.VideoCapture(str(tmp_path / "clip.mp4")).get(cv2.CAP_PROP_FRAME_COUNT) > 0
-
-
-def test_a_format_is_not_for_videos(tmp_path, capsys):
-    words = ["synth", "bar", str(tmp_path / "clip.mp4"), "--format", "raw"]
-    assert main(words) == 2
-    assert "--format is for recordings" in capsys.readouterr().err
 
 
 def test_the_list_names_scenes_and_settings(capsys):

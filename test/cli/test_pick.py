@@ -134,7 +134,7 @@ def test_what_is_not_there_is_not_found(server, path, body):
 @pytest.mark.parametrize(
     ("body", "sentence"),
     [
-        (b"no json", "not JSON"),
+        (b"no json", "Expecting value"),
         (b"[3]", "other sections than targets, lines"),
         (b'{"boxes": []}', "other sections"),
         (b'{"targets": [{"box": [1, 2, NaN, 4]}]}', "not finite"),

@@ -112,7 +112,7 @@ def report(*answered, interrupted=False):
         NodeReport(f"/ns/{index}_tracker", count, (EstimateRow.without(1, 5, f"MODE{index}"),))
         for index, count in enumerate(answered)
     )
-    return ReplayReport(30, 40, 2.0, nodes, interrupted=interrupted)
+    return ReplayReport(30, 2.0, nodes, interrupted=interrupted)
 
 
 def test_summary_counts_frames_and_answers_of_each_node():

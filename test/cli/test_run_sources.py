@@ -243,7 +243,7 @@ def interrupts():
 
 @pytest.mark.usefixtures("interrupts")
 def test_a_signal_is_noted_and_a_second_one_acts_as_ever():
-    with stopping() as stop:
+    with stopping(stop := Stop()):
         assert not stop.came
         os.kill(os.getpid(), signal.SIGINT)
         assert stop.came
@@ -268,7 +268,7 @@ def test_other_threads_leave_the_signals_alone():
     found = []
 
     def work():
-        with stopping() as stop:
+        with stopping(stop := Stop()):
             found.append(stop.came)
 
     thread = threading.Thread(target=work)

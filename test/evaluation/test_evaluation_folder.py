@@ -43,11 +43,13 @@ def test_the_plan(folder):
 
 def test_cells_have_rows_or_a_reason(folder):
     evaluation = EvaluationFolder(folder)
-    cell = evaluation.cell("free", "pf", 1)
-    assert len(cell.rows) == FRAMES
-    assert cell.run["seed"] == 1
-    assert evaluation.cell("free", "baseline:csrt", 0).reason == NO_BASELINES
-    assert evaluation.cell("free", "pf", 7).reason == "it was not run"
+    rows, run = evaluation.cell("free", "pf", 1)
+    assert len(rows) == FRAMES
+    assert run["seed"] == 1
+    with pytest.raises(InputError, match=NO_BASELINES):
+        evaluation.cell("free", "baseline:csrt", 0)
+    with pytest.raises(InputError, match="it was not run"):
+        evaluation.cell("free", "pf", 7)
 
 
 def test_truth_by_frame(folder):

@@ -19,7 +19,6 @@ import base64
 import csv
 import json
 import re
-import sys
 from pathlib import Path
 
 import cv2
@@ -87,17 +86,6 @@ def test_an_estimate_is_drawn_on_its_own_frame(rec):
     assert np.array_equal(decoded, shown.picture)
     with pytest.raises(InputError, match="there is no frame 99; the source has 12"):
         estimates.show(99)
-
-
-def test_it_is_plotted_where_matplotlib_is(rec, monkeypatch):
-    shown = track(rec, variant="ms").show(2)
-    matplotlib = pytest.importorskip("matplotlib")
-    matplotlib.use("agg")
-    (image,) = shown.plot().images
-    assert np.array_equal(image.get_array(), shown.picture)
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(InputError, match="plot needs matplotlib: pip install matplotlib"):
-        shown.plot()
 
 
 def test_the_example_notebook_runs(tmp_path, monkeypatch, capsys):

@@ -78,15 +78,8 @@ def test_a_vehicle_found_again_has_the_boxes_of_the_track_that_it_was(tmp_path):
     ]  # fmt: skip
 
 
-def test_visible_only_leaves_predicted_ones_out(tmp_path):
-    with track_files(tmp_path, visible_only=True) as files:
-        files.write(3, 100, ALL)
-    assert (tmp_path / "tracks.txt").read_text().startswith("3,7,")
-    assert "3,8," not in (tmp_path / "tracks.txt").read_text()
-
-
 def test_the_table_has_every_estimate_with_all_digits(tmp_path):
-    with track_files(tmp_path, visible_only=True) as files:
+    with track_files(tmp_path) as files:
         files.write(3, 100, ALL)
     with (tmp_path / "tracks.csv").open() as file:
         rows = list(csv.DictReader(file))

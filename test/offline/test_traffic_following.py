@@ -15,6 +15,7 @@
 """One pass over a source: what is rejected, noted and forgotten."""
 
 import io
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -46,9 +47,13 @@ def driving(number):
     return Detections.make([[100, 3 * (number % 40), 30, 20]], [0.9], ["car"])
 
 
+DRIVING = SimpleNamespace(of=driving, notices=[])
+
+
 @pytest.fixture
 def follow():
     def call(stamps, *, unreadable=(), counter=None, targets=None, **options):
+        counter = counter or Counter(CountingPlan())
         run = TrafficRun(TrafficSession(TrafficTracker()), counter, **options)
         table, mot = io.StringIO(), io.StringIO()
         run.follow_all(
@@ -61,7 +66,7 @@ def follow():
 
 def test_frames_that_cannot_be_read_are_noted_and_left_out(follow):
     stamps = [k * PERIOD_NS for k in range(10)]
-    run, rows = follow(stamps, unreadable={4, 5}, detections_of=driving)
+    run, rows = follow(stamps, unreadable={4, 5}, detections=DRIVING)
     assert run.notices == [f"frame {k} was rejected: it cannot be read" for k in (4, 5)]
     assert run.summary.frames == 8
     assert not any(row.startswith(("4,", "5,")) for row in rows)
@@ -70,13 +75,13 @@ def test_frames_that_cannot_be_read_are_noted_and_left_out(follow):
 def test_a_stray_stamp_is_noted_with_its_frame(follow):
     stamps = [k * PERIOD_NS for k in range(10)]
     stamps[6] += 10**13
-    run, _ = follow(stamps, detections_of=driving)
+    run, _ = follow(stamps, detections=DRIVING)
     (notice,) = run.notices
     assert notice.startswith("frame 7 was rejected: the image's stamp leaps ahead")
 
 
 def test_an_irregularity_that_lasts_is_noted_once(follow):
-    run, _ = follow([5] * 300, detections_of=driving)
+    run, _ = follow([5] * 300, detections=DRIVING)
     assert run.notices == ["frame 2: repeated stamp"]
 
 
@@ -90,7 +95,7 @@ def test_very_many_notices_are_counted(follow):
 def test_a_recording_that_begins_again_counts_its_vehicles_again(follow):
     counter = Counter(CountingPlan(lines=(CountingLine("l", (0, 80), (320, 80)),)))
     once = [k * PERIOD_NS + 10**12 for k in range(40)]
-    run, _ = follow([*once, *once], counter=counter, detections_of=driving)
+    run, _ = follow([*once, *once], counter=counter, detections=DRIVING)
     assert run.session.restarts == 1
     assert counter.count("l", "in") == 2
     assert len(run.summary.vehicles) == 2  # no number is given again

@@ -51,7 +51,7 @@ def summed(*lives):
     summary = TrafficSummary()
     for modes in zip(*lives, strict=True):
         found = [estimate(k, mode) for k, mode in enumerate(modes, start=1) if mode != "-"]
-        summary.add(found, {})
+        summary.add(found)
     return summary
 
 
@@ -77,15 +77,15 @@ def test_a_vehicle_that_is_never_confirmed_is_none():
 
 def test_a_late_class_counts():
     summary = TrafficSummary()
-    summary.add([estimate(1, "T")], {})
-    summary.add([estimate(1, "T", label="bus")], {})
+    summary.add([estimate(1, "T")])
+    summary.add([estimate(1, "T", label="bus")])
     assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences(NOWHERE)
 
 
 def test_a_lorry_that_is_a_car_from_far_away_is_a_lorry():
     summary = TrafficSummary()
     for label in ("car", "truck", "", "truck", "truck", "car"):
-        summary.add([estimate(1, "T", label=label)], {})
+        summary.add([estimate(1, "T", label=label)])
     assert "(1 truck)" in summary.sentences(NOWHERE)[0]
 
 

@@ -42,7 +42,6 @@ from vehicle_pf_tracker.ros.messages import (
     box_of_polygon,
     box_of_region,
     image_message,
-    mode_message,
     particles_message,
     point_message,
     stamp_ns,
@@ -105,13 +104,11 @@ def test_every_mode_has_a_level():
     assert [LEVELS[mode.value] for mode in Mode] == [b"\x00", b"\x01", b"\x02"]
 
 
-def test_mode_holds_every_scalar(header, estimate):
-    message = mode_message(header, "node", "/image", "OCCLUDED", estimate.scalars())
-    status = message.status[0]
-    assert message.header == header
-    assert (status.level, status.name, status.message) == (b"\x01", "node", "OCCLUDED")
-    assert status.hardware_id == "/image"
-    assert [item.key for item in status.values] == list(estimate.scalars())
+def test_a_status_holds_every_scalar(estimate):
+    made = status(b"\x01", "node", "OCCLUDED", "/image", estimate.scalars())
+    assert (made.level, made.name, made.message) == (b"\x01", "node", "OCCLUDED")
+    assert made.hardware_id == "/image"
+    assert [item.key for item in made.values] == list(estimate.scalars())
 
 
 def test_position_box_and_velocity(header, estimate):

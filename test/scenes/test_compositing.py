@@ -20,12 +20,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.compositing import (
-    PixelWindow,
-    Sprite,
-    cells_inside,
-    paint,
-)
+from vehicle_pf_tracker.scenes.compositing import PixelWindow, Sprite, cells_inside
+from vehicle_pf_tracker.scenes.models import standing
+from vehicle_pf_tracker.scenes.scene import Actor
 
 WHITE = Sprite.plain((255.0, 255.0, 255.0))
 PLACES = st.floats(-30, 70, allow_nan=False)
@@ -34,6 +31,10 @@ SIZES = st.floats(0.5, 40, allow_nan=False)
 
 def canvas(width=40, height=30):
     return np.zeros((height, width, 3), np.float32)
+
+
+def paint(picture, sprite, box):
+    Actor(sprite, standing(box)).paint(picture, 0)
 
 
 def test_a_quarter_pixel_shift_splits_the_edge_pixels():

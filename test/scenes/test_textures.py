@@ -17,7 +17,7 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.scenes.compositing import check_seed, stream
+from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.scenery import asphalt, concrete, foliage, grass, value_noise
 
 SURFACES = (asphalt, concrete, foliage, grass)
@@ -49,8 +49,3 @@ def test_streams_do_not_depend_on_each_other():
     }
     assert len(draws) == 8
     assert stream(3, "a", 2).random() == stream(3, "a", 2).random()
-
-
-def test_true_is_no_seed():
-    with pytest.raises(ValueError, match="integer"):
-        check_seed(True)

@@ -36,7 +36,7 @@ from vehicle_pf_tracker.cli.requests import (
 )
 from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, SEEDS, EvaluationRequest, chosen
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.grid.cells import Plan, shifted_starts
+from vehicle_pf_tracker.evaluation.grid.cells import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
@@ -45,18 +45,19 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.report.writing import Report
 
 _GRID_ONLY = (
-    "params", "without_defaults", "baseline_model", "max_rmse", "topic", "id",
-    "shifted_starts", "figures", "write",
+    "params", "baseline_model", "max_rmse", "topic", "id", "figures",
 )  # fmt: skip
 """Options of the grid that do not apply."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrafficRequest(EvaluationRequest):
-    """Request of the comparison on many vehicles."""
+class Request(EvaluationRequest, ReportParts, TopicOption, IdOption, MaxDiffOption):
+    """Request of `evaluate`."""
 
-    GROUP = "many vehicles"
-
+    max_rmse: float | None = option(
+        metavar="PX",
+        help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
+    )  # fmt: skip
     traffic: bool = switch(
         help="compare `traffic` with SORT, ByteTrack, OC-SORT and C-BIoU instead; REC are folders "
         "as MOTChallenge has them; see docs/traffic.md",
@@ -67,7 +68,7 @@ class TrafficRequest(EvaluationRequest):
     )  # fmt: skip
 
 
-def check(request: TrafficRequest) -> None:
+def check(request: Request) -> None:
     """Refuse options that go with the grid only, or with this comparison only.
 
     Raises
@@ -83,7 +84,7 @@ def check(request: TrafficRequest) -> None:
             )
 
 
-def run_traffic(request: TrafficRequest) -> int:
+def run_traffic(request: Request) -> int:
     """Run the comparison, write its report, and print its tables."""
     from vehicle_pf_tracker.evaluation.traffic import comparison
     from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
@@ -103,8 +104,7 @@ def run_traffic(request: TrafficRequest) -> int:
         TrafficWorker(request.baselines_python) as worker,
         console.counting("compared") as progress,
     ):
-        run = comparison.compare(cases, worker, parameters, seeds, on_progress=progress)
-        results = list(run)
+        results = list(comparison.compare(cases, worker, parameters, seeds, on_progress=progress))
         options = {
             "command": list(request.command),
             "seeds": list(seeds),
@@ -120,19 +120,6 @@ def run_traffic(request: TrafficRequest) -> int:
 
 _SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "failures")
 """Metrics of the table on the terminal, few enough for its width."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Request(TrafficRequest, ReportParts, TopicOption, IdOption, MaxDiffOption):
-    """Request of `evaluate`."""
-
-    shifted_starts: bool = switch(
-        help="also start on twelve boxes that are a little off, as OTB does; first seed only"
-    )
-    max_rmse: float | None = option(
-        metavar="PX",
-        help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
-    )  # fmt: skip
 
 
 def run(request: Request) -> int:
@@ -153,9 +140,8 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
     with console.stages("evaluate") as on_stage:
         recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)
     console.tell_notices(notes)
-    shifted = shifted_starts() if request.shifted_starts else ()
     seeds, command = request.some_seeds(SEEDS), list(request.command)
-    plan = Plan(dict(recordings), systems, seeds, command, request.max_diff, shifted)
+    plan = Plan(dict(recordings), systems, seeds, command, request.max_diff)
     with console.counting("evaluated", "runs") as on_progress:
         complete(plan, request.output, on_this_machine(request.workers), on_progress)
     return _judge(report.write(request.output, request), request.max_rmse)
@@ -163,25 +149,21 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
 
 def _judge(written: Report, limit: float | None) -> int:
     """Print the means, and return the status that they give."""
-    from vehicle_pf_tracker.evaluation.tables import overall_table, starts_table
+    from vehicle_pf_tracker.evaluation.tables import overall_table
 
     evaluation, aggregates = written.evaluation, written.aggregates
-    for system, reason in dict.fromkeys((cell.system, cell.reason) for cell in evaluation.failed):
+    failed = dict.fromkeys((cell.system, cell.reason) for cell in evaluation.failed)
+    for system, reason in failed:
         console.tell_notices([f"{system} did not run everywhere: {reason}"])
     if not evaluation.runs:
         console.tell_error("no system could run; the report says why")
         return 1
     console.print_rows(*overall_table(aggregates, _SHOWN).texts())
-    if starts := starts_table(aggregates):
-        console.print_rows(*starts.texts(), "shifted starts")
-    status = 0
-    if failed := dict.fromkeys(cell.system for cell in evaluation.failed):
-        console.tell_error(f"not every run succeeded: {', '.join(failed)}; the report says why")
-        status = 1
+    if failed:
+        console.tell_error("not every run succeeded; the report says why")
     means = {label: found["rmse_px"] for label, found in aggregates.overall.items()}
     beyond = [f"{label} {found.mean:.1f} px" for label, found in means.items()
               if limit is not None and found is not None and found.mean > limit]  # fmt: skip
     if beyond:
         console.tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {', '.join(beyond)}")
-        status = 1
-    return status
+    return int(bool(failed or beyond))

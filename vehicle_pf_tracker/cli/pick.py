@@ -181,20 +181,6 @@ class Editor(PageServer):
         coded = self._frames.jpeg(number) if number else None
         return None if coded is None else ("image/jpeg", coded)
 
-    def finish(self, body: bytes) -> None:
-        """Take what was drawn.
-
-        Raises
-        ------
-        InputError
-            If it cannot be used.
-        """
-        try:
-            document = json.loads(body)
-        except (ValueError, RecursionError):
-            raise InputError("what was drawn is not JSON") from None
-        self.drawn = checked(document or {}, "what was drawn")
-
 
 class _Handler(PageHandler):
     server: Editor
@@ -205,8 +191,9 @@ class _Handler(PageHandler):
             self.answer(None)
             return
         try:
-            self.server.finish(self.rfile.read(int(length)))
-        except InputError as error:
+            document = json.loads(self.rfile.read(int(length)))
+            self.server.drawn = checked(document or {}, "what was drawn")
+        except (ValueError, RecursionError) as error:  # no JSON, or nothing that can be used
             self.answer((_TEXT, str(error).encode()), HTTPStatus.BAD_REQUEST)
             return
         self.answer((_TEXT, b"finished"))

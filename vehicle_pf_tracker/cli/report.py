@@ -39,12 +39,6 @@ class ReportParts(VerbRequest):
         help="write every figure to DIR/figures, sized for a paper of two columns; FORMATS are "
         "pdf, svg or png, several with commas",
     )  # fmt: skip
-    write: tuple[str, ...] = option(
-        type=partial(names_in, known=("otb", "vot", "mot"), what="a toolkit"),
-        default=(), metavar="TOOLKITS",
-        help="write every run to DIR/results as other toolkits read it; TOOLKITS are otb, vot or "
-        "mot, several with commas",
-    )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,9 +62,7 @@ def write(folder: Path, request: ReportParts) -> Report:
     from vehicle_pf_tracker.evaluation.report.writing import write_report
 
     with stages("report") as on_stage:
-        report = write_report(
-            folder, figures=request.figures, toolkits=request.write, on_stage=on_stage
-        )
+        report = write_report(folder, figures=request.figures, on_stage=on_stage)
     tell_notices(report.evaluation.mixed_versions)
-    print(f"the report is {report.paths[0]}")
+    print(f"the report is {report.page}")
     return report

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import argparse
 import functools
-import inspect
 import math
 import os
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -30,15 +29,12 @@ from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.recordings.footage import Footage
-    from vehicle_pf_tracker.recordings.reader import Recording
+    from vehicle_pf_tracker.recordings.source import Source
 
 
 @dataclass(frozen=True, kw_only=True)
 class VerbRequest:
     """Base of the requests: its subclasses declare each option of a verb as a field.
-
-    A subclass with a text `GROUP` has its options under that heading of the help.
 
     Attributes
     ----------
@@ -93,23 +89,18 @@ _KINDS: Mapping[str, Mapping[str, Any]] = {
 
 def add_options(parser: argparse.ArgumentParser, kind: type[VerbRequest]) -> None:
     """Add the options that the fields of a request are read from."""
-    declared = {one.name: one.metadata for one in fields(kind) if one.metadata}
-    for base in reversed(kind.__mro__):
-        heading = vars(base).get("GROUP")
-        place: Any = parser.add_argument_group(heading) if heading else parser
-        annotations = inspect.get_annotations(base)
-        for name in filter(declared.__contains__, annotations):
-            settings = _KINDS.get(annotations[name].removesuffix(" | None"), {})
-            settings = {**settings, **declared[name]["settings"]}
-            if "type" in settings:
-                settings["type"] = _telling_why(settings["type"])
-            if "flags" not in declared[name]:
-                place.add_argument(name, **settings)
-                continue
-            flags = declared[name]["flags"]
-            if not any(flag.startswith("--") for flag in flags):
-                flags = (*flags, f"--{name.replace('_', '-')}")
-            place.add_argument(*flags, dest=name, **settings)
+    for one in filter(lambda one: one.metadata, fields(kind)):
+        settings = _KINDS.get(str(one.type).removesuffix(" | None"), {})
+        settings = {**settings, **one.metadata["settings"]}
+        if "type" in settings:
+            settings["type"] = _telling_why(settings["type"])
+        flags = one.metadata.get("flags")
+        if flags is None:
+            parser.add_argument(one.name, **settings)
+            continue
+        if not any(flag.startswith("--") for flag in flags):
+            flags = (*flags, f"--{one.name.replace('_', '-')}")
+        parser.add_argument(*flags, dest=one.name, **settings)
 
 
 def _telling_why(read: Callable[[str], Any]) -> Callable[[str], Any]:
@@ -209,7 +200,7 @@ class SourceOptions(TopicOption):
         metavar="HZ", help="frame rate, instead of the one that SOURCE states"
     )
 
-    def open_source(self, **truth: Any) -> Recording | Footage:
+    def open_source(self, **truth: Any) -> Source:
         """Open the source, with the settings of its truth."""
         from vehicle_pf_tracker.recordings.source import open_source
 

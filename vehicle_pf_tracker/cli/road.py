@@ -100,14 +100,9 @@ def _calibrate(request: Request, source: Source, pairs: tuple[Pair, ...]) -> int
     if not pairs:
         drawn = pick.ask(source, [pick.PAIRS], request.frame)
         pairs = tuple(map(pick.pair_of, drawn[pick.PAIRS]))
-    values = {
-        "road.pairs": format_pairs(pairs),
-        "road.intrinsics": request.intrinsics,
-        "road.distortion_model": request.distortion_model,
-        "road.distortion": request.distortion,
-        "road.frame_id": request.frame_id,
-    }
-    session = from_mapping(SessionParameters, values)
+    names = "intrinsics", "distortion_model", "distortion", "frame_id"
+    values = {f"road.{name}": getattr(request, name) for name in names}
+    session = from_mapping(SessionParameters, {"road.pairs": format_pairs(pairs), **values})
     road = session.road
     plane = road.plane(road.lens, None)
     print(_table(plane, pairs), end="")

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,7 +32,7 @@ from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.offline.driver import OfflineTracker, follow
 from vehicle_pf_tracker.offline.estimates import EstimateRow, summary, write_tracks
-from vehicle_pf_tracker.offline.estimates_recording import OnFrame, run_recording
+from vehicle_pf_tracker.offline.estimates_recording import run_recording
 from vehicle_pf_tracker.offline.output_files import write_json
 from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import ESTIMATES, METRICS, RUN, describe_run, write_run
@@ -117,11 +117,8 @@ def _follow(
     with stopping(stop), counting("tracked") as progress:
         (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
         trackers = _trackers(request, variant, source, first, found.stamp_ns)
-        recording: AbstractContextManager[OnFrame | None] = nullcontext()
-        if request.recording is not None:
-            node = f"{variant.name}_tracker"
-            recording = run_recording(request.recording, node, list(trackers), source.truth())
-        with recording as on_frame:
+        out, node, names = request.recording, f"{variant.name}_tracker", list(trackers)
+        with run_recording(out, node, names, source.truth()) if out else nullcontext() as on_frame:
             return trackers, follow(trackers, frames, pictures, on_frame)
 
 

@@ -69,11 +69,8 @@ def raising_terminated() -> Iterator[None]:
         raise Terminated(number)
 
     # Who has set a handler of their own, or ignores it as under nohup, keeps that.
-    unset = [
-        number
-        for number in (signal.SIGTERM, signal.SIGHUP)
-        if signal.getsignal(number) is signal.SIG_DFL
-    ]
+    ending = signal.SIGTERM, signal.SIGHUP
+    unset = [number for number in ending if signal.getsignal(number) is signal.SIG_DFL]
     with handled(unset, raise_terminated):
         yield
 
@@ -146,9 +143,8 @@ class Stop:
 
 
 @contextmanager
-def stopping(stop: Stop | None = None) -> Iterator[Stop]:
+def stopping(stop: Stop) -> Iterator[None]:
     """Take SIGINT, SIGTERM and SIGHUP as a stop, once; a second one acts as usual."""
-    stop = stop or Stop()
     before = {number: signal.getsignal(number) for number in ending_signals()}
 
     def note(number: int, _frame: FrameType | None) -> None:
@@ -156,7 +152,7 @@ def stopping(stop: Stop | None = None) -> Iterator[Stop]:
         signal.signal(number, before[signal.Signals(number)])
 
     with handled(before, note):
-        yield stop
+        yield
 
 
 def numbered_part(

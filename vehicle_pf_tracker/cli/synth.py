@@ -24,11 +24,9 @@ from vehicle_pf_tracker.cli.console import UsageError, counting
 from vehicle_pf_tracker.cli.requests import Names, OverwriteOption, option, positional, switch
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
-from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.offline.output_files import write_csv
 from vehicle_pf_tracker.offline.pictures import SUFFIX, video_writer
 from vehicle_pf_tracker.parameters.table import specs
-from vehicle_pf_tracker.recordings.importing import FORMATS
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.scenes.scene import Scene
@@ -52,9 +50,6 @@ class Request(OverwriteOption):
         "--set", action="append", default=[], metavar="NAME=VALUE",
         help="set a setting of the scene; repeatable",
     )  # fmt: skip
-    format: str | None = option(
-        choices=FORMATS, help="how a recording stores images: JPEG, or pixels (default: raw)"
-    )
 
 
 def run(request: Request) -> int:
@@ -77,19 +72,17 @@ def run(request: Request) -> int:
     )
     if request.out.suffix != SUFFIX:
         with claimed([request.out], [], overwrite=request.overwrite):
-            record_scene(scene, request.out, request.format or "raw", overwrite=request.overwrite)
+            record_scene(scene, request.out, overwrite=request.overwrite)
         print(f"{facts}, all with truth")
         return 0
-    if request.format:
-        raise UsageError("--format is for recordings; a video is H.264")
     table = _film(scene, request.out, overwrite=request.overwrite)
     target = ",".join(f"{value:.0f}" for value in astuple(scene.truth(0).box))
     print(f"{facts}; the truth is in {table}, and begins with --target {target}")
     return 0
 
 
-def record_scene(scene: Scene, out: Path, form: str = "raw", *, overwrite: bool = False) -> None:
-    """Render `scene` into the rosbag2 folder `out`, with truth; shows progress.
+def record_scene(scene: Scene, out: Path, *, overwrite: bool = False) -> None:
+    """Render `scene` into the rosbag2 folder `out`, with truth, as pixels; shows progress.
 
     Raises
     ------
@@ -98,10 +91,7 @@ def record_scene(scene: Scene, out: Path, form: str = "raw", *, overwrite: bool 
     """
     with RecordingWriter(out, overwrite=overwrite) as writer, counting("rendered") as progress:
         for number, rendered in enumerate(scene.frames(), start=1):
-            if form == "raw":
-                writer.write_image(rendered.truth.stamp_ns, rendered.frame)
-            else:
-                writer.write_compressed(rendered.truth.stamp_ns, "jpeg", jpeg(rendered.frame))
+            writer.write_image(rendered.truth.stamp_ns, rendered.frame)
             writer.write_truth(rendered.truth)
             progress(number, scene.frame_count)
 

@@ -22,15 +22,8 @@ from pathlib import Path
 from typing import TypeAlias
 
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.requests import (
-    WorkersOption,
-    natural,
-    option,
-    positional,
-    positive,
-    switch,
-)
-from vehicle_pf_tracker.cli.tracking_options import with_file
+from vehicle_pf_tracker.cli.requests import WorkersOption, natural, option, positional, positive
+from vehicle_pf_tracker.cli.tracking_options import configure
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines import MODELS, Baseline, unknown_baseline
 from vehicle_pf_tracker.evaluation.systems import BASELINE, System
@@ -40,7 +33,6 @@ from vehicle_pf_tracker.parameters.table import (
     Value,
     parse_assignments,
     specs,
-    to_mapping,
     unknown_name,
 )
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
@@ -53,7 +45,6 @@ _BASELINES_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not
 
 Set: TypeAlias = tuple[list[Path], list[str]]
 """Files and assignments of a set of parameters."""
-_NONE: Set = ([], [])
 
 
 def parameter_sets(
@@ -76,20 +67,6 @@ def parameter_sets(
         else:
             everywhere.append(word)
     return everywhere, sets
-
-
-def configure(variant: Variant, files: Iterable[Path], assignments: Iterable[str]) -> Configuration:
-    """Put files, and then ``name=value`` words, over a variant's defaults.
-
-    Raises
-    ------
-    InputError
-        If a file, a name or a value does not fit.
-    """
-    configuration = Configuration.of(variant)
-    for file in files:
-        configuration = with_file(configuration, variant, file)
-    return configuration.updated(parse_assignments(settable(variant), assignments))
 
 
 def settable(variant: Variant) -> dict[str, ParameterSpec]:
@@ -132,7 +109,6 @@ class EvaluationRequest(WorkersOption):
         metavar="[[VARIANT@]LABEL:]NAME=VALUE",
         help="set a parameter: everywhere, or to make or complete the parameter set LABEL",
     )  # fmt: skip
-    without_defaults: bool = switch(help="leave out the defaults where there is a parameter set")
     baselines_python: Path | None = option(
         help="interpreter of the baselines (default: .venv-baselines/bin/python, else the one "
         "in your cache; without either, evaluate prints the command that builds it)",
@@ -165,9 +141,6 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
         if name not in known:
             raise InputError(unknown_name(name, known))
     systems, notes = _with_sets(variants, everywhere, sets)
-    if request.without_defaults:
-        having = {one.kind for one in systems if one.parameter_set}
-        systems = [one for one in systems if one.parameter_set or one.kind not in having]
     models = _models(request.baseline_model)
     baselines = [
         _baseline_system(word.removeprefix(BASELINE), request.baselines_python, models, notes)
@@ -193,7 +166,7 @@ def _with_sets(
     found = [
         (label, _variant_system(variant, everywhere, label.rpartition("@")[2], own))
         for variant in variants
-        for label, own in {"": _NONE, **sets}.items()
+        for label, own in {"": ([], []), **sets}.items()
         if label.rpartition("@")[0] in {"", variant.name}
     ]
     notes = [(label, one) for label, one in found if isinstance(one, str)]
@@ -214,8 +187,8 @@ def _variant_system(
     table, (files, assignments) = settable(variant), own
     words = [word for word in everywhere if word.partition("=")[0] in table] + assignments
     try:
-        configuration = configure(variant, files, words)
-        return make_system(variant, label, configuration, parse_assignments(table, words))
+        values = parse_assignments(table, words)
+        return make_system(variant, label, configure(variant, files, values), values)
     except InputError as error:
         if not label:
             raise
@@ -240,7 +213,7 @@ def make_system(
             f"the parameters {parameter_set} set target.*; an evaluation starts on the first true "
             "box of each recording"
         )
-    values = {**to_mapping(configuration.tracker), **to_mapping(configuration.session)}
+    values = configuration.to_mapping()
     own = tuple((name, values[name]) for name in settable(variant))
     return System.of_variant(variant.name, own, parameter_set, tuple(overrides.items()))
 
@@ -260,12 +233,11 @@ def _baseline_system(
     name: str, python: Path | None, models: dict[str, dict[str, str]], notes: list[str]
 ) -> System:
     if name not in MODELS:
-        raise unknown_baseline(name, MODELS)
+        raise unknown_baseline(name)
     own = models.get(name, {})
-    files = {key: Path(path) for key, path in own.items()}
     build = ""
     try:
-        with Baseline(name, python, files) as baseline:
+        with Baseline(name, python, {key: Path(path) for key, path in own.items()}) as baseline:
             build = baseline.versions["opencv"]
     except InputError as error:
         notes.append(f"{BASELINE}{name} cannot run: {error}")

@@ -21,17 +21,15 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, VerbRequest, option
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
 from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
-from vehicle_pf_tracker.parameters.table import parse_assignments, specs, unknown_name
+from vehicle_pf_tracker.parameters.table import Value, parse_assignments, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
-
-if TYPE_CHECKING:
-    from vehicle_pf_tracker.parameters.configuration import Configuration
 
 EntryT = TypeVar("EntryT")
 
@@ -69,17 +67,27 @@ def chosen(variant: Variant, request: TrackingRequest) -> Configuration:
     InputError
         If the file cannot be used, or a name or a value does not fit.
     """
-    from vehicle_pf_tracker.parameters.configuration import Configuration
-
-    configuration = Configuration.of(variant)
-    if request.params is not None:
-        configuration = with_file(configuration, variant, request.params)
     # Those of the node alone would change nothing here, so they are refused as unknown.
-    table = {**specs(variant.parameters), **specs(type(configuration.session))}
-    configuration = configuration.updated(parse_assignments(table, request.assignments))
-    if request.seed is not None:
-        configuration = configuration.updated({"seed": request.seed})
-    return configuration
+    table = {**specs(variant.parameters), **specs(SessionParameters)}
+    values = parse_assignments(table, request.assignments)
+    seed = {} if request.seed is None else {"seed": request.seed}
+    return configure(variant, [request.params] if request.params else [], {**values, **seed})
+
+
+def configure(
+    variant: Variant, files: Iterable[Path], values: Mapping[str, Value]
+) -> Configuration:
+    """Put files, and then values by name, over a variant's defaults.
+
+    Raises
+    ------
+    InputError
+        If a file, a name or a value does not fit.
+    """
+    configuration = Configuration.of(variant)
+    for file in files:
+        configuration = with_file(configuration, variant, file)
+    return configuration.updated(values)
 
 
 def with_file(configuration: Configuration, variant: Variant, path: Path) -> Configuration:
@@ -219,18 +227,18 @@ def by_name(targets: Iterable[TargetOption], first: int) -> dict[str, dict[int, 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """A point in a source: the number of a frame, or a time after the first one.
+    """A point in a source.
 
     Attributes
     ----------
-    frame : int or None
-        Number of the frame, from 1.
-    seconds : float or None
-        Time in s, by the stamps; given where `frame` is None.
+    value : float
+        Number of a frame, from 1, or time after the first one in s, by the stamps.
+    is_time : bool
+        True for a time.
     """
 
-    frame: int | None = None
-    seconds: float | None = None
+    value: float
+    is_time: bool
 
     @classmethod
     def parse(cls, text: str) -> Moment:
@@ -246,17 +254,14 @@ class Moment:
             raise InputError(
                 f"{text!r} is neither a frame (an integer >= 1) nor a time in seconds, as 4.3s"
             )
-        return cls(int(found[1])) if found[1] else cls(seconds=float(found[2]))
+        return cls(float(found[1] or found[2]), found[1] is None)
 
     def after(self, number: int, elapsed: float) -> float:
         """Return by how much the moment is later than frame `number`, `elapsed` s from the first.
 
         The result is negative where it is earlier, and its unit is the moment's own.
         """
-        if self.frame is not None:
-            return self.frame - number
-        assert self.seconds is not None
-        return round(self.seconds - elapsed, 9)  # a stamp's rounding
+        return round(self.value - (elapsed if self.is_time else number), 9)  # a stamp's rounding
 
 
 @dataclass(frozen=True, kw_only=True)

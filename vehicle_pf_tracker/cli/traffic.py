@@ -21,10 +21,10 @@ from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
-from vehicle_pf_tracker.cli.requests import option, switch
+from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, cut_short, numbered_part, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.errors import InputError
@@ -38,13 +38,11 @@ from vehicle_pf_tracker.offline.pictures import Pictures
 from vehicle_pf_tracker.offline.run_folder import RUN, describe
 from vehicle_pf_tracker.offline.traffic_following import TrafficRun
 from vehicle_pf_tracker.offline.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
+from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, NONE, TOPIC
-
-if TYPE_CHECKING:
-    from vehicle_pf_tracker.parameters.configuration import Configuration
 
 PICTURE = "summary.png"
 HEAT = "heat.png"
@@ -77,30 +75,24 @@ class Request(TrackingRequest):
         help="show picture and counts meanwhile on a page for this machine's browsers; without "
         "PORT at any free one",
     )  # fmt: skip
-    visible_only: bool = switch(
-        help="leave vehicles that are occluded, and so predicted, out of tracks.txt"
-    )
 
 
 def run(request: Request) -> int:
     """Follow all vehicles, write the results, and print a summary."""
     configuration = _configuration(request)
-    detections = DetectionFile(request.detections) if request.detections else None
     stop = Stop()
     source = request.open_source()
     folder = request.output or Path("results", f"{Path(request.source).stem or 'run'}_traffic")
     outputs = (Products(folder, PRODUCTS), request.video)
     inputs = (*request.inputs, request.detections, request.model, request.lines)
     with claimed(outputs, inputs, overwrite=request.overwrite):
-        tracking = _tracking(request, configuration, detections, stop)
+        tracking = _tracking(request, configuration, stop)
         pictures, ended = _follow(request, tracking, source, make_folder(folder), stop)
-        notices = [*source.notices, *(detections.notices if detections is not None else [])]
-        notices += [*tracking.notices, *pictures.notices, *ended]
+        notices = [*source.notices, *tracking.notices, *pictures.notices, *ended]
         tell_notices(notices)
         document = _document(request, configuration, tracking, source.image_topic, notices)
         write_json(folder / RUN, document)
-    detector = str(request.detections or configuration.tracker.detector.kind)
-    for sentence in tracking.sentences(detector):
+    for sentence in tracking.sentences(document["detector"]):
         print(sentence)
     print(f"results are in {folder}; {PICTURE} shows all paths")
     if request.video and not pictures.problem:
@@ -108,9 +100,7 @@ def run(request: Request) -> int:
     return stop.ended(stop.status if ended else int(bool(pictures.problem)))
 
 
-def _tracking(
-    request: Request, configuration: Configuration, detections: DetectionFile | None, stop: Stop
-) -> TrafficRun:
+def _tracking(request: Request, configuration: Configuration, stop: Stop) -> TrafficRun:
     """Make the run, and check all that the options name before the first frame is read."""
     parameters = configuration.tracker
     if parameters.detector.kind == NONE and not (request.detections or request.given_targets()):
@@ -118,11 +108,11 @@ def _tracking(
             "without a detector nothing is followed; give vehicles with --target x,y,w,h, or "
             "--detections FILE"
         )
+    detections = DetectionFile(request.detections) if request.detections else None
     # A network that does not end after a signal is left, with what was tracked.
     run_it = stop.leaving if parameters.detector.kind == MODEL else call
     with shown_progress() as show:
-        parts = session_and_counter(configuration, run_it, show)
-    return TrafficRun(*parts, detections_of=detections.of if detections is not None else None)
+        return TrafficRun(*session_and_counter(configuration, run_it, show), detections)
 
 
 def _follow(
@@ -135,7 +125,7 @@ def _follow(
         stopping(stop),
         counting("tracked") as progress,
         closing(LivePage(port)) if port >= 0 else nullcontext() as page,
-        track_files(folder, counting=counts, visible_only=request.visible_only) as files,
+        track_files(folder, counting=counts) as files,
     ):
         first, frames = numbered_part(source, request.start, request.end, stop, progress)
         targets = by_name(request.given_targets(), first[0])
@@ -162,21 +152,18 @@ def _document(
 ) -> dict[str, Any]:
     """Return the content of `run.json`; `topic` is that of the images."""
     kind = configuration.tracker.detector.kind
-    document = describe(
-        request.command,
-        request.source,
-        topic,
-        notices,
-        variant=TRAFFIC.name,
-        seed=tracking.session.tracker.seed,
-        parameters={**to_mapping(configuration.tracker), **to_mapping(configuration.session)},
-    )
+    facts = {
+        "variant": TRAFFIC.name,
+        "seed": tracking.session.tracker.seed,
+        "parameters": {**to_mapping(configuration.tracker), **to_mapping(configuration.session)},
+        "detector": str(request.detections or kind),
+        "images_with_detections": tracking.session.found.images,
+        "summary": tracking.summary.to_json(tracking.counter),
+    }
+    document = describe(request.command, request.source, topic, notices, **facts)
     if kind == MODEL:
         document["versions"]["onnxruntime"] = metadata.version("onnxruntime")
         document["model_sha256"] = model_file(configuration.tracker.detector.model)[1]
-    document["detector"] = str(request.detections or kind)
-    document["images_with_detections"] = tracking.session.found.images
-    document["summary"] = tracking.summary.to_json(tracking.counter)
     return document
 
 

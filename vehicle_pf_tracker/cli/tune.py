@@ -30,8 +30,8 @@ from vehicle_pf_tracker.cli.requests import (
     positional,
     positive,
 )
-from vehicle_pf_tracker.cli.system_options import configure, make_system
-from vehicle_pf_tracker.cli.tracking_options import StartOptions
+from vehicle_pf_tracker.cli.system_options import make_system, settable
+from vehicle_pf_tracker.cli.tracking_options import StartOptions, configure
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
@@ -45,7 +45,7 @@ from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.offline.output_files import make_folder, write_csv, write_text
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
-from vehicle_pf_tracker.parameters.table import Value
+from vehicle_pf_tracker.parameters.table import Value, parse_assignments
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 TRIALS, SEEDS, SEARCH_SEED = 60, 3, 100
@@ -98,7 +98,8 @@ def run(request: Request) -> int:
     """Search, write the results, and print whether the gain holds or how to find out."""
     variant = find_variant(request.variant)
     given = [] if request.params is None else [request.params]
-    configuration = configure(variant, given, request.assignments)
+    assigned = parse_assignments(settable(variant), request.assignments)
+    configuration = configure(variant, given, assigned)
     base = make_system(variant, "", configuration, {})
     words = [word for text in request.search for word in text.split(",") if word]
     space = tuning.search_space(variant, dict(base.parameters), words)
@@ -167,7 +168,7 @@ def _judge(
         complete(plan, folder, on_this_machine(request.workers), on_progress)
     report = write_report(folder)
     if report.evaluation.failed:
-        raise InputError(f"not every run succeeded; {report.paths[0]} says why")
+        raise InputError(f"not every run succeeded; {report.page} says why")
     held_out = [source.name for source, _ in recordings if source not in what.sources]
     rows, verdict = tuning.check_gain(report.evaluation, held_out, what.objective)
     header = [what.objective, "default", "best", "change"]

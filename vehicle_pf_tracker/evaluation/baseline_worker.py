@@ -110,16 +110,12 @@ def tracker_maker(cv2: Any, name: str, models: dict[str, str]) -> Callable[[], A
         If this OpenCV does not have it.
     """
     kind = OPENCV[name]
-    homes = [cv2, getattr(cv2, "legacy", None)]
-    create = next(
-        (found for home in homes if (found := getattr(home, f"{kind}_create", None))), None
-    )
-    if create is None:
+    make: Callable[..., Any] | None = getattr(cv2, f"{kind}_create", None)
+    if make is None:
         raise LookupError(
-            f"OpenCV {cv2.__version__} of {sys.executable} has no {kind}, neither in cv2 nor in "
-            "cv2.legacy; `make baselines` builds an environment that has it"
+            f"OpenCV {cv2.__version__} of {sys.executable} has no {kind}; `make baselines` builds "
+            "an environment that has it"
         )
-    make: Callable[..., Any] = create
     if not models:
         return make
     parameters = getattr(cv2, f"{kind}_Params")()

@@ -230,7 +230,6 @@ class Baseline(Worker):
     ) -> None:
         words = [f"{key}={path}" for key, path in _checked_models(name, models).items()]
         self.name = name
-        self._box: Box | None = None
         super().__init__(f"the baseline {name}", python, [name, *words])
 
     def start(self, frame: Frame, box: Box) -> BaselineAnswer:
@@ -242,18 +241,17 @@ class Baseline(Worker):
             If the baseline refuses the box, or has died.
         """
         width, height = max(round(box.width), 1), max(round(box.height), 1)
+        self._box = box
         return self._track(frame, box=[round(box.x), round(box.y), width, height])
 
     def step(self, frame: Frame) -> BaselineAnswer:
-        """Follow the target into the next frame, which is (H, W, 3) RGB.
+        """Follow the target it was started on into the next frame, which is (H, W, 3) RGB.
 
         Raises
         ------
         InputError
-            If the baseline was not started, or has died.
+            If the baseline has died.
         """
-        if self._box is None:
-            raise InputError(f"the baseline {self.name} has no target yet: start it on a box first")
         return self._track(frame)
 
     def _track(self, frame: Frame, **request: object) -> BaselineAnswer:
@@ -261,22 +259,22 @@ class Baseline(Worker):
         pixels = np.ascontiguousarray(frame)
         answer = self._ask({"height": height, "width": width, **request}, pixels)
         found = answer["box"] is not None
-        self._box = Box(*answer["box"]) if found else self._box
-        assert self._box is not None  # a start answers with a box
+        if found:
+            self._box = Box(*answer["box"])
         return BaselineAnswer(self._box, found, float(answer["seconds"]))
 
 
-def unknown_baseline(name: str, known: Iterable[str]) -> InputError:
+def unknown_baseline(name: str) -> InputError:
     """Make the error about a baseline that there is not."""
-    names = list(known)
+    did_you_mean = suggestion(name, MODELS)
     return InputError(
-        f"unknown baseline {name!r}{suggestion(name, names)}; the baselines are {', '.join(names)}"
+        f"unknown baseline {name!r}{did_you_mean}; the baselines are {', '.join(MODELS)}"
     )
 
 
 def _checked_models(name: str, models: Mapping[str, Path]) -> dict[str, Path]:
     if name not in MODELS:
-        raise unknown_baseline(name, MODELS)
+        raise unknown_baseline(name)
     required = MODELS[name]
     if set(models) != set(required):
         words = f"these model files: {', '.join(required)}" if required else "no model files"

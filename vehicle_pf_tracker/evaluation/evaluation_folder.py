@@ -20,7 +20,6 @@
     recordings/<recording>/truth.csv
     cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json and run.json; or
     cells/<recording>/<system>/seed-<n>/failed.json      {"reason": a sentence}
-    cells/<recording>/<system>/seed-<n>-<start>/         the same from a shifted first box
 """
 
 from __future__ import annotations
@@ -113,15 +112,6 @@ def _row(line: Mapping[str, str]) -> tuple[int, Truth]:
     return int(line["frame"]), truth
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """One run of the grid: its rows and `run.json`, or the reason why there are none."""
-
-    rows: tuple[EstimateRow, ...] | None
-    run: Mapping[str, Any]
-    reason: str
-
-
 class EvaluationFolder:
     """Reads the folder of an evaluation.
 
@@ -140,8 +130,6 @@ class EvaluationFolder:
         See the plan for the order.
     seeds : tuple of int
         See the plan for the order.
-    shifted : tuple of str
-        Names of the shifted first boxes.
 
     Raises
     ------
@@ -162,7 +150,6 @@ class EvaluationFolder:
         try:
             self.recordings = tuple(Source(**entry) for entry in self.plan["recordings"])
             self.seeds = tuple(map(int, self.plan["seeds"]))
-            self.shifted = tuple(map(str, self.plan.get("shifted_starts", ())))
             self.systems = tuple(map(System.from_json, self.plan["systems"]))
         except (AttributeError, KeyError, TypeError, ValueError) as error:
             raise InputError(f"the plan {path / PLAN} is broken: {error!r}") from error
@@ -172,22 +159,27 @@ class EvaluationFolder:
         path = self.path / "recordings" / recording / TRUTH
         return read_truth(path) if path.is_file() else {}
 
-    def cell(self, recording: str, system: str, seed: int, start: str = "") -> Cell:
-        """Read one cell of the grid."""
-        folder = cell_folder(self.path, recording, system, seed, start)
+    def cell(
+        self, recording: str, system: str, seed: int
+    ) -> tuple[list[EstimateRow], dict[str, Any]]:
+        """Read the rows of one cell of the grid, and its `run.json`.
+
+        Raises
+        ------
+        InputError
+            If it has no result, with the reason, or cannot be read.
+        """
+        folder = cell_folder(self.path, recording, system, seed)
         if (folder / FAILED).is_file():
-            reason = str(read_document(folder / FAILED).get("reason", "no reason was given"))
-            return Cell(None, {}, reason)
+            raise InputError(read_document(folder / FAILED).get("reason", "no reason was given"))
         if not (folder / ESTIMATES).is_file():
-            return Cell(None, {}, "it was not run")
-        rows = tuple(read_estimates(folder / ESTIMATES))
-        return Cell(rows, read_document(folder / RUN), "")
+            raise InputError("it was not run")
+        return read_estimates(folder / ESTIMATES), read_document(folder / RUN)
 
 
-def cell_folder(folder: Path, recording: str, system: str, seed: int, start: str = "") -> Path:
-    """Return the folder of one cell of the evaluation in `folder`; `start` names a shifted box."""
-    name = f"seed-{seed}-{start}" if start else f"seed-{seed}"
-    return folder / "cells" / recording / safe_name(system) / name
+def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:
+    """Return the folder of one cell of the evaluation in `folder`."""
+    return folder / "cells" / recording / safe_name(system) / f"seed-{seed}"
 
 
 def safe_name(label: str) -> str:

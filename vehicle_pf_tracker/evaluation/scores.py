@@ -228,25 +228,15 @@ class OcclusionScore:
 
 def score_occlusions(counted: Sequence[FrameScore]) -> tuple[OcclusionScore, ...]:
     """Judge every total occlusion in the scored frames of a recording, given in its order."""
-    stretches = list(_hidden_stretches(counted))
-    ends = [begin for begin, _ in stretches[1:]] + [len(counted)]
-    return tuple(
-        _judge(counted[begin:end], counted[end:until])
-        for (begin, end), until in zip(stretches, ends, strict=False)
-    )
+    parts = [list(part) for _, part in itertools.groupby(counted, lambda frame: frame.hidden)]
+    pairs = zip(parts, [*parts[1:], []], strict=False)
+    return tuple(_judge(part, seen) for part, seen in pairs if part[0].hidden)
 
 
 def threshold(frame: FrameScore) -> float:
     """Error in px below which the estimate is on the vehicle."""
     assert frame.truth is not None
     return max(CLOSE_PX, frame.truth.box.diagonal / 2)
-
-
-def _hidden_stretches(counted: Sequence[FrameScore]) -> Iterator[tuple[int, int]]:
-    for hidden, group in itertools.groupby(enumerate(counted), lambda pair: pair[1].hidden):
-        if hidden:
-            indices = [index for index, _ in group]
-            yield indices[0], indices[-1] + 1
 
 
 def _judge(hidden: Sequence[FrameScore], seen: Sequence[FrameScore]) -> OcclusionScore:

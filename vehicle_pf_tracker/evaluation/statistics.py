@@ -52,19 +52,18 @@ class Summary:
     high: float | None
 
 
-def summarise(values: Sequence[float | None]) -> Summary | None:
-    """Summarise the values that are not None; None if there are none.
+def summarise(values: Sequence[float]) -> Summary | None:
+    """Summarise values; None if there are none.
 
     The same values give the same interval.
     """
-    known = [float(value) for value in values if value is not None]
-    if not known:
+    if not values:
         return None
-    mean = statistics.fmean(known)
-    if len(known) == 1:
+    mean = statistics.fmean(values)
+    if len(values) == 1:
         return Summary(1, mean, None, None, None)
-    low, high = _interval(known)
-    return Summary(len(known), mean, statistics.stdev(known), low, high)
+    low, high = _interval(values)
+    return Summary(len(values), mean, statistics.stdev(values), low, high)
 
 
 def _interval(values: Sequence[float]) -> tuple[float, float]:

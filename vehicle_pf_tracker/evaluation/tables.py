@@ -19,7 +19,7 @@ from __future__ import annotations
 import itertools
 import statistics
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from vehicle_pf_tracker.evaluation.columns import (
@@ -171,41 +171,6 @@ def _with_interval(found: Summary | None, column: Column, sign: str) -> TableCel
     within = interval_text(found, column)
     text = f"{found.mean:{sign}.{column.decimals}f}" + (f" ({within})" if within else "")
     return TableCell(text, found.mean)
-
-
-def starts_table(aggregates: Aggregates) -> Table | None:
-    """Compare runs from shifted first boxes with those from the true one.
-
-    None without the former.
-    """
-    if (shifted := aggregates.shifted) is None:
-        return None
-    note = "± is the standard deviation over the shifted boxes, mean over the recordings."
-    headers = [
-        header
-        for column in COMPARED
-        for header in (
-            Header(f"{column.label}: true box", column.unit),
-            Header("shifted", column.unit, note),
-        )
-    ]
-
-    def cells(label: str, column: Column) -> Iterator[TableCell]:
-        for some in (aggregates, shifted):
-            found = some.overall.get(label, {}).get(column.key)
-            by_recording = (
-                found.get(label, {}).get(column.key) for found in some.recordings.values()
-            )
-            spreads = [one.spread for one in by_recording if one and one.spread is not None]
-            spread = statistics.fmean(spreads) if spreads and some is shifted else None
-            found = found and replace(found, spread=spread)
-            yield TableCell(mean_and_spread_text(found, column), found.mean if found else None)
-
-    rows = {
-        label: [c for column in COMPARED for c in cells(label, column)]
-        for label in aggregates.order
-    }
-    return Table(headers, rows)
 
 
 def occlusions_table(runs: Mapping[str, Sequence[ScoredRun]]) -> Table | None:

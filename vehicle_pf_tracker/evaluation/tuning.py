@@ -288,8 +288,8 @@ def check_gain(
     """
     sign = 1 if OBJECTIVES[objective] is StudyDirection.MAXIMIZE else -1
     scores: dict[str, dict[str, Array]] = {"tuned on": {}, "held out": {}}
-    for name in (entry.name for entry in evaluation.recordings):
-        runs = [evaluation.of(name, system.label) for system in evaluation.systems]
+    for name in (entry.name for entry in evaluation.folder.recordings):
+        runs = [evaluation.of(name, system.label) for system in evaluation.folder.systems]
         found = [[getattr(run.metrics, objective) for run in some] for some in runs]
         part = "held out" if name in held_out else "tuned on"
         scores[part][name] = np.array(found, dtype=float)  # None is NaN

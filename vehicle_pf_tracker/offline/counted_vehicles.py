@@ -43,8 +43,8 @@ class CountedVehicles:
     ----------
     session : TrafficSession
         Drives the tracker.
-    counter : Counter, optional
-        Counts; None: there is nothing to count at.
+    counter : Counter
+        Counts at lines and in zones, if there are any.
 
     Attributes
     ----------
@@ -54,9 +54,8 @@ class CountedVehicles:
         Paths over the last images.
     """
 
-    def __init__(self, session: TrafficSession, counter: Counter | None = None) -> None:
-        self.session = session
-        self.counter = counter or Counter(CountingPlan())
+    def __init__(self, session: TrafficSession, counter: Counter) -> None:
+        self.session, self.counter = session, counter
         self.trails = Trails()
         self._restarts = session.restarts
 

@@ -199,16 +199,15 @@ class DetectionFile:
                 raise InputError(f"{where} has the frame {frame:g}; frames are integers from 1")
             numbers.extend((frame, *box[:4], box[4] if len(box) > 4 else 1.0))
         rows: Array = np.frombuffer(numbers, np.float64).reshape(-1, 6)
-        frames = rows[:, 0].astype(np.int64)
-        order = np.argsort(frames, kind="stable")
+        rows = rows[np.argsort(rows[:, 0], kind="stable")]
         self.notices: list[str] = []
-        usable = np.isfinite(rows[order, 1:]).all(axis=1) & (rows[order, 3:5] > 0).all(axis=1)
+        usable = np.isfinite(rows).all(axis=1) & (rows[:, 3:5] > 0).all(axis=1)
         if not usable.all():
             self.notices.append(
                 f"{np.count_nonzero(~usable)} of {len(rows)} detections in {path} have no area, or "
                 "numbers that are not finite, and are left out"
             )
-        self._frames, self._rows = frames[order][usable], rows[order][usable, 1:]
+        self._frames, self._rows = rows[usable, 0], rows[usable, 1:]
 
     def of(self, frame: int) -> Detections:
         """Return the detections of a frame; one without rows is one without vehicles."""

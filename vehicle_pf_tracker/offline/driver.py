@@ -239,23 +239,20 @@ def follow(
     """
     rows: dict[str, list[EstimateRow]] = {name: [] for name in trackers}
     start_ns: int | None = None
-    annotators = [
-        Annotator(name if len(trackers) > 1 else "", particles=pictures.particles)
+    annotators = {
+        name: Annotator(name if len(trackers) > 1 else "", particles=pictures.particles)
         for name in trackers
-    ]
+    }
     with pictures.drawing(frames) as (take, all_frames):
         for (number, found), later in with_next(all_frames):
             following, is_first = later and later[1], start_ns is None
             start_ns = found.stamp_ns if start_ns is None else start_ns
-            of_frame = {
-                name: tracker.row(number, found, following, is_first=is_first)
-                for name, tracker in trackers.items()
-            }
-            states = []
-            for annotator, (name, row) in zip(annotators, of_frame.items(), strict=True):
+            of_frame, states = {}, []
+            for name, tracker in trackers.items():
+                of_frame[name] = row = tracker.row(number, found, following, is_first=is_first)
                 rows[name].append(row)
-                annotator.follow(trackers[name].estimate)
-                states.append((annotator, row, trackers[name].estimate))
+                annotators[name].follow(tracker.estimate)
+                states.append((annotators[name], row, tracker.estimate))
             if on_frame is not None:
                 on_frame(found, of_frame)
             if found.frame is not None:

@@ -55,23 +55,6 @@ class ShownEstimate:
     row: EstimateRow
     picture: Frame = field(repr=False)
 
-    def plot(self, axes: Any = None) -> Any:
-        """Show it in matplotlib's `axes`, or in new ones; return them.
-
-        Raises
-        ------
-        InputError
-            If matplotlib is not installed.
-        """
-        if axes is None:
-            try:
-                from matplotlib import pyplot  # noqa: PLC0415 - an extra
-            except ImportError:
-                raise InputError("plot needs matplotlib: pip install matplotlib") from None
-            axes = pyplot.subplots()[1]
-        axes.imshow(self.picture)
-        return axes
-
     def _repr_html_(self) -> str:
         png = cv2.imencode(".png", np.ascontiguousarray(self.picture[:, :, ::-1]))[1]
         return f'<img src="data:image/png;base64,{b64encode(png.tobytes()).decode()}">'
@@ -116,17 +99,9 @@ class Estimates(Sequence[EstimateRow]):
         write_estimates(Path(path), self.rows)
 
     def to_pandas(self) -> Any:
-        """Return the table as a data frame of pandas, with NaN where there is no estimate.
+        """Return the table as a data frame of pandas, with NaN where there is no estimate."""
+        from pandas import DataFrame  # noqa: PLC0415 - no dependency of ours
 
-        Raises
-        ------
-        InputError
-            If pandas is not installed.
-        """
-        try:
-            from pandas import DataFrame  # noqa: PLC0415 - no dependency of ours
-        except ImportError:
-            raise InputError("to_pandas needs pandas: pip install pandas") from None
         return DataFrame(map(asdict, self.rows))
 
     def show(self, number: int) -> ShownEstimate:

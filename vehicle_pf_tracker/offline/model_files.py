@@ -30,7 +30,6 @@ from urllib.request import urlopen
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline.output_files import make_folder, replacing
 
-_SCHEMES = ("http", "https")
 _SECONDS = 30.0
 """Silence of a server after which it is given up: a slow one sends something meanwhile."""
 _CHUNK = 1 << 16
@@ -64,7 +63,7 @@ def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
     if not is_url(model):
         return Path(model), _sum_of(Path(model))
     url, demand = urldefrag(model)
-    if urlsplit(url).scheme not in _SCHEMES:
+    if urlsplit(url).scheme not in {"http", "https"}:
         raise InputError(f"the network {url} is at no http or https address")
     if demand and not re.fullmatch(r"sha256=[0-9a-f]{64}", demand):
         raise InputError(f"after # of a network's URL stands sha256= and 64 digits, not {demand!r}")

@@ -88,13 +88,12 @@ def video_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[Wri
 def _h264(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
     import av  # noqa: PLC0415 - an extra
 
-    container: Any = av.open(str(path), "w")
-    exact = Fraction(rate).limit_denominator(1001)  # 30000/1001 is the oddest in use
-    stream = container.add_stream("libx264", rate=exact)
-    stream.codec_context.time_base = Fraction(1, _TICKS)
-    stream.width, stream.height = size
-    stream.pix_fmt, stream.options = "yuv420p", _QUALITY
-    try:
+    with av.open(str(path), "w") as container:
+        exact = Fraction(rate).limit_denominator(1001)  # 30000/1001 is the oddest in use
+        stream: Any = container.add_stream("libx264", rate=exact)
+        stream.codec_context.time_base = Fraction(1, _TICKS)
+        stream.width, stream.height = size
+        stream.pix_fmt, stream.options = "yuv420p", _QUALITY
 
         def write(frame: Frame, at: float) -> None:
             picture = av.VideoFrame.from_ndarray(frame, format="rgb24")
@@ -103,8 +102,6 @@ def _h264(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
 
         yield write
         container.mux(stream.encode())
-    finally:
-        container.close()
 
 
 def has_display() -> bool:
@@ -146,8 +143,8 @@ class ContactSheet:
             self._last = draw
         self._modes = modes
 
-    def write(self, path: Path) -> bool:
-        """Write the sheet; False where there was no frame.
+    def write(self, path: Path) -> None:
+        """Write the sheet, where there was a frame.
 
         Raises
         ------
@@ -156,7 +153,7 @@ class ContactSheet:
         """
         thumbs = [*self._kept, *([] if self._last is None else [_thumb(self._last())])]
         if not thumbs:
-            return False
+            return
         chosen = np.unique(np.linspace(0, len(thumbs) - 1, min(len(thumbs), _MOST)).round())
         shown = [thumbs[int(index)] for index in chosen]
         height, columns = max(thumb.shape[0] for thumb in shown), min(_COLUMNS, len(shown))
@@ -166,7 +163,6 @@ class ContactSheet:
             top, left = index // columns * height, index % columns * THUMB_WIDTH
             sheet[top : top + thumb.shape[0], left : left + THUMB_WIDTH] = thumb
         write_picture(path, sheet)
-        return True
 
 
 def _thumb(picture: Frame) -> Frame:

@@ -87,16 +87,13 @@ def describe(
 
 def versions() -> dict[str, str | None]:
     """Return the versions that determine the numbers; None for packages not installed."""
-    try:
-        numba: str | None = metadata.version("numba")
-    except metadata.PackageNotFoundError:
-        numba = None
+    numba = next(iter(metadata.distributions(name="numba")), None)
     return {
         "vehicle_pf_tracker": __version__,
         "python": platform.python_version(),
         "numpy": np.__version__,
         "opencv": cv2.__version__,
-        "numba": numba,
+        "numba": numba and numba.version,
         "platform": platform.platform(),
     }
 

@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from types import MappingProxyType
 
@@ -24,6 +24,7 @@ from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles
+from vehicle_pf_tracker.offline.detectors import DetectionFile
 from vehicle_pf_tracker.offline.driver import unreached
 from vehicle_pf_tracker.offline.estimates import clock_words
 from vehicle_pf_tracker.offline.page_server import LivePage
@@ -34,7 +35,6 @@ from vehicle_pf_tracker.offline.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.trackers.session import TrackerError
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION
 from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -50,10 +50,10 @@ class TrafficRun(CountedVehicles):
     ----------
     session : TrafficSession
         Drives the tracker.
-    counter : Counter, optional
-        Counts at lines and in zones.
-    detections_of : callable or None
-        Gives the detections of a frame by its number, from 1; None leaves them to the session.
+    counter : Counter
+        Counts at lines and in zones, if there are any.
+    detections : DetectionFile or None
+        The detections of each frame; None leaves them to the session.
 
     Attributes
     ----------
@@ -66,20 +66,16 @@ class TrafficRun(CountedVehicles):
     """
 
     def __init__(
-        self,
-        session: TrafficSession,
-        counter: Counter | None = None,
-        *,
-        detections_of: Callable[[int], Detections] | None = None,
+        self, session: TrafficSession, counter: Counter, detections: DetectionFile | None = None
     ) -> None:
         super().__init__(session, counter)
         self.summary = TrafficSummary()
         self.paths = PathPicture()
         self.heat = HeatPicture()
-        self._notices: list[str] = []
+        self._notices = list(detections.notices) if detections is not None else []
         self._more_notices = 0
         self._last_events: list[str] = []
-        self._detections_of = detections_of
+        self._detections = detections
         self._targets: dict[str, dict[int, Box]] = {}
         self._by_name: dict[str, int] = {}
 
@@ -137,7 +133,7 @@ class TrafficRun(CountedVehicles):
                         self._note(f"{name!r} is outside the image, so that nothing counts there")
                 estimates = self.estimates
                 files.write(number, found.stamp_ns, estimates, crossings)
-                self.summary.add(estimates, self.counter.occupancy)
+                self.summary.add(estimates)
                 self.paths.add(found.frame, estimates)
                 period = self.session.tracker.frame_period
                 self.heat.add(found.frame, estimates, found.stamp_ns, period)
@@ -185,7 +181,7 @@ class TrafficRun(CountedVehicles):
         if found.frame is None:
             self._note(f"frame {number} was rejected: it cannot be read")
             return None
-        detections = self._detections_of(number) if self._detections_of is not None else None
+        detections = self._detections.of(number) if self._detections is not None else None
         try:
             crossings = super().follow(found.frame, found.stamp_ns, detections)
         except (InputError, TrackerError) as error:

@@ -28,7 +28,6 @@ from typing import Any, TextIO
 import numpy as np
 
 from vehicle_pf_tracker.core.errors import InputError, read_text
-from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.offline.output_files import replacing
 from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -115,22 +114,14 @@ class TrackFiles:
         Files to write to.
     counts_file : text stream or None
         File for crossings; None where nothing is counted.
-    visible_only : bool
-        Leave occluded vehicles out of the MOTChallenge file.
     """
 
     def __init__(
-        self,
-        csv_file: TextIO,
-        mot_file: TextIO,
-        counts_file: TextIO | None = None,
-        *,
-        visible_only: bool = False,
+        self, csv_file: TextIO, mot_file: TextIO, counts_file: TextIO | None = None
     ) -> None:
         self._tracks = csv.writer(csv_file, lineterminator="\n")
         self._mot = mot_file
         self._counts = csv.writer(counts_file, lineterminator="\n") if counts_file else None
-        self._in_mot = IN_TRACKS - ({TrackMode.OCCLUDED} if visible_only else set())
         self._backdating = Backdating()
         self._tracks.writerow(TRACK_COLUMNS)
         if self._counts:
@@ -155,14 +146,12 @@ class TrackFiles:
     def _write(self, frames: Frames) -> None:
         for frame, stamp_ns, estimates in frames:
             self._tracks.writerows(_track_row(frame, stamp_ns, one) for one in estimates)
-            shown = (one for one in estimates if one.mode in self._in_mot)
+            shown = (one for one in estimates if one.mode in IN_TRACKS)
             self._mot.writelines(_MOT_ROW.format(*mot_numbers(frame, one)) for one in shown)
 
 
 @contextmanager
-def track_files(
-    folder: Path, *, counting: bool = False, visible_only: bool = False
-) -> Iterator[TrackFiles]:
+def track_files(folder: Path, *, counting: bool = False) -> Iterator[TrackFiles]:
     """Open the files of a run in `folder`; they appear under their names when all is written.
 
     Until then, and if anything goes wrong, those of an earlier run stay as they are.
@@ -175,17 +164,15 @@ def track_files(
     names = [TRACKS, MOT_TRACKS, COUNTS] if counting else [TRACKS, MOT_TRACKS]
     with ExitStack() as stack:
         partials = [stack.enter_context(replacing(folder / name)) for name in names]
-        with ExitStack() as opened:
-            files = [
-                opened.enter_context(partial.open("w", encoding="utf-8", newline="\n"))
-                for partial in partials
-            ]
-            tracks = TrackFiles(*files, visible_only=visible_only)
-            yield tracks
-            tracks.finish()
+        files = [
+            stack.enter_context(partial.open("w", encoding="utf-8", newline="\n"))
+            for partial in partials
+        ]
+        tracks = TrackFiles(*files)
+        yield tracks
+        tracks.finish()
     if not counting:  # none of an earlier run beside the tracks of this one
-        with output_errors(folder / COUNTS):
-            (folder / COUNTS).unlink(missing_ok=True)
+        (folder / COUNTS).unlink(missing_ok=True)
 
 
 def _track_row(frame: int, stamp_ns: int, one: TrackEstimate) -> list[Any]:

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from collections import Counter as Tally
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -67,20 +67,15 @@ class TrafficSummary:
         self.frames = 0
         self.most_at_once = 0
         self.vehicles: dict[int, VehicleLog] = {}
-        self._occupancy: Tally[str] = Tally()
-        self._most_in_zone: dict[str, int] = {}
 
-    def add(self, estimates: Iterable[TrackEstimate], occupancy: Mapping[str, int]) -> None:
-        """Take the next frame, and the number of vehicles in each zone."""
+    def add(self, estimates: Iterable[TrackEstimate]) -> None:
+        """Take the next frame."""
         self.frames += 1
         confirmed = [one for one in estimates if one.mode in (*CONFIRMED, TrackMode.LOST)]
         for one in confirmed:
             self._follow(one)
         present = sum(one.mode is not TrackMode.LOST for one in confirmed)
         self.most_at_once = max(self.most_at_once, present)
-        for zone, count in occupancy.items():
-            self._occupancy[zone] += count
-            self._most_in_zone[zone] = max(count, self._most_in_zone.get(zone, 0))
 
     def _follow(self, one: TrackEstimate) -> None:
         if one.mode is TrackMode.TRACKING:
@@ -117,8 +112,7 @@ class TrafficSummary:
         ]
         zones = [
             f"zone {zone.name}: {counter.count(zone.name, ENTRY)} entered, "
-            f"{counter.count(zone.name, EXIT)} left, {self._mean_in(zone.name):.1f} there on "
-            f"average, at most {self._most_in_zone.get(zone.name, 0)}"
+            f"{counter.count(zone.name, EXIT)} left"
             for zone in counter.plan.zones
         ]
         return [*found, *lines, *zones]
@@ -135,27 +129,12 @@ class TrafficSummary:
                 {"place": place, "direction": direction, "class": label, "count": count}
                 for (place, direction, label), count in sorted(counter.totals.items())
             ],
-            "occupancy": {
-                zone.name: {
-                    "mean": self._mean_in(zone.name),
-                    "most": self._most_in_zone.get(zone.name, 0),
-                }
-                for zone in counter.plan.zones
-            },
         }
-
-    def _mean_in(self, zone: str) -> float:
-        return self._occupancy[zone] / max(self.frames, 1)
 
 
 def _direction(counter: Counter, place: str, direction: str) -> str:
-    classes = Tally(
-        {
-            label: count
-            for (at, to, label), count in counter.totals.items()
-            if (at, to) == (place, direction) and label
-        }
-    )
+    both, totals = [place, direction], counter.totals.items()
+    classes = Tally({label: count for (*at, label), count in totals if at == both and label})
     return f"{counter.count(place, direction)} {direction}{_listed(classes)}"
 
 

@@ -67,16 +67,15 @@ def main(variant: str | None = None, args: Sequence[str] | None = None) -> int:
     try:
         return _run(name, sys.argv[1:] if args is None else args)
     except InputError as error:
-        print(f"{program}: {error}", file=sys.stderr)
-        return 1
+        reason = str(error)
     except ModuleNotFoundError as error:
-        print(f"{program}: {_NO_ROS.format(error.name)}", file=sys.stderr)
-        return 1
+        reason = _NO_ROS.format(error.name)
     except MemoryError:
-        print(f"{program}: there is not enough memory", file=sys.stderr)
-        return 1
+        reason = "there is not enough memory"
     except KeyboardInterrupt:
         return 0
+    print(f"{program}: {reason}", file=sys.stderr)
+    return 1
 
 
 video_source = main

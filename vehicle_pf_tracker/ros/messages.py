@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from geometry_msgs.msg import (
     Point32,
     PointStamped,
@@ -80,6 +80,9 @@ UNKNOWN_ANGLE = math.pi**2 / 3
 _DATATYPES = {"<u4": PointField.UINT32, "|u1": PointField.UINT8, "<f4": PointField.FLOAT32}
 _PARTICLE = np.dtype([(name, "<f4") for name in ("x", "y", "z", "weight")])
 
+Status = tuple[bytes, str, str, Mapping[str, object]]
+"""Level, subject, words and values of a status."""
+
 
 def stamp_ns(header: Header) -> int:
     """Stamp of a header in ns."""
@@ -98,26 +101,6 @@ def status(
     return DiagnosticStatus(
         level=level, name=name, message=words, hardware_id=hardware_id, values=pairs
     )
-
-
-def mode_message(
-    header: Header, name: str, hardware_id: str, mode: str, values: Mapping[str, object]
-) -> DiagnosticArray:
-    """Make the `~/mode` of one image.
-
-    Parameters
-    ----------
-    header : Header
-        The image's.
-    name, hardware_id : str
-        Node, and topic of its images.
-    mode : str
-        A `Mode`, `WAITING` or `REJECTED`.
-    values : mapping
-        Scalars of the estimate, or the reason of a rejection.
-    """
-    one = status(LEVELS[mode], name, mode, hardware_id, {"mode": mode, **values})
-    return DiagnosticArray(header=header, status=[one])
 
 
 def point_message(header: Header, point: Sequence[float] | Array) -> PointStamped:

@@ -36,7 +36,7 @@ from types import FrameType
 from typing import TypeVar
 
 import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
@@ -94,13 +94,15 @@ def run_process(name: str, arguments: Sequence[str], serve: Callable[[list[str]]
         interrupts.left_to_ros = True
         return serve(remove_ros_args(list(arguments)))
     except InputError as error:
-        return _fail(name, str(error))
+        reason = str(error)
     except (RCLError, UnknownROSArgsError) as error:
         if interrupts.left_to_ros and not rclpy.ok():
             return 0  # a signal took the ground from under a call
-        return _fail(name, _first_sentence(error))
+        reason = _first_sentence(error)
     finally:
         rclpy.try_shutdown()
+    print(f"{name}: {reason}", file=sys.stderr)
+    return 1
 
 
 def answer_usage(name: str, words: Sequence[str], usage: str) -> int:
@@ -184,11 +186,6 @@ def _files_for_others(arguments: Sequence[str], nodes: Sequence[Node]) -> Iterat
             yield refusals[0]
 
 
-def _fail(name: str, sentence: str) -> int:
-    print(f"{name}: {sentence}", file=sys.stderr)
-    return 1
-
-
 def _first_sentence(error: Exception) -> str:
     if isinstance(error, UnknownROSArgsError):
         return f"unknown ROS arguments: {error}"
@@ -216,10 +213,8 @@ def keep_image_memory() -> bool:
         True if it was done: not where the C library has no such options, or where the environment
         already says what to do.
     """
-    if any(name in os.environ for name in _OPTIONS):
-        return False
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
-    if mallopt is None:
+    if mallopt is None or any(name in os.environ for name in _OPTIONS):
         return False
     taken = [mallopt(number, value) for number, value in _OPTIONS.values()]
     return all(taken)
@@ -240,8 +235,6 @@ _MOST_FAILURES = 20
 _FAILING = 10.0
 """This many failed callbacks within this many seconds mean a broken node, not malformed requests:
 it ends, so that ``respawn`` in a launch file can restart it."""
-
-_BROKEN = "a request could not be answered:"
 
 
 def run_nodes(
@@ -282,26 +275,19 @@ def _spin(executor: SingleThreadedExecutor, node: Node) -> int:
     """Run callbacks until a signal comes; return 1 if they fail repeatedly."""
     failures: deque[float] = deque(maxlen=_MOST_FAILURES)
     while rclpy.ok():
-        if not _spin_once(executor, node):
+        try:
+            executor.spin_once()
+        except Exception:  # a malformed request, from which rclpy's own services are not safe
+            if not rclpy.ok():
+                break  # a signal took the ground from under a call
+            words = f"a request could not be answered: {traceback.format_exc()}"
+            node.get_logger().error(words, throttle_duration_sec=1.0)
             failures.append(time.monotonic())
-            if len(failures) == _MOST_FAILURES and failures[-1] - failures[0] < _FAILING:
-                words = f"{_MOST_FAILURES} callbacks failed within {_FAILING:g} s: ending"
-                node.get_logger().fatal(words)
-                return 1
+        if len(failures) == _MOST_FAILURES and failures[-1] - failures[0] < _FAILING:
+            words = f"{_MOST_FAILURES} callbacks failed within {_FAILING:g} s: ending"
+            node.get_logger().fatal(words)
+            return 1
     return 0
-
-
-def _spin_once(executor: SingleThreadedExecutor, node: Node) -> bool:
-    try:
-        executor.spin_once()
-    except ExternalShutdownException:
-        pass
-    except Exception:  # a malformed request, from which rclpy's own services are not safe
-        if rclpy.ok():
-            text = traceback.format_exc()
-            node.get_logger().error(f"{_BROKEN} {text}", throttle_duration_sec=1.0)
-            return False
-    return True
 
 
 def node_usage(name: str) -> str:

@@ -15,8 +15,8 @@
 """Every private name of rclpy that this package uses, with a check and a public way without it.
 
 Private names may change with any release. Each is looked for when a node starts; where one is
-missing, the public interface serves instead, with fewer words, and `missing` says
-what is lost. Tried with rclpy 7.1.6 (Jazzy) and 9.1.2 (Kilted).
+missing, the public interface serves instead, with fewer words, and the node says so. Tried with
+rclpy 7.1.6 (Jazzy) and 9.1.2 (Kilted).
 """
 
 from __future__ import annotations
@@ -34,13 +34,6 @@ RCLError: type[Exception] = getattr(_compiled, "RCLError", RuntimeError)
 
 UnknownROSArgsError: type[Exception] = getattr(_compiled, "UnknownROSArgsError", RuntimeError)
 """Arguments after ``--ros-args`` that ROS does not know; its public base is RuntimeError too."""
-
-
-def missing(node: LifecycleNode) -> list[str]:
-    """List the features that this rclpy lacks for `node`, a sentence each, with the fallback."""
-    if state_machine(node) is not None:
-        return []
-    return ["its state machine is hidden: failed transitions are reported without why"]
 
 
 def change_state_service(node: LifecycleNode) -> Service | None:

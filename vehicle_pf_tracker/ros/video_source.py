@@ -166,7 +166,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         self._settings = settings
         options = QoSOverridingOptions.with_default_policies()
         self._image = self.create_publisher(Image, "image", _DEPTH, qos_overriding_options=options)
-        self._is_live = False
+        self._is_live = self._goes_on = False
         self._stop = threading.Event()
         self._pace = Pace(self._now, self._stop)
         self._retry = _FIRST_RETRY
@@ -200,43 +200,39 @@ class VideoSourceNode(Node):  # type: ignore[misc]
 
     def _run(self) -> None:
         try:
-            goes_on = self._show(self._open())
-            while goes_on and not self._stop.is_set():  # it is live, or looped
-                again = self._opened_again()
-                goes_on = again is None or self._show(again)
+            while self._show() and not self._is_over:
+                pass
         except InputError as error:
             self.problem = str(error)
         except Exception as error:
             if self.context.ok():  # otherwise a signal took the ground from under a call
                 self.problem = f"{type(error).__name__}: {error}"
 
-    def _show(self, source: Footage) -> bool:
+    @property
+    def _is_over(self) -> bool:
+        return self._stop.is_set() or not self.context.ok()
+
+    def _show(self) -> bool:
         """Show the source until it ends or breaks; return whether it is to be opened again."""
         try:
-            self._show_images(source)
+            source = self._open()
+            self._is_live = isinstance(source, Camera)
+            self._goes_on = self._is_live or self._settings.loop
+            self._pace.begin(is_live=self._is_live)
+            for picture in source.frames():
+                if self._stop.is_set():
+                    return False
+                self._publish(picture)
+            if self._is_live:
+                raise InputError(f"{self._source_name} sends no more images")
         except InputError as error:
-            self._note_break(str(error))
+            if not self._goes_on:
+                raise
+            self._await_source(str(error))
             return True
-        if self._stop.is_set() or not self.context.ok():
-            return False
-        if self._is_live:
-            self._note_break(f"{self._source_name} sends no more images")
-            return True
-        for notice in source.notices:
-            if notice not in self._told:
-                self._told.add(notice)
-                self.get_logger().warning(notice)
-        if not self._settings.loop:
-            self.get_logger().info(f"the source has ended after {self._shown} images")
-        return self._settings.loop
-
-    def _show_images(self, source: Footage) -> None:
-        self._is_live = isinstance(source, Camera)
-        self._pace.begin(is_live=self._is_live)
-        for picture in source.frames():
-            if self._stop.is_set():
-                return
-            self._publish(picture)
+        if not self._is_over:
+            self._note_end(source)
+        return self._goes_on
 
     def _publish(self, picture: Picture) -> None:
         stamp = self._pace.stamp(picture.stamp_ns)
@@ -265,11 +261,17 @@ class VideoSourceNode(Node):  # type: ignore[misc]
                 throttle_duration_sec=_SAY_AGAIN,
             )
 
-    def _note_break(self, why: str) -> None:
-        """Wait before the next try, or raise where there is none."""
-        if not self._is_live and not self._settings.loop:
-            raise InputError(why)
-        if self._stop.is_set() or not self.context.ok():
+    def _note_end(self, source: Footage) -> None:
+        for notice in source.notices:
+            if notice not in self._told:
+                self._told.add(notice)
+                self.get_logger().warning(notice)
+        if not self._goes_on:
+            self.get_logger().info(f"the source has ended after {self._shown} images")
+
+    def _await_source(self, why: str) -> None:
+        """Say why there are no images, and wait before the next try."""
+        if self._is_over:
             return
         if self._broke_at is None:
             self._broke_at = time.monotonic()
@@ -279,14 +281,6 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         )
         self._stop.wait(self._retry)
         self._retry = min(2 * self._retry, _LAST_RETRY)
-
-    def _opened_again(self) -> Footage | None:
-        """Open the source once more; None where it is not there."""
-        try:
-            return self._open()
-        except InputError as error:
-            self._note_break(str(error))
-            return None
 
 
 def run_video_source(arguments: Sequence[str]) -> int:

@@ -23,7 +23,6 @@ from typing import Any, Generic, TypeAlias, TypeVar
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
 from vehicle_pf_tracker.scenes import drives
-from vehicle_pf_tracker.scenes.compositing import check_seed
 from vehicle_pf_tracker.scenes.drive import DriveParameters, HighwayParameters, highway
 from vehicle_pf_tracker.scenes.drives import BarParameters, BrakingParameters, HidingParameters
 from vehicle_pf_tracker.scenes.scene import Scene
@@ -106,22 +105,22 @@ def scene_of(
     Raises
     ------
     InputError
-        If the scene or a setting is unknown (naming the known ones), or a value does not fit.
+        If the scene or a setting is unknown (naming the known ones), or a value or the seed does
+        not fit.
     """
     if name not in scenes:
         raise InputError(
             f"there is no scene {name!r}{suggestion(name, scenes)}; choose one of "
             f"{', '.join(scenes)}"
         )
+    if seed < 0:
+        raise InputError(f"the seed of a scene must be an integer >= 0, got {seed}")
     kind = scenes[name]
     known = specs(kind.parameters)
-    unknown = [key for word in settings if (key := word.partition("=")[0]) not in known]
-    if unknown:
-        raise InputError(
-            f"the scene {name} has no setting {', '.join(map(repr, unknown))}"
-            f"{suggestion(unknown[0], known)}; "
-            f"it has {', '.join(known) or 'none'}"
-        )
-    values = settings if isinstance(settings, Mapping) else parse_assignments(known, settings)
-    parameters = from_mapping(kind.parameters, {**kind.settings, **values})
-    return kind.build(parameters, check_seed(seed))
+    for key in (word.partition("=")[0] for word in settings):
+        if key not in known:
+            meant, has = suggestion(key, known), ", ".join(known) or "none"
+            raise InputError(f"the scene {name} has no setting {key!r}{meant}; it has {has}")
+    if not isinstance(settings, Mapping):
+        settings = parse_assignments(known, settings)
+    return kind.build(from_mapping(kind.parameters, {**kind.settings, **settings}), seed)

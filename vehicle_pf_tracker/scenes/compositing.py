@@ -33,8 +33,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.box import Box, Position
 
 Image: TypeAlias = npt.NDArray[np.float32]
 """RGB picture while it is composed, shape (height, width, 3), levels 0 to 255."""
@@ -54,12 +53,14 @@ class PixelWindow:
     @classmethod
     def of(cls, box: Box, width: int, height: int) -> PixelWindow:
         """Make the window of all pixels of a `width` x `height` px image that `box` touches."""
-        return cls(
-            max(math.floor(box.x), 0),
-            max(math.floor(box.y), 0),
-            min(math.ceil(box.x + box.width), width),
-            min(math.ceil(box.y + box.height), height),
-        )
+        corners = box.corners
+        return cls.between(corners[0], corners[2], width, height)
+
+    @classmethod
+    def between(cls, low: Position, high: Position, width: int, height: int) -> PixelWindow:
+        """Make the window of all pixels that the rectangle between two corners touches."""
+        left, top = (max(math.floor(side), 0) for side in low)
+        return cls(left, top, min(math.ceil(high[0]), width), min(math.ceil(high[1]), height))
 
     @property
     def empty(self) -> bool:
@@ -153,23 +154,6 @@ def interpolate(grid: Array, y: Array, x: Array) -> Array:
     return values
 
 
-def paint(canvas: Image, sprite: Sprite, box: Box) -> None:
-    """Paint `sprite`, filling `box`, over `canvas` in place; what lies outside is clipped."""
-    window = PixelWindow.of(box, canvas.shape[1], canvas.shape[0])
-    if window.empty:
-        return
-    layer = sprite.layer(box, window)
-    region = canvas[window.slices]
-    region *= 1 - layer[..., 3:]
-    region += layer[..., :3]
-
-
-def overlap(one: Box, other: Box) -> bool:
-    """Return whether the two boxes share more than an edge."""
-    across = one.x < other.x + other.width and other.x < one.x + one.width
-    return across and one.y < other.y + other.height and other.y < one.y + one.height
-
-
 def cells_inside(
     outline: Array, rows: int, columns: int
 ) -> tuple[PixelWindow, npt.NDArray[np.bool_]]:
@@ -188,13 +172,8 @@ def cells_inside(
         The part of the grid around the polygon.
     inside : array of bool, shape of the window
     """
-    (left, top), (right, bottom) = outline.min(axis=0).tolist(), outline.max(axis=0).tolist()
-    window = PixelWindow(
-        max(math.floor(left), 0),
-        max(math.floor(top), 0),
-        min(math.ceil(right), columns),
-        min(math.ceil(bottom), rows),
-    )
+    low, high = outline.min(axis=0).tolist(), outline.max(axis=0).tolist()
+    window = PixelWindow.between(low, high, columns, rows)
     x: Array = np.arange(window.left, window.right, dtype=np.float64) + 0.5
     y: Array = np.arange(window.top, window.bottom, dtype=np.float64) + 0.5
     crossings = _crossings(outline, y)
@@ -225,16 +204,3 @@ def _crossings(outline: Array, y: Array) -> Array:
 def stream(seed: int, name: str, index: int = 0) -> np.random.Generator:
     """Make the generator of the part `name` of a scene, for its frame or copy `index`."""
     return np.random.default_rng([seed, zlib.crc32(name.encode()), index])
-
-
-def check_seed(seed: int) -> int:
-    """Return `seed` if a scene can be made from it.
-
-    Raises
-    ------
-    InputError
-        If it is not an integer >= 0.
-    """
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise InputError(f"the seed of a scene must be an integer >= 0, got {seed!r}")
-    return seed

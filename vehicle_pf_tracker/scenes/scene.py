@@ -34,15 +34,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.compositing import (
-    Colour,
-    Image,
-    PixelWindow,
-    Sprite,
-    overlap,
-    paint,
-    stream,
-)
+from vehicle_pf_tracker.scenes.compositing import Colour, Image, PixelWindow, Sprite, stream
 
 FIRST_STAMP_NS = 1_000_000_000
 """Stamp of frame 0: a stamp of zero means "unknown" to many tools."""
@@ -99,10 +91,14 @@ class Actor:
     hides: bool = True
 
     def paint(self, picture: Image, frame: float) -> None:
-        """Paint it over `picture` where it is in `frame`."""
+        """Paint it over `picture` where it is in `frame`; what lies outside is clipped."""
         box = self.path(frame)
-        if not PixelWindow.of(box, picture.shape[1], picture.shape[0]).empty:
-            paint(picture, self.seen(frame), box)
+        window = PixelWindow.of(box, picture.shape[1], picture.shape[0])
+        if not window.empty:
+            layer = self.seen(frame).layer(box, window)
+            region = picture[window.slices]
+            region *= 1 - layer[..., 3:]
+            region += layer[..., :3]
 
     def seen(self, frame: float) -> Sprite:
         """Give the sprite it shows in `frame`."""
@@ -196,7 +192,8 @@ class Scene(Stage):
         sprite = self.actors[self.target].seen(index)
         seen = sprite.coverage(box, window)
         for actor in self.actors[self.target + 1 :]:
-            if actor.hides and overlap(place := self._in_image(actor.path(index), index), box):
+            place = self._in_image(actor.path(index), index)
+            if actor.hides and place.iou(box) > 0:
                 seen = seen * (1 - actor.seen(index).coverage(place, window))
         # Rounded because sums of floats must not make a free vehicle look 1e-16 hidden.
         return round(float(min(max(seen.sum() / sprite.area(box), 0.0), 1.0)), 9)
@@ -296,10 +293,8 @@ class OutdoorCamera:
 
     def gain(self, index: int) -> Colour:
         """Give the gains of red, green and blue in frame `index`."""
-        flicker = 1.0
-        if self.disturbance.flicker > 0:
-            noise = stream(self.seed, "flicker", index).standard_normal()
-            flicker += self.disturbance.flicker * float(noise)
+        noise = float(stream(self.seed, "flicker", index).standard_normal())
+        flicker = 1.0 + self.disturbance.flicker * noise
         return flicker, flicker, flicker
 
 

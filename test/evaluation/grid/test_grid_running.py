@@ -13,7 +13,7 @@
 # limitations under the License.
 
 import json
-from dataclasses import astuple, replace
+from dataclasses import replace
 
 import pytest
 from evaluation_samples import (
@@ -31,7 +31,6 @@ from evaluation_samples import (
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.grid import sources
-from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.recordings.reader import Recording
@@ -61,25 +60,12 @@ def test_every_cell_is_in_the_folder_as_run_writes_it(plan, out):
     for recording in HIDDEN:
         assert len(folder.truth(recording)) == FRAMES
         for name, seed in (("pf", 0), ("pf", 1), ("ms", 0)):
-            cell = folder.cell(recording, name, seed)
-            assert len(cell.rows) == FRAMES
-            assert cell.run["seed"] == seed
-            assert cell.run["variant"] == name
+            rows, run = folder.cell(recording, name, seed)
+            assert len(rows) == FRAMES
+            assert run["seed"] == seed
+            assert run["variant"] == name
     metrics = json.loads((out / "cells" / "free" / "pf" / "seed-1" / "metrics.json").read_text())
     assert metrics["rmse_px"] < 6
-
-
-def test_shifted_first_boxes_have_cells_of_their_own_with_the_first_seed(recordings, out):
-    plan = replace(make_plan(recordings[:1]), shifted=shifted_starts())
-    assert complete(plan, out, here, silent) == 3 + 2 * 12
-    folder = EvaluationFolder(out)
-    true = folder.truth("bridge")[1].box
-    for start in shifted_starts():
-        for name in ("pf", "ms"):
-            run = folder.cell("bridge", name, 0, start.name).run
-            assert run["target"] == list(astuple(start.box(true))) != list(astuple(true))
-        assert folder.cell("bridge", "pf", 1, start.name).reason == "it was not run"
-    assert complete(plan, out, here, silent) == 0
 
 
 def test_results_do_not_depend_on_the_number_of_workers(plan, tmp_path):
@@ -145,13 +131,12 @@ def test_whatever_decides_a_run_is_in_its_key(recordings):
     others = [
         replace(cell, max_diff=0.02),
         replace(cell, seed=5),
-        replace(cell, start=shifted_starts()[0]),
         replace(cell, source=replace(cell.source, topic="/rear")),
         replace(cell, source=replace(cell.source, digest="0")),
         replace(cell, system=system("pf", sigma=3.0)),
         replace(cell, system=system("ms")),
     ]
-    assert len({one.key() for one in (cell, *others)}) == 8
+    assert len({one.key() for one in (cell, *others)}) == 7
     renamed = replace(cell, source=replace(cell.source, name="other", path="/elsewhere"))
     assert renamed.key() == cell.key()
 
@@ -162,7 +147,8 @@ def test_a_recording_that_changed_since_it_was_planned_is_no_result(tmp_path, ou
     file = next(path.glob("*.mcap"))
     file.write_bytes(file.read_bytes() + b"\0")
     complete(plan, out, here, silent)
-    assert "changed since it was planned" in EvaluationFolder(out).cell("rec", "ms", 0).reason
+    with pytest.raises(InputError, match="changed since it was planned"):
+        EvaluationFolder(out).cell("rec", "ms", 0)
 
 
 def test_what_a_killed_run_left_half_written_goes(plan, out):
@@ -176,8 +162,9 @@ def test_what_cannot_run_says_why_and_is_tried_again(recordings, out, tmp_path):
     plan = make_plan(recordings, [System.of_baseline("csrt", str(tmp_path / "none")), system("ms")])
     assert complete(plan, out, here, silent) == 4
     folder = EvaluationFolder(out)
-    assert "there is no interpreter" in folder.cell("free", "baseline:csrt", 0).reason
-    assert folder.cell("free", "ms", 0).rows is not None
+    with pytest.raises(InputError, match="there is no interpreter"):
+        folder.cell("free", "baseline:csrt", 0)
+    assert folder.cell("free", "ms", 0)
     assert complete(plan, out, here, silent) == 2
 
 
@@ -188,8 +175,9 @@ def test_a_fault_of_the_program_costs_only_its_cell(plan, out, monkeypatch):
     monkeypatch.setattr("vehicle_pf_tracker.trackers.papers.ms.MsTracker.start", broken)
     complete(plan, out, here, silent)
     folder = EvaluationFolder(out)
-    assert "ZeroDivisionError" in folder.cell("free", "ms", 0).reason
-    assert folder.cell("free", "pf", 0).rows is not None
+    with pytest.raises(InputError, match="ZeroDivisionError"):
+        folder.cell("free", "ms", 0)
+    assert folder.cell("free", "pf", 0)
 
 
 def test_a_variant_without_particles_does_not_depend_on_the_seed(recordings, tmp_path):

@@ -45,9 +45,9 @@ def rmse(evo, true, estimated):
 
 def test_evo_agrees_on_the_rmse_of_a_recorded_run(evo, made_evaluation, tmp_path):
     evaluation = score_folder(EvaluationFolder(made_evaluation))
-    paths = {entry.name: Path(entry.path) for entry in evaluation.recordings}
+    paths = {entry.name: Path(entry.path) for entry in evaluation.folder.recordings}
     for number, run in enumerate(evaluation.runs):
-        rows = evaluation.folder.cell(run.recording, run.system, run.seed).rows
+        rows, _ = evaluation.folder.cell(run.recording, run.system, run.seed)
         source = Recording(paths[run.recording])
         with run_recording(tmp_path / str(number), "node", ["car"], source.truth()) as keep:
             for found, row in zip(source.frames(), rows, strict=True):

@@ -60,12 +60,13 @@ class Page(HTMLParser):
 @pytest.fixture(scope="module")
 def written(made_evaluation, tmp_path_factory):
     folder = shutil.copytree(made_evaluation, tmp_path_factory.mktemp("written") / "evaluation")
-    return folder, write_report(folder).paths
+    write_report(folder)
+    return folder
 
 
 @pytest.fixture(scope="module")
 def text(written):
-    return written[1][0].read_text(encoding="utf-8")
+    return (written / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -137,17 +138,16 @@ def test_tables_can_be_sorted_by_numbers(page):
 
 
 def test_the_same_folder_gives_the_same_files(written):
-    folder, paths = written
     names = ["report.html", "summary.md", "summary.csv", "summary.tex", "summary.json"]
-    assert paths == [folder / name for name in names]
-    before = [path.read_bytes() for path in paths]
-    assert [path.read_bytes() for path in write_report(folder).paths] == before
+    before = [(written / name).read_bytes() for name in names]
+    assert write_report(written).page == written / "report.html"
+    assert [(written / name).read_bytes() for name in names] == before
 
 
 def test_names_are_no_markup(evaluation_copy):
     plan = (evaluation_copy / "evaluation.json").read_text()
     (evaluation_copy / "evaluation.json").write_text(plan.replace('"-o"', '"<script>x</script>"'))
-    page = Page(write_report(evaluation_copy).paths[0].read_text())
+    page = Page(write_report(evaluation_copy).page.read_text())
     assert "<script>x</script>" in page.text("code")
     assert len(page.all("script")) == 1
 
@@ -156,7 +156,7 @@ def test_a_folder_without_any_result_still_has_a_report(made_evaluation, tmp_pat
     folder = tmp_path / "evaluation"
     folder.mkdir()
     shutil.copy(made_evaluation / "evaluation.json", folder)
-    page = Page(write_report(folder).paths[0].read_text())
+    page = Page(write_report(folder).page.read_text())
     assert "12 of 12 cells have no result" in page.text("li")
     assert "No cell of this recording has a result." in page.text("p")
 

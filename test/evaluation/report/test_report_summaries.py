@@ -15,11 +15,9 @@
 import csv
 import io
 import json
-import shutil
 import statistics
-from dataclasses import astuple, replace
+from dataclasses import astuple
 
-import evaluation_samples as samples
 import pytest
 from evaluation_samples import ALONE, HIDDEN, SEEDS, VARIANTS
 
@@ -30,14 +28,11 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     cell_folder,
     read_document,
 )
-from vehicle_pf_tracker.evaluation.grid.cells import shifted_starts
-from vehicle_pf_tracker.evaluation.grid.running import complete
 from vehicle_pf_tracker.evaluation.report import writing
 from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
-from vehicle_pf_tracker.evaluation.report.page import make_page
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
 from vehicle_pf_tracker.evaluation.statistics import summarise
-from vehicle_pf_tracker.evaluation.tables import behind_table, overall_table, starts_table
+from vehicle_pf_tracker.evaluation.tables import behind_table, overall_table
 from vehicle_pf_tracker.offline.output_files import write_json
 
 
@@ -49,17 +44,6 @@ def evaluation(made_evaluation):
 @pytest.fixture(scope="module")
 def aggregates(evaluation):
     return aggregate(evaluation)
-
-
-@pytest.fixture(scope="module")
-def shifted(tmp_path_factory):
-    """An evaluation with shifted first boxes, of which one has no result."""
-    folder = tmp_path_factory.mktemp("shifted")
-    plan = samples.make_plan(samples.write_recordings(folder))
-    plan = replace(plan, shifted=shifted_starts())
-    complete(plan, folder / "out", samples.here, samples.silent)
-    shutil.rmtree(cell_folder(folder / "out", "free", "ms", 0, "left"))
-    return score_folder(EvaluationFolder(folder / "out"))
 
 
 def stored(made_evaluation, recording, system, key):
@@ -112,30 +96,6 @@ def test_the_best_comes_first_and_the_others_are_compared_with_it_by_recording(
         assert mean.text == f"{own.mean:.1f} ({own.low:.1f} to {own.high:.1f})"
 
 
-def test_shifted_first_boxes_are_compared_with_the_true_one(shifted):
-    aggregates = aggregate(shifted)
-    values = [
-        [read_document(path)["success_auc"] for path in shifted.folder.path.glob(cells)]
-        for cells in (f"cells/{name}/ms/seed-0-*/metrics.json" for name in HIDDEN)
-    ]
-    true, other = starts_table(aggregates).rows["ms"][:2]
-    alone = aggregate(replace(shifted, shifted=())).overall["ms"]["success_auc"].mean
-    assert true.value == pytest.approx(alone) and "±" not in true.text
-    mean = statistics.fmean(map(statistics.fmean, values))
-    spread = statistics.fmean(map(statistics.stdev, values))
-    assert other.text == f"{mean:.3f} ± {spread:.3f}"
-    assert min(map(len, values)) == 11 and spread > 0
-    rows = csv.DictReader(io.StringIO(writing.summary_csv(aggregates)))
-    counts = [row["count"] for row in rows if row["start"] == "shifted"
-              and (row["system"], row["metric"]) == ("ms", "rmse_px")]  # fmt: skip
-    assert counts == ["2", "12", "11"]
-    text = writing.summary_markdown(shifted, aggregates)
-    assert "## Shifted starts\n" in text and "1 of 54 cells have no result" in text
-    assert "| ms | free | 0 left | it was not run |" in text
-    page = make_page(shifted, aggregates)
-    assert 'id="starts"' in page and "free: seed 0 left" in page
-
-
 def test_recoveries_are_counted_over_all_runs(aggregates, evaluation):
     judged = [r for run in evaluation.of(system="pf") for r in run.metrics.recovered]
     judged = [r for r in judged if r is not None]
@@ -171,7 +131,6 @@ def test_json_is_json_and_has_everything(evaluation, aggregates):
     document = writing.summary_json(evaluation, aggregates)
     document = json.loads(json.dumps(document, allow_nan=False))
     assert document["overall"]["pf"]["rmse_px"]["count"] == len(HIDDEN)
-    assert document["shifted"] is None
     assert set(document["recordings"]) == set(HIDDEN)
     assert document["behind"][aggregates.order[1]]["rmse_px"]["count"] == len(HIDDEN)
     assert len(document["failed"]) == len(HIDDEN)

@@ -90,12 +90,6 @@ def test_low_scores_are_lost_on_default_thresholds_only(real, name):
     assert len(real.track(f"{name}-low", scene(lanes(), SIZE), detections)[0]) > FRAMES
 
 
-def test_an_unknown_baseline_is_told(real):
-    words = r"unknown baseline 'deepsort' .*; the baselines are sort"
-    with pytest.raises(InputError, match=words):
-        real.track("deepsort", scene(lanes(), SIZE), np.empty((0, 6)))
-
-
 ECHO = """
 import json, sys
 print(json.dumps({"trackers": "0", "trackeval": "0"}), flush=True)

@@ -161,8 +161,10 @@ def test_the_mean_is_over_recordings_not_runs():
 class Compared:
     """Stands for an evaluation of two systems on two recordings, by the scores of their runs."""
 
-    systems = (SimpleNamespace(label="pf"), SimpleNamespace(label="pf@best"))
-    recordings = SOURCES
+    folder = SimpleNamespace(
+        systems=(SimpleNamespace(label="pf"), SimpleNamespace(label="pf@best")),
+        recordings=SOURCES,
+    )
 
     def __init__(self, metric, scores):
         self.metric, self.scores = metric, scores

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import signal
 import threading
-import time
 from pathlib import Path
 
 import pytest
@@ -181,22 +180,3 @@ def test_a_target_that_cannot_be_saved_costs_no_answer(bench, tmp_path, monkeypa
     rig = Rig(bench, on_target(keep_target=True))
     assert rig.play(road(3)) == ["TRACKING"] * 3
     assert "the target cannot be saved: Not a directory" in capfd.readouterr().err
-
-
-def test_a_step_that_takes_too_long_is_reported_with_where_it_was(bench, monkeypatch, capfd):
-    rig = Rig(bench, on_target())
-    frames = road(3)
-    rig.play(frames[:2])
-    monkeypatch.setattr(BaseTracker, "step", slow(BaseTracker.step))
-    rig.play(frames[2:], 2)
-    said = capfd.readouterr().err
-    assert "an image takes longer than 0.5 s; it is at" in said
-    assert "in slow_step" in said
-
-
-def slow(step):
-    def slow_step(*given):
-        time.sleep(1.0)
-        return step(*given)
-
-    return slow_step

@@ -121,7 +121,7 @@ def test_a_failing_transition_says_why_and_the_node_lives(bench, manager, monkey
     rig = Rig(bench)
     assert manager.change("deactivate")
     with monkeypatch.context() as patch:
-        patch.setattr(rig.node, "warn_of_overrides", lambda: 1 / 0)
+        patch.setattr(rig.node, "warn_of_overrides", lambda **_: 1 / 0)
         assert not manager.change("activate")
     assert rig.node.failure == "unexpected ZeroDivisionError: division by zero"
     assert manager.state == "unconfigured"

@@ -14,6 +14,6 @@
 
 """The grid of an evaluation: recordings by systems by seeds, each cell one stored run.
 
-`sources` finds the recordings, and `cells` lists the cells, with their shifted first boxes.
-`running` runs those that are missing, and stores each under its cache key.
+`sources` finds the recordings, and `cells` lists the cells. `running` runs those that are missing,
+and stores each under its cache key.
 """

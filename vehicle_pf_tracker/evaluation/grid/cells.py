@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The plan of a grid: its systems, recordings, seeds and starts, and so its cells."""
+"""The plan of a grid: its systems, recordings and seeds, and so its cells."""
 
 from __future__ import annotations
 
@@ -20,9 +20,7 @@ import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
@@ -41,45 +39,10 @@ from vehicle_pf_tracker.offline.output_files import make_folder, write_json
 from vehicle_pf_tracker.offline.run_folder import versions
 from vehicle_pf_tracker.trackers.registry import find_variant
 
-_SHIFT = 0.1
-"""Shift of OTB's spatial robustness (Wu, Lim and Yang 2013), in widths and heights of the box."""
-_SCALES = (0.8, 0.9, 1.1, 1.2)
-_SIDES = {
-    "left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1),
-    "left_up": (-1, -1), "right_up": (1, -1), "left_down": (-1, 1), "right_down": (1, 1),
-}  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class Start:
-    """Displacement of the first box, in its widths and heights, and the factor of its sides."""
-
-    name: str = ""
-    shift: tuple[float, float] = (0.0, 0.0)
-    scale: float = 1.0
-
-    def box(self, true: Box) -> Box:
-        """Return the box to start on."""
-        if self == TRUE_START:
-            return true
-        x, y = true.centre
-        centre = x + self.shift[0] * true.width, y + self.shift[1] * true.height
-        return Box.around(centre, true.width * self.scale, true.height * self.scale)
-
-
-TRUE_START = Start()
-"""The true box."""
-
-
-def shifted_starts() -> list[Start]:
-    """Return the twelve starts of OTB: eight shifts by a tenth of the box, and four scales."""
-    shifts = [Start(name, (_SHIFT * x, _SHIFT * y)) for name, (x, y) in _SIDES.items()]
-    return shifts + [Start(f"scale_{scale:g}", scale=scale) for scale in _SCALES]
-
 
 @dataclass(frozen=True, slots=True)
 class GridCell:
-    """One run: a system on a recording with a seed, from a start.
+    """One run: a system on a recording with a seed.
 
     Attributes
     ----------
@@ -91,29 +54,19 @@ class GridCell:
         Seed of the random numbers.
     max_diff : float
         Largest difference of stamps that belong together, in s.
-    start : Start
-        Displacement of the first true box, which the run starts on.
     """
 
     source: Source
     system: System
     seed: int
     max_diff: float
-    start: Start = TRUE_START
-
-    @property
-    def label(self) -> str:
-        """Name of the cell while it runs."""
-        words = f"{self.source.name} {self.system.label} seed {self.seed} {self.start.name}"
-        return words.rstrip()
 
     def key(self) -> str:
-        """Return its cache key: recording, parameters, seed, start, code and versions."""
+        """Return its cache key: recording, parameters, seed, code and versions."""
         facts = {
             "recording": self.source.digest,
             "topic": self.source.topic,
             "max_diff": self.max_diff,
-            "start": asdict(self.start),
             **self.system.facts(self.seed),
         }
         kind = self.system.kind
@@ -122,13 +75,12 @@ class GridCell:
 
     def folder(self, evaluation: Path) -> Path:
         """Return its folder in the folder of the evaluation."""
-        cell = self.source.name, self.system.label, self.seed, self.start.name
-        return cell_folder(evaluation, *cell)
+        return cell_folder(evaluation, self.source.name, self.system.label, self.seed)
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Recordings, systems, seeds and starts of an evaluation.
+    """Recordings, systems and seeds of an evaluation.
 
     Attributes
     ----------
@@ -142,8 +94,6 @@ class Plan:
         Command line that repeats the evaluation.
     max_diff : float
         Largest difference of stamps that belong together, in s.
-    shifted : sequence of Start
-        Starts besides the true box, each run with the first seed: they are variation enough.
 
     Raises
     ------
@@ -156,7 +106,6 @@ class Plan:
     seeds: Sequence[int]
     command: list[str]
     max_diff: float = MAX_DIFF
-    shifted: Sequence[Start] = ()
 
     def __post_init__(self) -> None:
         taken: set[str] = set()
@@ -171,21 +120,16 @@ class Plan:
         # Baselines are slow: begun last, they would be waited for.
         ordered = sorted(self.systems, key=lambda system: not system.is_baseline)
         return [
-            GridCell(source, system, seed, self.max_diff, start)
+            GridCell(source, system, seed, self.max_diff)
             for source, system in itertools.product(self.recordings, ordered)
-            for start in (TRUE_START, *self.shifted)
-            for seed in system.seeds(self.seeds[:1] if start.name else self.seeds)
+            for seed in system.seeds(self.seeds)
         ]
 
     def write(self, folder: Path) -> None:
         """Write `evaluation.json` and the truth of every recording."""
         for source, truths in self.recordings.items():
             write_truth(make_folder(folder / "recordings" / source.name) / TRUTH, truths)
-        write_json(folder / PLAN, self.to_json())
-
-    def to_json(self) -> dict[str, Any]:
-        """Return plain values for JSON."""
-        return {
+        plan = {
             "format": FORMAT,
             "command": self.command,
             "recordings": [asdict(source) for source in self.recordings],
@@ -194,7 +138,7 @@ class Plan:
                 for system in self.systems
             ],
             "seeds": list(self.seeds),
-            "shifted_starts": [start.name for start in self.shifted],
             "versions": versions(),
             "options": {"max_diff": self.max_diff},
         }
+        write_json(folder / PLAN, plan)

@@ -19,15 +19,12 @@ from __future__ import annotations
 import functools
 import shutil
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import astuple, dataclass, field, replace
+from dataclasses import astuple, dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import cv2
-
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
-from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell, Plan
@@ -67,14 +64,11 @@ class CellResult:
 
 def run_cell(cell: GridCell) -> CellResult:
     """Run a cell; a failure is reported in the outcome, so that the others go on."""
-    cv2.setNumThreads(1)
     try:
-        recording = footage(cell.source)
-        true = recording.truth[0]
-        first = replace(true, box=cell.start.box(true.box))
+        seen = footage(cell.source)
         run_it = _run_baseline if cell.system.is_baseline else _run_variant
-        rows, run = run_it(cell, recording, first)
-        metrics = measure(score_frames(rows, recording.truth, cell.max_diff))
+        rows, run = run_it(cell, seen)
+        metrics = measure(score_frames(rows, seen.truth, cell.max_diff))
         return CellResult(rows, run, metrics)
     except InputError as error:
         return CellResult(reason=str(error))
@@ -82,42 +76,38 @@ def run_cell(cell: GridCell) -> CellResult:
         return CellResult(reason=f"it ended with an internal error: {error!r}")
 
 
-def _run_variant(
-    cell: GridCell, recording: Footage, first: Truth
-) -> tuple[list[EstimateRow], dict[str, Any]]:
+def _run_variant(cell: GridCell, seen: Footage) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a variant and its `run.json`."""
     system = cell.system
     tracker = OfflineTracker(
         find_variant(system.kind),
         system.tracker_parameters(cell.seed),
         system.session_parameters(),
-        first_truth=first,
+        first_truth=seen.truth[0],
         max_diff=cell.max_diff,
     )
-    rows = list(tracker.rows(recording.frames()))
-    notices = [*recording.notices, *tracker.notices]
+    rows = list(tracker.rows(seen.frames()))
+    notices = [*seen.recording.notices, *tracker.notices]
     source = cell.source.path, cell.source.topic, notices
     return rows, run_folder.describe_run(tracker.session, tracker.start_frame, [], *source)
 
 
-def _run_baseline(
-    cell: GridCell, recording: Footage, first: Truth
-) -> tuple[list[EstimateRow], dict[str, Any]]:
+def _run_baseline(cell: GridCell, seen: Footage) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a baseline and its `run.json`."""
     system, name = cell.system, cell.system.kind.removeprefix(BASELINE)
     python = Path(system.python) if system.python else None
     with Baseline(name, python, system.model_files()) as baseline:
-        rows = list(baseline_rows(baseline, recording.frames(), first))
+        rows = list(baseline_rows(baseline, seen.frames(), seen.truth[0]))
         opencv = baseline.versions["opencv"]
     started = (row.frame for row in rows if row.mode not in {WAITING, REJECTED})
     description = run_folder.describe(
         [],
         cell.source.path,
         cell.source.topic,
-        recording.notices,
+        seen.recording.notices,
         baseline=name,
         seed=cell.seed,
-        target=list(astuple(first.box)),
+        target=list(astuple(seen.truth[0].box)),
         start_frame=next(started, None),
         parameters=dict(system.overrides),
     )

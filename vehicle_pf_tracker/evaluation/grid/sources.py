@@ -32,39 +32,24 @@ from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.source import open_source
 from vehicle_pf_tracker.recordings.video import is_recording
 
-_MAKE = "make a recording of it first: `vehicle-pf-tracker import {} OUT`"
-_VIDEOS = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm"})
-
 
 def find_recordings(locations: Sequence[str]) -> list[str]:
     """Return the recordings that `locations` name, with folders of recordings spread out.
 
-    Raises
-    ------
-    InputError
-        If one names none, or something that has to be imported first.
+    What is none is left for `describe` to refuse.
     """
     found = [recording for location in locations for recording in _at_path(Path(location))]
     return list(dict.fromkeys(found))
 
 
 def _at_path(path: Path) -> list[str]:
-    if not path.exists():
-        raise InputError(f"there is no recording {path}")
-    if is_recording(path):
+    if is_recording(path) or not path.is_dir():
         return [str(path)]
-    if path.is_file() and path.suffix.lower() in _VIDEOS:
-        raise InputError(f"{path} is a video; {_MAKE.format(path)}")
-    if path.is_file():
-        raise InputError(f"{path} is not a recording: give a rosbag2 folder or an MCAP file")
     children = sorted(path.iterdir())
     inside = [child for child in children if is_recording(child)]
-    if not inside and image_files(path):
-        return [str(path)]
-    inside = inside or [child for child in children if image_files(child)]
-    if not inside:
-        raise InputError(f"the folder {path} is not a recording and holds none")
-    return [str(child) for child in inside]
+    if not inside and not image_files(path):
+        inside = [child for child in children if image_files(child)]
+    return [str(child) for child in inside or [path]]
 
 
 FRAMES_BYTES = 1 << 30
@@ -78,30 +63,27 @@ class Footage:
 
     Attributes
     ----------
+    recording : Recording or Footage of a folder
+        Source of the frames.
     truth : tuple of Truth
         True states of the vehicle, in order.
     """
 
     def __init__(self, source: Source) -> None:
         path = Path(source.path)
-        self._recording = open_source(path, topic=source.topic or None, identity=source.identity)
-        if _digest(self._recording, path) != source.digest:
+        self.recording = open_source(path, topic=source.topic or None, identity=source.identity)
+        if _digest(self.recording, path) != source.digest:
             raise InputError(f"the recording {source.path} has changed since it was planned")
-        self.truth = tuple(self._recording.truth())
+        self.truth = tuple(self.recording.truth())
         size = source.frames * source.width * source.height * 3
         self._kept = list(self._decoded()) if size <= FRAMES_BYTES else None
-
-    @property
-    def notices(self) -> list[str]:
-        """Irregularities of the recording, a sentence each."""
-        return self._recording.notices
 
     def frames(self) -> Iterator[tuple[int, Frame | None]]:
         """Give the stamp (ns) and the frame of each image, in order."""
         return self._decoded() if self._kept is None else iter(self._kept)
 
     def _decoded(self) -> Iterator[tuple[int, Frame | None]]:
-        return ((image.stamp_ns, image.frame) for image in self._recording.frames())
+        return ((image.stamp_ns, image.frame) for image in self.recording.frames())
 
 
 HELD: dict[Source, Footage] = {}

@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 import statistics
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, Column
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
@@ -45,9 +45,6 @@ class Aggregates:
         Differences to the first system over the recordings that both have, by system.
     recoveries : mapping of str to (int, int)
         Total occlusions recovered from and judged, of all runs of a system.
-    shifted : Aggregates or None
-        The same of the runs from shifted first boxes, where there are any; their spreads are over
-        the boxes.
     """
 
     order: tuple[str, ...]
@@ -55,13 +52,12 @@ class Aggregates:
     overall: Mapping[str, Summaries]
     behind: Mapping[str, Summaries]
     recoveries: Mapping[str, tuple[int, int]]
-    shifted: Aggregates | None
 
 
 def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     """Summarise all runs."""
-    shifted = evaluation.shifted
-    runs = {s.label: some for s in evaluation.systems if (some := evaluation.of(system=s.label))}
+    labels = [system.label for system in evaluation.folder.systems]
+    runs = {label: some for label in labels if (some := evaluation.of(system=label))}
     values = {
         label: {column.key: _values(some, column) for column in COLUMNS}
         for label, some in runs.items()
@@ -87,7 +83,7 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
                 for label, columns in values.items()
                 if evaluation.of(entry.name, label)
             }
-            for entry in evaluation.recordings
+            for entry in evaluation.folder.recordings
         },
         overall={
             label: {key: summarise(list(found.values())) for key, found in means[label].items()}
@@ -101,7 +97,6 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
             for label in order[1:]
         },
         recoveries={label: _recoveries(runs[label]) for label in order},
-        shifted=aggregate(replace(evaluation, runs=shifted, shifted=())) if shifted else None,
     )
 
 

@@ -21,7 +21,6 @@ import io
 import re
 import warnings
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -110,16 +109,16 @@ class Drawn(NamedTuple):
     spoken: str
 
 
-def draw_all(
-    evaluation: ScoredEvaluation, aggregates: Aggregates, slots: Mapping[str, int]
-) -> dict[str, Drawn]:
-    """Draw every figure of an evaluation that there are numbers for, by name.
+def styled(aggregates: Aggregates) -> dict[str, int]:
+    """Assign styles, by their number, to the first systems."""
+    return {label: slot for slot, label in enumerate(aggregates.order[: len(STYLES)])}
 
-    Systems in `slots` have the style of this number.
-    """
+
+def draw_all(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, Drawn]:
+    """Draw every figure of an evaluation that there are numbers for, by name."""
     with rc_context(SETTINGS):
-        found = {name: _curves(evaluation, aggregates.order, slots, name) for name in CURVES}
-        for entry in evaluation.recordings:
+        found = {name: _curves(evaluation, aggregates, name) for name in CURVES}
+        for entry in evaluation.folder.recordings:
             runs = evaluation.by_system(entry.name, aggregates.order)
             truths = evaluation.truths[entry.name]
             found[ERRORS + safe_name(entry.name)] = _errors(runs, truths)
@@ -127,11 +126,8 @@ def draw_all(
 
 
 def write_figures(
-    evaluation: ScoredEvaluation,
-    aggregates: Aggregates,
-    slots: Mapping[str, int],
-    formats: Sequence[str],
-) -> list[Path]:
+    evaluation: ScoredEvaluation, aggregates: Aggregates, formats: Sequence[str]
+) -> None:
     """Write every figure to ``figures/`` in each of the formats, in the widths of a paper.
 
     Raises
@@ -140,8 +136,7 @@ def write_figures(
         If they cannot be written.
     """
     folder = make_folder(evaluation.folder.path / "figures")
-    written = []
-    for name, drawn in draw_all(evaluation, aggregates, slots).items():
+    for name, drawn in draw_all(evaluation, aggregates).items():
         width, height = drawn.figure.get_size_inches()
         drawn.figure.set_size_inches(_PAPER_WIDTHS[width], height)
         with rc_context({**SETTINGS, "svg.fonttype": "path"}):  # the same in every program
@@ -152,22 +147,19 @@ def write_figures(
                 path = folder / f"{name}.{kind}"
                 with replacing(path) as partial:
                     drawn.figure.savefig(partial, format=kind, dpi=_DPI, metadata=_METADATA[kind])
-                written.append(path)
-    return written
 
 
-def _curves(
-    evaluation: ScoredEvaluation, order: Sequence[str], slots: Mapping[str, int], name: str
-) -> Drawn | None:
+def _curves(evaluation: ScoredEvaluation, aggregates: Aggregates, name: str) -> Drawn | None:
     """Draw a curve of `CURVES`: means over the seeds of a recording, then over recordings.
 
     The first of those with a style is on top; the others are grey, and not in the legend.
     """
     lines: dict[str, Curve] = {}
-    for label in order:
+    slots = styled(aggregates)
+    for label in aggregates.order:
         curves = [
             [run.curves[name] for run in evaluation.of(entry.name, label) if name in run.curves]
-            for entry in evaluation.recordings
+            for entry in evaluation.folder.recordings
         ]
         means = [np.mean([curve.shares for curve in some], axis=0) for some in curves if some]
         if means:

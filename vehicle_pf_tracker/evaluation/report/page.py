@@ -25,49 +25,38 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from vehicle_pf_tracker.evaluation import tables
 from vehicle_pf_tracker.evaluation.columns import COLUMNS
-from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, safe_name
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
-from vehicle_pf_tracker.evaluation.report.figures import CURVES, ERRORS, draw_all, svg_element
+from vehicle_pf_tracker.evaluation.report.figures import ERRORS, draw_all, styled, svg_element
 from vehicle_pf_tracker.evaluation.report.scored_runs import FailedCell, ScoredEvaluation
 
 
-def render(template: str, **values: Any) -> str:
-    """Return the text of a page from the template of this name."""
-    environment = Environment(
+def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
+    """Return the text of the page that shows an evaluation and its summaries."""
+    figures = {
+        name: {"svg": svg_element(drawn, number), "caption": drawn.caption}
+        for number, (name, drawn) in enumerate(draw_all(evaluation, aggregates).items(), start=1)
+    }
+    folder = evaluation.folder
+    templates = Environment(
         loader=PackageLoader("vehicle_pf_tracker.evaluation.report"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template(template).render(values)
-
-
-def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
-    """Return the text of the page that shows an evaluation and its summaries."""
-    slots = styled(aggregates)
-    figures = {
-        name: {"svg": svg_element(drawn, number), "caption": drawn.caption}
-        for number, (name, drawn) in enumerate(
-            draw_all(evaluation, aggregates, slots).items(), start=1
-        )
-    }
-    folder = evaluation.folder
-    return render(
-        "report.html",
+    return templates.get_template("report.html").render(
         title=title(evaluation),
-        facts=_facts(evaluation),
+        facts=_facts(folder),
         notes=evaluation.notes,
-        slots=slots,
+        slots=styled(aggregates),
         overall=tables.overall_table(aggregates),
         figures=figures,
         behind=tables.behind_table(aggregates),
-        starts=tables.starts_table(aggregates),
-        curves=[name for name in CURVES if name in figures],
-        recordings=[_section(evaluation, aggregates, entry) for entry in evaluation.recordings],
-        systems=evaluation.systems,
-        sources=evaluation.recordings,
+        curves=[name for name in figures if not name.startswith(ERRORS)],
+        recordings=[_section(evaluation, aggregates, entry) for entry in folder.recordings],
+        systems=folder.systems,
+        sources=folder.recordings,
         seeds=folder.seeds,
         plan={"versions": {}, "options": {}, **folder.plan},
         command=shlex.join(map(str, folder.plan.get("command", []))),
@@ -80,17 +69,8 @@ def title(evaluation: ScoredEvaluation) -> str:
     return f"Trackers compared: {evaluation.folder.path.resolve().name}"
 
 
-def styled(aggregates: Aggregates) -> dict[str, int]:
-    """Assign styles to the first systems."""
-    return {label: slot for slot, label in enumerate(aggregates.order[: len(STYLES)])}
-
-
-def _facts(evaluation: ScoredEvaluation) -> str:
-    counts = {
-        "recording": evaluation.recordings,
-        "system": evaluation.systems,
-        "seed": evaluation.folder.seeds,
-    }
+def _facts(folder: EvaluationFolder) -> str:
+    counts = {"recording": folder.recordings, "system": folder.systems, "seed": folder.seeds}
     return " × ".join(tables.counted(len(some), noun) for noun, some in counts.items())
 
 
@@ -118,7 +98,7 @@ def _failed_groups(failed: Sequence[FailedCell]) -> list[tuple[str, str, str]]:
     groups: dict[tuple[str, str], dict[str, list[str]]] = {}
     for cell in failed:
         by_recording = groups.setdefault((cell.system, cell.reason), {})
-        by_recording.setdefault(cell.recording, []).append(cell.run)
+        by_recording.setdefault(cell.recording, []).append(str(cell.seed))
     return [
         (*key, "; ".join(f"{name}: seed {', '.join(seeds)}" for name, seeds in cells.items()))
         for key, cells in groups.items()

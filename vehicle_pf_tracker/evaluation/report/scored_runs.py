@@ -26,10 +26,9 @@ from numpy.typing import NDArray
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
-from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
-from vehicle_pf_tracker.evaluation.systems import System
+from vehicle_pf_tracker.evaluation.scores import score_frames
 
 _DECIDING = ("vehicle_pf_tracker", "opencv", "numpy")
 """Programs whose version moves estimates."""
@@ -41,14 +40,12 @@ class ScoredRun:
 
     Attributes
     ----------
-    recording, system, seed, start : str, str, int, str
-        Cell of the grid; `start` names a shifted first box, and is empty for the true one.
+    recording, system, seed : str, str, int
+        Cell of the grid.
     metrics : Metrics
         Metrics of the run.
     errors : (N,) array
         Error of the centre in px by frame of the recording; NaN where nothing is scored.
-    frames : sequence of FrameScore
-        Estimate and truth by frame.
     curves : mapping of str to Curve
         ``precision``, ``success`` and ``normalised``; empty without truth.
     versions : mapping of str to str or None
@@ -58,10 +55,8 @@ class ScoredRun:
     recording: str
     system: str
     seed: int
-    start: str
     metrics: Metrics
     errors: NDArray[np.float64]
-    frames: Sequence[FrameScore]
     curves: Mapping[str, Curve]
     versions: Mapping[str, str | None]
 
@@ -73,13 +68,7 @@ class FailedCell:
     recording: str
     system: str
     seed: int
-    start: str
     reason: str
-
-    @property
-    def run(self) -> str:
-        """Seed, and start if it is shifted."""
-        return f"{self.seed} {self.start}".rstrip()
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,28 +81,16 @@ class ScoredEvaluation:
         Folder the runs were read from.
     truths : mapping of str to mapping of int to Truth
         Truths by recording and number of the frame.
-    runs, shifted : tuple of ScoredRun
-        Runs from the true box in the order of the plan (recordings, systems, seeds), and those from
-        shifted first boxes.
+    runs : tuple of ScoredRun
+        Runs in the order of the plan: recordings, systems, seeds.
     failed : tuple of FailedCell
-        Failed cells in the same order, from any start.
+        Failed cells in the same order.
     """
 
     folder: EvaluationFolder
     truths: Mapping[str, Mapping[int, Truth]]
     runs: tuple[ScoredRun, ...]
-    shifted: tuple[ScoredRun, ...]
     failed: tuple[FailedCell, ...]
-
-    @property
-    def recordings(self) -> tuple[Source, ...]:
-        """See `EvaluationFolder`."""
-        return self.folder.recordings
-
-    @property
-    def systems(self) -> tuple[System, ...]:
-        """See `EvaluationFolder`."""
-        return self.folder.systems
 
     def of(self, recording: str | None = None, system: str | None = None) -> list[ScoredRun]:
         """Return the runs on a recording, of a system, or both."""
@@ -127,7 +104,7 @@ class ScoredEvaluation:
     def notes(self) -> list[str]:
         """Say how many cells have a result, and whether versions are mixed."""
         failed = len(self.failed)
-        cells = len(self.runs) + len(self.shifted) + failed
+        cells = len(self.runs) + failed
         result = f"All {cells} cells of the grid have a result."
         if failed:
             result = f"{failed} of {cells} cells have no result; see Failed cells."
@@ -136,8 +113,8 @@ class ScoredEvaluation:
     @property
     def mixed_versions(self) -> list[str]:
         """A sentence where runs were made with different versions; baselines have their own."""
-        ours = {one.label for one in self.systems if not one.is_baseline}
-        runs = [run for run in (*self.runs, *self.shifted) if run.system in ours]
+        ours = {one.label for one in self.folder.systems if not one.is_baseline}
+        runs = [run for run in self.runs if run.system in ours]
         found = {key: {str(run.versions.get(key)) for run in runs} for key in _DECIDING}
         mixed = [f"{key} {' and '.join(sorted(v))}" for key, v in found.items() if len(v) > 1]
         words = "Results of different versions are compared"
@@ -152,30 +129,25 @@ def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
     """Score all cells; those that cannot be read or scored are failed cells."""
     truths = {entry.name: folder.truth(entry.name) for entry in folder.recordings}
     results = [
-        _result(folder, (recording.name, system.label, seed, start), truths[recording.name])
+        _result(folder, (recording.name, system.label, seed), truths[recording.name])
         for recording, system in itertools.product(folder.recordings, folder.systems)
-        for start in ("", *folder.shifted)
-        for seed in system.seeds(folder.seeds[:1] if start else folder.seeds)
+        for seed in system.seeds(folder.seeds)
     ]
-    runs = [result for result in results if isinstance(result, ScoredRun)]
     return ScoredEvaluation(
         folder,
         truths,
-        tuple(run for run in runs if not run.start),
-        tuple(run for run in runs if run.start),
+        tuple(result for result in results if isinstance(result, ScoredRun)),
         tuple(result for result in results if isinstance(result, FailedCell)),
     )
 
 
 def _result(
-    folder: EvaluationFolder, key: tuple[str, str, int, str], truth: Mapping[int, Truth]
+    folder: EvaluationFolder, key: tuple[str, str, int], truth: Mapping[int, Truth]
 ) -> ScoredRun | FailedCell:
     max_diff = float(folder.plan.get("options", {}).get("max_diff", MAX_DIFF))
     try:
-        cell = folder.cell(*key)
-        if cell.rows is None:
-            return FailedCell(*key, cell.reason)
-        scores = score_frames(cell.rows, list(truth.values()), max_diff)
+        rows, run = folder.cell(*key)
+        scores = score_frames(rows, list(truth.values()), max_diff)
     except InputError as error:
         return FailedCell(*key, str(error))
     errors = [frame.error if frame.counts else None for frame in scores.frames]
@@ -183,7 +155,6 @@ def _result(
         *key,
         metrics=measure(scores),
         errors=np.array(errors, dtype=np.float64),  # None is NaN
-        frames=scores.frames,
         curves=curves(scores.counted),
-        versions=cell.run.get("versions", {}),
+        versions=run.get("versions", {}),
     )

@@ -12,29 +12,23 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The files of a report: its page, tables, figures and exports."""
+"""The files of a report: its page, tables and figures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, astuple
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation import tables
 from vehicle_pf_tracker.evaluation.columns import COLUMNS, NO_VALUE, PAPER
-from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, safe_name
+from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, aggregate
 from vehicle_pf_tracker.evaluation.report.figures import write_figures
-from vehicle_pf_tracker.evaluation.report.page import make_page, styled, title
-from vehicle_pf_tracker.evaluation.report.scored_runs import (
-    ScoredEvaluation,
-    ScoredRun,
-    score_folder,
-)
-from vehicle_pf_tracker.offline.output_files import csv_text, make_folder, write_json, write_text
-from vehicle_pf_tracker.trackers.estimate import Mode
+from vehicle_pf_tracker.evaluation.report.page import make_page, title
+from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, score_folder
+from vehicle_pf_tracker.offline.output_files import csv_text, write_json, write_text
 
 ALL_RECORDINGS = "(all)"
 """Stands for the name of a recording where values are means over all of them."""
@@ -48,20 +42,18 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     """Return the notes, the means, the differences and each recording as Markdown."""
     parts = [f"# {title(evaluation)}\n"]
     parts.append("".join(f"- {line}\n" for line in evaluation.notes))
-    starts = tables.starts_table(aggregates)
     shown = {
         "Means over recordings": tables.overall_table(aggregates),
         "Differences to the first": tables.behind_table(aggregates),
-        **({"Shifted starts": starts} if starts else {}),
         **{
             entry.name: tables.recording_table(aggregates, entry.name, COLUMNS)
-            for entry in evaluation.recordings
+            for entry in evaluation.folder.recordings
         },
     }
     for heading, table in shown.items():
         parts.append(f"## {heading}\n\n{tables.markdown(*table.texts())}")
     if evaluation.failed:
-        cells = [[c.system, c.recording, c.run, c.reason] for c in evaluation.failed]
+        cells = [[c.system, c.recording, str(c.seed), c.reason] for c in evaluation.failed]
         header = ["system", "recording", "seed", "reason"]
         parts.append("## Failed cells\n\n" + tables.markdown(header, cells))
     return "\n".join(parts)
@@ -69,18 +61,16 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
 
 def summary_csv(aggregates: Aggregates) -> str:
     """Return every mean with its spread and interval, a line each, with every digit."""
-    starts = {"true": aggregates, "shifted": aggregates.shifted}
+    means = {ALL_RECORDINGS: aggregates.overall, **aggregates.recordings}
     rows = [
-        [recording, system, column.key, column.unit, *astuple(found), start]
-        for start, some in starts.items()
-        if some is not None
-        for recording, by_system in {ALL_RECORDINGS: some.overall, **some.recordings}.items()
+        [recording, system, column.key, column.unit, *astuple(found)]
+        for recording, by_system in means.items()
         for system, summaries in by_system.items()
         for column in COLUMNS
         if (found := summaries.get(column.key)) is not None
     ]
     numbers = ("count", "mean", "spread", "low", "high")
-    return csv_text(("recording", "system", "metric", "unit", *numbers, "start"), rows)
+    return csv_text(("recording", "system", "metric", "unit", *numbers), rows)
 
 
 def summary_tex(aggregates: Aggregates) -> str:
@@ -106,7 +96,7 @@ def _tex(text: str) -> str:
 def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, Any]:
     """Return everything as plain values."""
     return {
-        "format": 3,
+        "format": 4,
         "metrics": {
             column.key: {
                 "label": column.label,
@@ -123,9 +113,9 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
 
 
 class Report(NamedTuple):
-    """A report that was written: its files, the page first, and the results it shows."""
+    """A report that was written: its page, and the results it shows."""
 
-    paths: Sequence[Path]
+    page: Path
     evaluation: ScoredEvaluation
     aggregates: Aggregates
 
@@ -134,7 +124,6 @@ def write_report(
     folder: Path,
     *,
     figures: Sequence[str] = (),
-    toolkits: Sequence[str] = (),
     on_stage: Callable[[str], object] = lambda _: None,
 ) -> Report:
     """Write the report of the evaluation in `folder` there.
@@ -147,8 +136,6 @@ def write_report(
         Folder of an evaluation.
     figures : sequence of str
         Formats of the figures in ``figures/``: ``pdf``, ``svg`` and ``png``.
-    toolkits : sequence of str
-        Formats of the runs in ``results/``: ``otb``, ``vot`` and ``mot``.
     on_stage : callable
         Called with a few words when a part is begun.
 
@@ -171,62 +158,7 @@ def write_report(
     for path, text in texts.items():
         write_text(path, text)
     write_json(folder / "summary.json", summary_json(evaluation, aggregates))
-    written = [*texts, folder / "summary.json"]
     if figures:
         on_stage("drawing the figures")
-        written += write_figures(evaluation, aggregates, styled(aggregates), figures)
-    written += write_toolkits(evaluation, toolkits)
-    return Report(written, evaluation, aggregates)
-
-
-def write_toolkits(evaluation: ScoredEvaluation, toolkits: Sequence[str]) -> list[Path]:
-    """Write every run from the true box in the formats `toolkits`, and return the files.
-
-    Raises
-    ------
-    InputError
-        If one cannot be written.
-    """
-    written = []
-    for run in evaluation.runs:
-        system, name = safe_name(run.system), run.recording
-        files = {
-            "otb": (f"{system}/{name}_{run.seed}.txt", _otb),
-            "vot": (f"{system}/unsupervised/{name}/{name}_{run.seed + 1:03d}.txt", _vot),
-            "mot": (f"{system}_seed-{run.seed}/data/{name}.txt", _mot),
-        }
-        for toolkit in toolkits:
-            place, lines = files[toolkit]
-            path = evaluation.folder.path / "results" / toolkit / place
-            make_folder(path.parent)
-            write_text(path, "".join(f"{line}\n" for line in lines(run)))
-            written.append(path)
-    return written
-
-
-def _otb(run: ScoredRun) -> Iterator[str]:
-    """Give the scored box of each frame; NaN before the start."""
-    for frame in run.frames:
-        box = None if frame.waiting or frame.scored_row is None else frame.scored_row.box
-        yield "nan,nan,nan,nan" if box is None else _numbers(box)
-
-
-def _vot(run: ScoredRun) -> Iterator[str]:
-    """Give the scored box of each frame, with VOT's 0 (unknown) before and 1 in the first one."""
-    started = False
-    for line in _otb(run):
-        known = not line.startswith("nan")
-        yield line if known and started else "1" if known else "0"
-        started = started or known
-
-
-def _mot(run: ScoredRun) -> Iterator[str]:
-    """Give the boxes that the system reports, as the track 1; none where it is lost."""
-    for row in (frame.row for frame in run.frames):
-        if row.box is not None and row.mode != Mode.LOST.value:
-            confidence = 1.0 if row.confidence is None else row.confidence
-            yield f"{row.frame},1,{_numbers(row.box)},{confidence:.4f},-1,-1,-1"
-
-
-def _numbers(box: Box) -> str:
-    return ",".join(f"{value:.3f}" for value in astuple(box))
+        write_figures(evaluation, aggregates, figures)
+    return Report(page, evaluation, aggregates)

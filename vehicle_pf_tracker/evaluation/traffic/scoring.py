@@ -32,10 +32,11 @@ from scipy.optimize import linear_sum_assignment
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, intersections
-from vehicle_pf_tracker.evaluation.baselines import Worker, unknown_baseline
+from vehicle_pf_tracker.evaluation.baselines import Worker
 from vehicle_pf_tracker.evaluation.traffic.sequence import EVERY_FRAME, TrafficSequence
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.trackers.traffic.counting import Counter
+from vehicle_pf_tracker.trackers.traffic.detections import overlaps as overlaps_of_edges
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 MATCH = 0.5
@@ -91,7 +92,8 @@ def _counts(sequence: TrafficSequence, frame: int, boxes: Array) -> npt.NDArray[
     left_out = np.zeros(len(boxes), dtype=np.bool_)
     left_out[spare[matches(hidden, boxes[spare])[1]]] = True
     regions = sequence.ignored[np.isin(sequence.ignored[:, 0], (EVERY_FRAME, frame)), 1:]
-    inside = common_areas(boxes, regions) > _MOST_INSIDE * boxes[:, 2:].prod(axis=1)[:, None]
+    common = intersections(_edges(boxes)[:, None], _edges(regions))
+    inside = common > _MOST_INSIDE * boxes[:, 2:].prod(axis=1)[:, None]
     left_out |= free & inside.any(axis=1)
     return ~left_out
 
@@ -113,14 +115,7 @@ def matches(first: Array, second: Array) -> tuple[npt.NDArray[np.intp], npt.NDAr
 
 def overlaps(first: Array, second: Array) -> Array:
     """Intersection over union of each pair of boxes (left, top, width, height)."""
-    common = common_areas(first, second)
-    union = first[:, None, 2:].prod(axis=2) + second[:, 2:].prod(axis=1) - common
-    return np.asarray(common / np.maximum(union, np.finfo(float).eps))
-
-
-def common_areas(first: Array, second: Array) -> Array:
-    """Area that each pair of boxes (left, top, width, height) has in common, px²."""
-    return intersections(_edges(first)[:, None], _edges(second))
+    return overlaps_of_edges(_edges(first)[:, None], _edges(second))
 
 
 def _edges(boxes: Array) -> Array:
@@ -301,8 +296,6 @@ class TrafficWorker(Worker):
         seconds : float
             Processor time per frame, s.
         """
-        if name not in TRAFFIC_BASELINES:
-            raise unknown_baseline(name, TRAFFIC_BASELINES)
         content = {
             "tracker": name.removesuffix("-low"),
             "options": {**TRAFFIC_BASELINES[name], "frame_rate": sequence.frame_rate},

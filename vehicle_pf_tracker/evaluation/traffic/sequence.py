@@ -28,11 +28,9 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.truth import TOTAL_BELOW
 from vehicle_pf_tracker.recordings.frame_folder import numbered_images, read_picture
 from vehicle_pf_tracker.recordings.truth_formats import numbers_in, table_rows
-
-TOTAL_OCCLUSION = 0.1
-"""Visible share below which a vehicle counts as totally hidden, where no flags say so."""
 
 EVERY_FRAME = 0
 """Frame number of a region to ignore in all frames."""
@@ -87,7 +85,7 @@ def read_sequence(folder: Path) -> TrafficSequence:
     """Read a folder with ``seqinfo.ini``, ``img1``, ``gt/gt.txt`` and perhaps ``det/*.txt``.
 
     ``gt/flags.csv`` (frame, id, occ) says which boxes are totally hidden; without it, a visibility
-    below `TOTAL_OCCLUSION` does. ``ignore.txt`` lists regions without truth.
+    below `TOTAL_BELOW` does. ``ignore.txt`` lists regions without truth.
 
     Raises
     ------
@@ -147,7 +145,7 @@ def _hidden(folder: Path, truth: Array) -> npt.NDArray[np.bool_]:
     flags = folder / "gt" / "flags.csv"
     if not flags.is_file():
         visible = truth[:, 8] if truth.shape[1] > 8 else np.ones(len(truth))
-        return np.asarray(visible < TOTAL_OCCLUSION)
+        return np.asarray(visible < TOTAL_BELOW)
     lines = flags.read_text(encoding="utf-8").splitlines()[1:]
     rows = (map(int, line.split(",")[:3]) for line in lines)
     total = {(frame, identity) for frame, identity, occlusion in rows if occlusion == 2}

@@ -20,7 +20,7 @@ import contextlib
 from dataclasses import dataclass
 from typing import Any
 
-from geometry_msgs.msg import TransformStamped
+import numpy as np
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
@@ -68,7 +68,6 @@ class CameraInputs:
         self._node = node
         self.lens: ImageLens | None = None
         self.poses = PoseTree()
-        self._info: CameraInfo | None = None
         self._asked: tuple[bool, bool, bool] | None = None
         self._subscriptions: list[Subscription] = []
 
@@ -97,13 +96,9 @@ class CameraInputs:
         """Destroy the subscriptions."""
         while self._subscriptions:
             self._node.destroy_subscription(self._subscriptions.pop())
-        self._asked = self._info = self.lens = None
+        self._asked = self.lens = None
 
     def _on_info(self, message: CameraInfo) -> None:
-        message.header.stamp.sec = message.header.stamp.nanosec = 0
-        if message == self._info:
-            return
-        self._info = message
         try:
             self.lens = lens_of_info(message, rectified=self._rectified)
         except InputError as error:
@@ -111,16 +106,13 @@ class CameraInputs:
 
     def _on_transforms(self, message: Any) -> None:
         for one in message.transforms:
-            self._put(one)
-
-    def _put(self, one: TransformStamped) -> None:
-        try:
             at, turn = one.transform.translation, one.transform.rotation
-            pose = Pose.of((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))
-        except InputError as error:
-            self._warn(f"a transform of {one.child_frame_id} is ignored: {error}")
-        else:
-            self.poses.put(one.header.frame_id, one.child_frame_id, pose)
+            try:
+                pose = Pose.of((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))
+            except InputError as error:
+                self._warn(f"a transform of {one.child_frame_id} is ignored: {error}")
+            else:
+                self.poses.put(one.header.frame_id, one.child_frame_id, pose)
 
     def _warn(self, words: str) -> None:
         self._node.get_logger().warning(words, throttle_duration_sec=_THROTTLE)
@@ -142,13 +134,11 @@ class StreamLocalisation(Localisation):
     def __init__(self, variant: str, parameters: RoadParameters, cameras: CameraInputs) -> None:
         super().__init__(variant, parameters)
         self._cameras = cameras
-        self._taken: ImageLens | None = None
 
     def locate(self, estimate: Estimate, header: Header, frame: Frame, period: float) -> None:
         """Take the estimate of the image `frame`, with the nominal frame period in s."""
         parameters, lens = self.parameters, self._cameras.lens
-        if lens is not None and lens is not self._taken:
-            self._taken = lens
+        if lens is not None:
             self.set_lens(lens.lens)
         if parameters.from_tf:
             with contextlib.suppress(InputError):  # TF does not have it yet
@@ -204,10 +194,8 @@ def lens_of_info(message: CameraInfo, *, rectified: bool) -> ImageLens:
     InputError
         If the camera is not calibrated, or its model is not known.
     """
-    matrix = message.p if rectified else message.k
-    fx, cx, fy, cy = (matrix[0], matrix[2], matrix[5], matrix[6]) if rectified else (
-        matrix[0], matrix[2], matrix[4], matrix[5]
-    )  # fmt: skip
+    rows = np.reshape(message.p if rectified else message.k, (3, -1)).tolist()
+    (fx, _, cx, *_), (_, fy, cy, *_) = rows[:2]
     if not (fx > 0 and fy > 0):
         raise InputError("camera_info has no calibration: its focal length is not above 0")
     across, down = max(message.binning_x, 1), max(message.binning_y, 1)

@@ -152,8 +152,6 @@ class Diagnostics:
         Node to report on.
     facts : callable
         Returns other values to publish, by name.
-    judge : callable
-        Called once a second; names what is not as usual, empty where all is.
 
     Attributes
     ----------
@@ -163,10 +161,8 @@ class Diagnostics:
         The open subscription; None while the node is not active.
     """
 
-    def __init__(
-        self, node: Node, facts: Callable[[], Mapping[str, object]], judge: Callable[[], str]
-    ) -> None:
-        self._node, self._facts, self._judge_stream = node, facts, judge
+    def __init__(self, node: Node, facts: Callable[[], Mapping[str, object]]) -> None:
+        self._node, self._facts = node, facts
         self.health = Health()
         self.source: ImageInput | None = None
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
@@ -190,11 +186,6 @@ class Diagnostics:
             self.source.close()
         self.source = None
 
-    def arrived(self, info: Mapping[str, Any], age: float) -> None:
-        """Count an image; see `Health.arrived`."""
-        if self.source is not None:
-            self.health.arrived(info, age, self.source.publisher_count)
-
     def publish(self) -> None:
         """Publish one report."""
         publishers = self.source.publisher_count if self.source else 0
@@ -209,11 +200,8 @@ class Diagnostics:
         if self.source is None:
             return DiagnosticStatus.OK, "not active"
         topic, level = self.source.topic, LEVELS[self.health.mode]
-        if self.health.silence >= SILENCE:
-            words = f"no image for {SILENCE:g} s on {topic}: {self.source.explain_silence()}"
-        elif words := self._judge_stream():
-            words = f"{self.health.mode}; {words}"
-        else:
+        if self.health.silence < SILENCE:
             return level, self.health.mode
+        words = f"no image for {SILENCE:g} s on {topic}: {self.source.explain_silence()}"
         self._node.get_logger().warning(words, throttle_duration_sec=_WARNING_PERIOD)
         return max(level, DiagnosticStatus.WARN), words

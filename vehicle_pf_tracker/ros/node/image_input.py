@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
 from rclpy.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions
@@ -67,12 +67,7 @@ def subscribe(
         )
     except RCLError as error:
         raise InputError(f"cannot subscribe to {topic}: {error}") from None
-    except (
-        InvalidParameterTypeException,
-        InvalidParameterValueException,
-        InvalidQosOverridesError,
-        RuntimeError,
-    ) as error:
+    except (ParameterException, InvalidQosOverridesError, RuntimeError) as error:
         raise InputError(f"the QoS overrides of {topic} do not fit: {error}") from None
 
 

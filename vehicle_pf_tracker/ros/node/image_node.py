@@ -24,13 +24,13 @@ from __future__ import annotations
 import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 from functools import partial
 from typing import Any
 
 from lifecycle_msgs.srv import ChangeState
 from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
-from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 from sensor_msgs.msg import CompressedImage, Image
@@ -43,7 +43,6 @@ from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
 from vehicle_pf_tracker.ros.node.image_input import ImageInput
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
-from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.ros.node.parameters import ParameterTable, take_overrides, unknown_overrides
 
 
@@ -68,6 +67,8 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         Values given by files and the command line, by parameter name.
     inputs : list of Subscription
         Subscriptions that a deactivation ends, beside that to images.
+    held : ExitStack
+        Releases all that a clean-up ends.
     """
 
     stream: NodeStream | None
@@ -77,10 +78,8 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         self.overrides = take_overrides(self)
         self.failure = ""
         self.stream = None
-        self._outputs: Outputs | None = None
         self.inputs: list[Subscription] = []
-        self._requests: list[Service] = []
-        self._polls: list[Timer] = []
+        self.held = ExitStack()
         service = rclpy_internals.change_state_service(self)
         if service is not None:
             service.callback = partial(self._answer_change_state, service.callback)
@@ -97,14 +96,12 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
             given = self.overrides
             self.table = ParameterTable(self, defaults, given, self._check, self._reconfigure)
             self.diagnostics = Diagnostics(
-                self,
-                lambda: self.stream.facts if self.stream is not None else {},
-                lambda: self.stream.judge() if self.stream is not None else "",
+                self, lambda: self.stream.facts if self.stream is not None else {}
             )
-            for loss in rclpy_internals.missing(self):
-                words = f"this release of rclpy is not one of those tried: {loss}"
-                self.get_logger().warning(words)
-            self.warn_of(unknown_overrides(self, self.overrides, qos=False))
+            if rclpy_internals.state_machine(self) is None:
+                words = "this release of rclpy was not tried: its state machine is hidden"
+                self.get_logger().warning(f"{words}; failed transitions are reported without why")
+            self.warn_of_overrides(qos=False)
             if self.table.configuration.node.autostart:
                 self.start()
         except InputError:
@@ -128,9 +125,23 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         self.diagnostics.listen_to(source)
         return source
 
-    def listen(self, kind: Any, topic: str, callback: Callable[[Any], None]) -> None:
-        """Subscribe until the node is deactivated."""
-        self.inputs.append(self.create_subscription(kind, topic, callback, 10))
+    def listen(
+        self, kind: Any, topic: str, what: str, change: Callable[[Any, Any], object]
+    ) -> None:
+        """Subscribe until the node is deactivated, to requests for a change of `what`.
+
+        `change` takes a message and the stream; where it raises InputError, the reason is reported.
+        """
+
+        def take(message: Any) -> None:
+            if self.stream is None:
+                return
+            try:
+                change(message, self.stream)
+            except InputError as error:
+                self.stream.refuse(what, str(error))
+
+        self.inputs.append(self.create_subscription(kind, topic, take, 10))
 
     def serve(self, name: str, act: Callable[[], str]) -> None:
         """Offer a service until clean-up; `act` returns words for people, or raises InputError."""
@@ -142,22 +153,14 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
                 response.success, response.message = False, str(error)
             return response
 
-        self._requests.append(self.create_service(Trigger, name, respond))
-
-    def ask(self, what: str, change: Callable[[Any], object]) -> None:
-        """Ask the stream for a change; where it raises InputError, the reason is reported."""
-        if self.stream is None:
-            return
-        try:
-            change(self.stream)
-        except InputError as error:
-            self.stream.refuse(what, str(error))
+        self.held.callback(self.destroy_service, self.create_service(Trigger, name, respond))
 
     def poll(self, interval: float, callback: Callable[[], None]) -> Timer:
         """Call back every `interval` s until clean-up; of real time: simulated may stand still."""
-        clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._polls.append(self.create_timer(interval, callback, clock=clock))
-        return self._polls[-1]
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        timer = self.create_timer(interval, callback, clock=steady)
+        self.held.callback(self.destroy_timer, timer)
+        return timer
 
     @abstractmethod
     def activate(self) -> None:
@@ -165,7 +168,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
 
     @abstractmethod
     def prepare(self) -> None:
-        """Make stream, outputs and services; `cleanup` releases them, also where this fails."""
+        """Make stream, outputs and services; `held` releases them, also where this fails."""
 
     def configure(self) -> None:
         """Prepare for images."""
@@ -187,29 +190,21 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
 
     def cleanup(self) -> None:
         """Release session, outputs and services."""
-        if self._outputs is not None:
-            self._outputs.close()
-        while self._requests:
-            self.destroy_service(self._requests.pop())
-        while self._polls:
-            self.destroy_timer(self._polls.pop())
-        self._outputs = self.stream = None
+        self.held.close()
+        self.stream = None
 
     def _on_image(self, image: Image | CompressedImage, info: Mapping[str, Any]) -> None:
         """Note an image, and pass it to the stream; not one that a deactivation has overtaken."""
-        if self.diagnostics.source is None or self.stream is None:
+        source = self.diagnostics.source
+        if source is None or self.stream is None:
             return
         age = self.get_clock().now().nanoseconds - stamp_ns(image.header)
-        self.diagnostics.arrived(info, age * 1e-9)
+        self.diagnostics.health.arrived(info, age * 1e-9, source.publisher_count)
         self.stream.take(image)
 
-    def warn_of_overrides(self) -> None:
-        """Warn of QoS overrides of topics that the node has not, once all are open."""
-        self.warn_of(unknown_overrides(self, self.overrides, qos=True))
-
-    def warn_of(self, sentences: list[str]) -> None:
-        """Log what is ignored, a line each."""
-        for sentence in sentences:
+    def warn_of_overrides(self, *, qos: bool) -> None:
+        """Log the overrides that are ignored, a line each: of QoS, once all topics are open."""
+        for sentence in unknown_overrides(self, self.overrides, qos=qos):
             self.get_logger().warning(f"ignored: {sentence}")
 
     def start(self) -> None:

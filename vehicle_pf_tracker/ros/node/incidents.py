@@ -12,17 +12,14 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Incidents of a node: its last seconds as a recording, its target kept, and steps that hang."""
+"""Incidents of a node: its last seconds as a recording, and its target kept."""
 
 from __future__ import annotations
 
 import json
 import os
-import sys
 import threading
 import time
-import traceback
-import weakref
 from collections import deque
 from collections.abc import Callable
 from importlib import import_module
@@ -75,8 +72,7 @@ class IncidentRecorder:
         self, name: str, most_bytes: int, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self._name, self._most, self._clock = name, most_bytes, clock
-        self._kept: deque[tuple[float, int, type[Any], bytes]] = deque()
-        self._boxes: deque[tuple[int, Box]] = deque()
+        self._kept: deque[tuple[float, int, type[Any], bytes, Box | None]] = deque()
         self._bytes = 0
         self._writing: threading.Thread | None = None
 
@@ -85,20 +81,15 @@ class IncidentRecorder:
         """Number of messages that are kept."""
         return len(self._kept)
 
-    def keep(self, message: Image | CompressedImage | DiagnosticArray) -> None:
-        """Keep a message, and let go of old ones."""
+    def keep(
+        self, message: Image | CompressedImage | DiagnosticArray, box: Box | None = None
+    ) -> None:
+        """Keep a message, and let go of old ones; a run can start on the target's `box`."""
         now, data = self._clock(), serialize_message(message)
-        self._kept.append((now, stamp_ns(message.header), type(message), data))
+        self._kept.append((now, stamp_ns(message.header), type(message), data, box))
         self._bytes += len(data)
         while self._kept and (self._bytes > self._most or now - self._kept[0][0] > _LENGTH):
             self._bytes -= len(self._kept.popleft()[3])
-        first_ns = self._kept[0][1] if self._kept else 0
-        while self._boxes and self._boxes[0][0] < first_ns:
-            self._boxes.popleft()
-
-    def keep_box(self, stamp: int, box: Box) -> None:
-        """Keep where the target was, for a run to start on."""
-        self._boxes.append((stamp, box))
 
     def write(self, configuration: Configuration, tell: Callable[[str], object]) -> Path:
         """Begin to write a recording, with the parameters beside it, and return its folder.
@@ -121,8 +112,9 @@ class IncidentRecorder:
         with output_errors(ros_folder()):
             ros_folder().mkdir(parents=True, exist_ok=True)
         folder = ros_folder() / f"{self._name}_{time.strftime('%Y%m%d_%H%M%S')}"
-        messages = [(_TOPICS[kind], stamp, data) for _, stamp, kind, data in self._kept]
-        first, name = self._boxes[0] if self._boxes else None, self._name
+        messages = [(_TOPICS[kind], stamp, data) for _, stamp, kind, data, _ in self._kept]
+        name = self._name
+        first = next(((stamp, box) for _, stamp, _, _, box in self._kept if box is not None), None)
         text = to_yaml(configuration.specs(), configuration.to_mapping(), f"{name}'s.")
 
         def write() -> None:
@@ -174,56 +166,3 @@ class KeptTarget:
             return Box(*map(float, json.loads(self._path.read_text(encoding="utf-8"))))
         except (OSError, ValueError, TypeError):
             return None
-
-
-_LOOK_EVERY = 0.1
-"""Seconds between two looks at the step: a fifth of the least patience."""
-
-
-class Watchdog:
-    """Looks at the steps of the thread that makes it, from a thread of its own.
-
-    `faulthandler` would look without Python's lock: it has read frames while they changed, and
-    ended a node with a segmentation fault.
-
-    Parameters
-    ----------
-    say : callable
-        Takes the report; called in the watching thread.
-    """
-
-    def __init__(self, say: Callable[[str], object]) -> None:
-        self._say = say
-        self._watched = threading.get_ident()
-        self._deadline: tuple[float, float] | None = None
-        # It holds no reference to the watchdog between two looks, and so ends after it.
-        threading.Thread(target=_watch, args=[weakref.ref(self)], daemon=True).start()
-
-    def begin(self, patience: float) -> None:
-        """Begin a step that should take `patience` s at most."""
-        self._deadline = time.monotonic() + patience, patience
-
-    def end(self) -> None:
-        """End the step."""
-        self._deadline = None
-
-    def look(self) -> None:
-        """Report a step that takes longer, once."""
-        deadline = self._deadline
-        frame = sys._current_frames().get(self._watched)
-        # Compared last: a step that ended meanwhile is not reported with the next one's frames.
-        if deadline is None or frame is None or time.monotonic() < deadline[0]:
-            return
-        if self._deadline is deadline:
-            self._deadline = None
-            place = "".join(traceback.format_stack(frame))
-            self._say(f"an image takes longer than {deadline[1]:.1f} s; it is at\n{place}")
-
-
-def _watch(watchdog: weakref.ref[Watchdog]) -> None:
-    while True:
-        time.sleep(_LOOK_EVERY)
-        if (present := watchdog()) is None:
-            return
-        present.look()
-        del present

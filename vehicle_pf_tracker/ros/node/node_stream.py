@@ -20,7 +20,6 @@ import time
 import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import Any
 
 from rclpy.node import Node
@@ -36,13 +35,10 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.image_input import read_image
-from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder, KeptTarget, Watchdog
+from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder, KeptTarget
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
 
-_PATIENCE, _LEAST_PATIENCE = 10.0, 0.5
-"""Periods of the images, and s at least, after which a step is reported with where it was: by then
-images are lost, and a camera of 100 Hz is no reason to report a busy machine."""
 _PERIOD = 5.0
 """Interval between two lines of the same kind in the log, s."""
 
@@ -117,7 +113,6 @@ class NodeStream(ABC):
         own, name = configuration.node, str(node.get_name())
         memory = own.incident_memory * 10**6
         self.incidents = IncidentRecorder(name, memory) if memory else None
-        self._watchdog = Watchdog(partial(self.warnings.say, "slow"))
         self._kept = KeptTarget(node.get_fully_qualified_name()) if own.keep_target else None
         box = self._kept.load() if self._kept else None
         if box is not None:
@@ -142,15 +137,6 @@ class NodeStream(ABC):
     @abstractmethod
     def followed(self) -> Box | None:
         """Box of the target while it is visible; None where there is none."""
-
-    def judge(self) -> str:
-        """Name what is not as usual, empty where all is; called once a second."""
-        return ""
-
-    @property
-    @abstractmethod
-    def period(self) -> float:
-        """Nominal period of the images, s."""
 
     @abstractmethod
     def start_on(self, box: Box) -> None:
@@ -217,7 +203,6 @@ class NodeStream(ABC):
         header = message.header
         if self.incidents is not None:
             self.incidents.keep(message)
-        self._watchdog.begin(max(_PATIENCE * self.period, _LEAST_PATIENCE))
         try:
             image = read_image(message)
             self.feed(image, stamp_ns(header), extra)
@@ -230,8 +215,6 @@ class NodeStream(ABC):
             self.frame_id = header.frame_id
             self.answer(header, frame)
             self._keep_target()
-        finally:
-            self._watchdog.end()
 
     def _keep_target(self) -> None:
         """Save the target for a new start; a disk that is full costs no image its answer."""
@@ -245,9 +228,7 @@ class NodeStream(ABC):
         """Publish the one `~/mode` of an image; see `Outputs.publish_mode`."""
         answer = self._publish_mode(header, mode, values)
         if self.incidents is not None:
-            self.incidents.keep(answer)
-            if (box := self.followed) is not None:
-                self.incidents.keep_box(stamp_ns(header), box)
+            self.incidents.keep(answer, self.followed)
 
     def write_incident(self) -> str:
         """Begin to write the last seconds to a recording; return words about that.
@@ -282,7 +263,9 @@ class NodeStream(ABC):
 
     def decline(self, header: Header, error: InputError) -> None:
         """Answer an image that cannot be used."""
-        self._reject(header, str(error))
+        self.health.reject(str(error))
+        self.errors.say("rejected", f"image rejected: {error}")
+        self.answer_without_estimate(header, REJECTED, str(error))
 
     def answer_without_estimate(self, header: Header, mode: str, reason: str) -> None:
         """Publish a mode with its reason, and count it."""
@@ -294,17 +277,12 @@ class NodeStream(ABC):
         if self._configuration.tracker.seed < 0:
             self.log.info(f"drew the seed {seed}; set it to repeat this run")
 
-    def _reject(self, header: Header, reason: str) -> None:
-        self.health.reject(reason)
-        self.errors.say("rejected", f"image rejected: {reason}")
-        self.answer_without_estimate(header, REJECTED, reason)
-
     def _fail(self, header: Header, error: Exception) -> None:
         """Reject an image for an unexpected error, and raise it unless it concerns this image only.
 
         One image must not end a node that others rely on; a broken tracker must.
         """
         self.errors.say("error", traceback.format_exc())
-        self._reject(header, unexpected(error))
+        self.decline(header, InputError(unexpected(error)))
         if not isinstance(error, TrackerError) or error.persists:
             raise error

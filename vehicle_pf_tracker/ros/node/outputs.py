@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -73,16 +73,11 @@ class Outputs:
         Topic of the images, for the statuses.
     more : Topics
         Topics of this kind of node.
-
-    Attributes
-    ----------
-    node_name, hardware_id : str
-        Name of the node, and topic of its images.
     """
 
     def __init__(self, node: LifecycleNode, hardware_id: str, more: Topics) -> None:
         self._node = node
-        self.node_name, self.hardware_id = str(node.get_name()), hardware_id
+        self._name, self._hardware_id = str(node.get_name()), hardware_id
         self._publishers = {
             name: node.create_lifecycle_publisher(kind, f"~/{name}", qos)
             for name, (kind, qos) in {**more, **_COMMON}.items()
@@ -116,11 +111,23 @@ class Outputs:
     def publish_mode(
         self, header: Header, mode: str, values: Mapping[str, object]
     ) -> DiagnosticArray:
-        """Publish the one `~/mode` of an image."""
-        name = f"{self.node_name}: target"
-        message = messages.mode_message(header, name, self.hardware_id, mode, values)
+        """Publish the one `~/mode` of an image: of an estimate, `WAITING` or `REJECTED`.
+
+        Its values are the estimate's, or a reason.
+        """
+        one = messages.LEVELS[mode], "target", mode, {"mode": mode, **values}
+        message = self.statuses(header, [one])
         self.send("mode", lambda: message)
         return message
+
+    def statuses(self, header: Header, found: Iterable[messages.Status]) -> DiagnosticArray:
+        """Make statuses of this node."""
+        name, topic = self._name, self._hardware_id
+        made = [
+            messages.status(level, f"{name}: {subject}", words, topic, values)
+            for level, subject, words, values in found
+        ]
+        return DiagnosticArray(header=header, status=made)
 
 
 def in_frame(header: Header, frame_id: str) -> Header:

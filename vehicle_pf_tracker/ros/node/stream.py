@@ -27,7 +27,6 @@ from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box, check_target
-from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
@@ -166,11 +165,6 @@ class Stream(NodeStream):
         estimate = self.estimate
         return estimate.box if estimate and estimate.mode is Mode.TRACKING else None
 
-    @property
-    def period(self) -> float:
-        """Nominal period of the images, s."""
-        return self._session.tracker.frame_period if self._session else DEFAULT_PERIOD
-
     def start_on(self, box: Box) -> None:
         """Start on `box` with the next image, if it fits into that.
 
@@ -231,38 +225,41 @@ class Stream(NodeStream):
         """Publish the estimate of the last image, and its mode."""
         session, estimate = self._session, self.estimate
         assert session is not None
-        if session.refusal:
-            self.health.refuse_target(session.refusal)
-        events = self._events(session, frame)
+        own, mode, words = self._configuration.node, WAITING, ""
+        values: dict[str, object] = {}
+        sentences = self._report(session)
         if estimate is None and self._target_problem:
-            events["reason"] = self._target_problem
-        mode = estimate.mode.value if estimate is not None else WAITING
-        own, words = self._configuration.node, ""
+            values["reason"] = self._target_problem
         if estimate is not None:
             self._target_problem = ""
-            period = session.tracker.frame_period
+            mode, period = estimate.mode.value, session.tracker.frame_period
             self.localisation.locate(estimate, header, frame, period)
             self._outputs.publish_estimate(header, estimate, own, self.localisation, period)
             words = self.localisation.words
             self.health.road = self.localisation.values
-            events |= self.health.road
+            sentences += self._doubts(frame, estimate)
+            values = {**estimate.scalars(), **self.health.road}
         if own.publish.overlay:
             self._outputs.publish_overlay(header, frame, mode, estimate, words)
         self.health.answered(mode, estimate.duration * 1e3 if estimate else None)
-        scalars = estimate.scalars() if estimate else {}
-        self.publish_mode(header, mode, {**scalars, **events})
+        if sentences:
+            values["event"] = "; ".join(sentences)
+        self.publish_mode(header, mode, values)
 
-    def _events(self, session: Session, frame: Frame) -> dict[str, object]:
-        """Log what is irregular about an image, and what speaks against a new target."""
+    def _doubts(self, frame: Frame, estimate: Estimate) -> list[str]:
+        """Log what speaks against a new target, and return it, a sentence each."""
+        sentences = self.doubts(frame, estimate.box) if estimate.regime == START else []
+        for sentence in sentences:
+            self.log.warning(sentence)
+        return sentences
+
+    def _report(self, session: Session) -> list[str]:
+        """Log what the session says of the last image, and return it, a sentence each."""
+        if session.refusal:
+            self.health.refuse_target(session.refusal)
         if session.recovered:
             self.note_restart()
         if session.events:
             log = self.errors if session.recovered else self.warnings
             log.say("event", "; ".join(session.events))
-        estimate, doubts = self.estimate, list[str]()
-        if estimate is not None and estimate.regime == START:
-            doubts = self.doubts(frame, estimate.box)
-        for sentence in doubts:
-            self.log.warning(sentence)
-        words = "; ".join([*session.events, *doubts])
-        return {"event": words} if words else {}
+        return [*session.events]

@@ -17,7 +17,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from geometry_msgs.msg import PointStamped, PolygonStamped
@@ -70,16 +69,15 @@ class TrackerNode(ImageNode):
         """Make session, outputs and services."""
         configuration = self.table.configuration
         outputs = TrackerOutputs(self, image_topic(self, configuration.node.image_transport))
-        self._outputs = outputs
+        self.held.callback(outputs.close)
         health = self.diagnostics.begin()
         self.stream = Stream(self, self._variant, configuration, outputs, health, self._cameras)
-        self._has_logged_ready = False
         self._ready_timer = self.poll(_POLL, self._await_kernels)
 
     def activate(self) -> None:
         """Open the inputs."""
         self.open_images()
-        self.warn_of_overrides()
+        self.warn_of_overrides(qos=True)
         self._cameras.open(self.table.configuration.session.road)
         self._take_target("~/set_target", RegionOfInterest, messages.box_of_region)
         self._take_target("~/set_box", PolygonStamped, messages.box_of_polygon)
@@ -102,7 +100,7 @@ class TrackerNode(ImageNode):
                 stream.check_frame_id(topic, message.header)
             stream.start_on(read(message))
 
-        self.listen(kind, topic, lambda message: self.ask("target", partial(start, message)))
+        self.listen(kind, topic, "target", start)
 
     def _box_at(self, message: PointStamped) -> Box:
         return messages.box_of_point(message, self.stream.box if self.stream is not None else None)

@@ -21,7 +21,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from functools import partial
 
 from rclpy.clock import Clock as RosClock
 from rclpy.clock import ClockType
@@ -145,7 +144,7 @@ class Player:
         on_progress: Callable[[int, float | None], None],
         tell: Callable[[str], None],
     ) -> None:
-        self._frames = self._messages = 0
+        self._frames = 0
         self._node, self._spinner = node, spinner
         self._recording, self._options = recording, options
         self._on_progress, self._tell = on_progress, tell
@@ -179,7 +178,6 @@ class Player:
         notices = (f"skipped {len(skipped)} messages; the first, {skipped[0]}",) if skipped else ()
         return ReplayReport(
             frames=self._frames,
-            messages=self._messages,
             seconds=time.monotonic() - began,
             nodes=tuple(link.report() for link in self._links),
             notices=notices,
@@ -272,7 +270,6 @@ class Player:
         except InputError as error:
             self._skipped.append(f"of {message.topic} at {message.log_time_ns} ns: {error}")
             return False
-        self._messages += 1
         return True
 
     def _follow(self, message: RecordedMessage) -> None:
@@ -283,8 +280,7 @@ class Player:
         for link in self._links:
             link.answers.expect(self._frame, message.stamp_ns)
         for link in self._links if self._options.lockstep else ():
-            has_answered = partial(link.answers.has, self._frame)
-            if not self._spinner.until(has_answered, self._options.timeout):
+            if not link.await_answer(self._frame, self._options.timeout):
                 raise InputError(
                     f"the node {link.name} did not answer frame {self._frame} "
                     f"(stamp {message.stamp_ns} ns) within {self._options.timeout:g} s"
@@ -302,15 +298,7 @@ class Player:
     def _await_last_answers(self) -> None:
         """Wait for the answers to the last image.
 
-        Nodes answer in order: with the last answer in, what is missing was dropped. The last image
-        may be dropped itself, so no longer than the timeout without any answer.
+        Nodes answer in order: with the last answer in, what is missing was dropped.
         """
         for link in self._links if self._frame else ():
-            count = -1
-            while not link.answers.has(self._frame) and link.answers.count != count:
-                count = link.answers.count
-                self._spinner.until(partial(_is_beyond, link, count), self._options.timeout)
-
-
-def _is_beyond(link: TrackerLink, count: int) -> bool:
-    return link.answers.count > count
+            link.await_answer(self._frame, self._options.timeout)

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any, NamedTuple
@@ -100,11 +101,11 @@ def make_publishers(
     InputError
         If a topic that is named is not in the recording, or its new name is none.
     """
-    _check_names(recording, options)
+    names = _published_names(recording, options)
     publishers: dict[str, TopicPublisher] = {}
     notices = []
     for topic in recording.topics:
-        if not _is_chosen(topic, options):
+        if topic.name not in names:
             continue
         kind = _message_class(topic.type_name) if topic.is_cdr else None
         if kind is None:
@@ -115,7 +116,7 @@ def make_publishers(
         if _is_decompressed(topic, options):
             kind, convert = Image, decompressed
         qos = recorded_qos(topic.offered_qos, _IMAGE_DEPTH if kind is Image else _DEPTH)
-        name = _final_name(topic, options)
+        name = names[topic.name]
         try:
             publishers[topic.name] = TopicPublisher(node.create_publisher(kind, name, qos), convert)
         except NameValidationException as error:
@@ -137,27 +138,26 @@ def decompressed(data: bytes) -> Image:
     return image_message(compressed.header, frame)
 
 
-def _check_names(recording: Recording, options: ReplayOptions) -> None:
-    known = {topic.name for topic in recording.topics}
-    played = {_played_name(topic, options) for topic in recording.topics}
-    unknown = {*options.topics} - known | {*options.remap} - known - played
+def _published_names(recording: Recording, options: ReplayOptions) -> dict[str, str]:
+    """Return what each topic that is to be played is published as, by its recorded name."""
+    names = {topic.name: _played_name(topic, options) for topic in recording.topics}
+    unknown = {*options.topics} - names.keys()
+    unknown |= {*options.remap} - names.keys() - {*names.values()}
     if unknown:
         raise InputError(
             f"the recording {recording.path} has no topic {', '.join(sorted(unknown))}; "
-            f"it has {', '.join(sorted(known))}"
+            f"it has {', '.join(sorted(names))}"
         )
-    final = [
-        _final_name(topic, options) for topic in recording.topics if _is_chosen(topic, options)
-    ]
-    twice = sorted(name for name in set(final) if final.count(name) > 1)
-    if twice:
-        raise InputError(
-            f"several topics would be published as {twice[0]}; choose one with --topics"
-        )
-
-
-def _is_chosen(topic: TopicInfo, options: ReplayOptions) -> bool:
-    return not options.topics or topic.name in options.topics
+    final = {
+        topic: options.remap.get(topic, options.remap.get(name, name))
+        for topic, name in names.items()
+        if not options.topics or topic in options.topics
+    }
+    for name, count in Counter(final.values()).items():
+        if count > 1:
+            what = f"several topics would be published as {name}"
+            raise InputError(f"{what}; choose one with --topics")
+    return final
 
 
 def _is_decompressed(topic: TopicInfo, options: ReplayOptions) -> bool:
@@ -167,11 +167,6 @@ def _is_decompressed(topic: TopicInfo, options: ReplayOptions) -> bool:
 def _played_name(topic: TopicInfo, options: ReplayOptions) -> str:
     """Name of a topic before it is remapped."""
     return topic.name.removesuffix(_SUFFIX) if _is_decompressed(topic, options) else topic.name
-
-
-def _final_name(topic: TopicInfo, options: ReplayOptions) -> str:
-    name = _played_name(topic, options)
-    return options.remap.get(topic.name, options.remap.get(name, name))
 
 
 def _message_class(type_name: str) -> type[Any] | None:

@@ -16,11 +16,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
-import yaml
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from vehicle_pf_tracker.core.box import Box
@@ -113,8 +112,6 @@ class ReplayReport:
     ----------
     frames : int
         Images published, in all passes of a loop.
-    messages : int
-        Messages published, the images among them.
     seconds : float
         Time from the first message to the last answer.
     nodes : tuple of NodeReport
@@ -126,7 +123,6 @@ class ReplayReport:
     """
 
     frames: int
-    messages: int
     seconds: float
     nodes: tuple[NodeReport, ...]
     notices: tuple[str, ...] = ()
@@ -145,17 +141,8 @@ def recorded_qos(offered: str, depth: int) -> QoSProfile:
     depth : int
         Number of messages to keep.
     """
-    profiles = _listed(offered)
+    durabilities = set(re.findall(r"\bdurability\W+(\w+)", offered))
     # rosbag2 writes names since Jazzy, and the numbers of rmw before.
-    latched = ("transient_local", 1)
-    if profiles and all(one.get("durability") in latched for one in profiles):
+    if durabilities and durabilities <= {"transient_local", "1"}:
         return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     return QoSProfile(depth=depth)
-
-
-def _listed(text: str) -> list[dict[str, Any]]:
-    try:
-        found = yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError, RecursionError):
-        return []
-    return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []

@@ -162,6 +162,18 @@ class TrackerLink:
             )
         self._call(self._get, GetParameters.Request())
 
+    def await_answer(self, frame: int, timeout: float) -> bool:
+        """Wait until image number `frame` is answered, for `timeout` s after any other answer."""
+        answers, count = self.answers, -1
+
+        def goes_on() -> bool:
+            return answers.count > count
+
+        while not answers.has(frame) and goes_on():
+            count = answers.count
+            self._spinner.until(goes_on, timeout)
+        return answers.has(frame)
+
     def set_target(self, box: Box | None, *, may_reset: bool = False) -> None:
         """Set the node's configured target; None makes it wait for one after the next reset.
 

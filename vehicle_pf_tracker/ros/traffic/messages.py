@@ -19,12 +19,12 @@ Detections come in and go out only where vision_msgs is installed.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import PointCloud2
@@ -84,21 +84,11 @@ def scalars(estimate: TrackEstimate) -> dict[str, object]:
     }
 
 
-def modes_message(
-    header: Header, node: str, hardware_id: str, estimates: Iterable[TrackEstimate]
-) -> DiagnosticArray:
-    """Make the status of each vehicle, with every scalar of its estimate."""
-    statuses = [
-        messages.status(
-            messages.LEVELS[one.mode.value],
-            f"{node}: vehicle {one.identity or one.mode.value.lower()}",
-            one.mode.value,
-            hardware_id,
-            scalars(one),
-        )
-        for one in estimates
-    ]
-    return DiagnosticArray(header=header, status=statuses)
+def mode_statuses(estimates: Iterable[TrackEstimate]) -> Iterator[messages.Status]:
+    """Describe each vehicle, with every scalar of its estimate."""
+    for one in estimates:
+        mode = one.mode.value
+        yield messages.LEVELS[mode], f"vehicle {one.identity or mode.lower()}", mode, scalars(one)
 
 
 def markers_message(header: Header, estimates: Iterable[TrackEstimate]) -> MarkerArray:
@@ -142,33 +132,11 @@ def _marker(header: Header, estimate: TrackEstimate, namespace: str, kind: int) 
     return marker
 
 
-def counts_message(
-    header: Header, node: str, hardware_id: str, counter: Counter, latest: Mapping[str, Crossing]
-) -> DiagnosticArray:
-    """Make the status of each line and zone.
-
-    Parameters
-    ----------
-    header : Header
-        The image's.
-    node, hardware_id : str
-        Node, and topic of its images.
-    counter : Counter
-        Counter of the lines and zones.
-    latest : mapping of str to Crossing
-        The last crossing of each place, by the place's name.
-    """
-    statuses = [
-        messages.status(
-            DiagnosticStatus.OK,
-            f"{node}: {place}",
-            _words(counter, place, names),
-            hardware_id,
-            _values(counter, place, names, latest.get(place)),
-        )
-        for place, names in counter.directions.items()
-    ]
-    return DiagnosticArray(header=header, status=statuses)
+def count_statuses(counter: Counter, latest: Mapping[str, Crossing]) -> Iterator[messages.Status]:
+    """Describe each line and zone; `latest` has the last crossing of each place, by its name."""
+    for place, names in counter.directions.items():
+        values = _values(counter, place, names, latest.get(place))
+        yield DiagnosticStatus.OK, place, _words(counter, place, names), values
 
 
 def _words(counter: Counter, place: str, directions: tuple[str, str]) -> str:

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
@@ -42,15 +42,12 @@ from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import RELIABLE, Outputs, in_pixels
 from vehicle_pf_tracker.ros.traffic import messages
-from vehicle_pf_tracker.ros.traffic.rates import Rates
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
-from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 _BY_PIXELS = "vehicles are followed by their pixels meanwhile"
 
@@ -80,23 +77,20 @@ class TrafficOutputs(Outputs):
         super().__init__(node, hardware_id, more)
 
     def publish_vehicles(
-        self, header: Header, there: Header, estimates: Sequence[TrackEstimate], period: float
+        self, header: Header, there: Header, vehicles: Vehicles, period: float
     ) -> None:
-        """Publish all vehicles, in px under the header `there`; `period` is that of frames, s."""
-        name = self.node_name
+        """Publish all vehicles, px under the header `there`, and what was counted.
+
+        The frame `period` is in s.
+        """
+        estimates = vehicles.estimates
         self.send("tracks", messages.tracks_message, there, estimates, period)
-        self.send("modes", messages.modes_message, header, name, self.hardware_id, estimates)
+        self.send("modes", self.statuses, header, messages.mode_statuses(estimates))
         self.send("detections", messages.detections_message, there, estimates)
         self.send("markers", messages.markers_message, there, estimates)
-
-    def publish_counts(
-        self, header: Header, counter: Counter, latest: Mapping[str, Crossing]
-    ) -> None:
-        """Publish what was counted, and the last crossing of each place."""
-        name = self.node_name
-        self.send(
-            "counts", messages.counts_message, header, name, self.hardware_id, counter, latest
-        )
+        if vehicles.counter.plan.is_counting:
+            counts = messages.count_statuses(vehicles.counter, vehicles.latest)
+            self.send("counts", self.statuses, header, counts)
 
     def publish_overlay(self, header: Header, frame: Frame, vehicles: Vehicles) -> None:
         """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
@@ -144,7 +138,6 @@ class TrafficStream(NodeStream):
         self._awaits_detections = configuration.tracker.detector.kind == TOPIC
         self._waiting: WaitingImages[Image | CompressedImage] = WaitingImages()
         self._began = 0.0
-        self._rates = Rates()
         self._detections: Detections | None = None
         self._events: list[str] = []
         self.tell_drawn_seed(self.vehicles.session.tracker.seed)
@@ -156,7 +149,11 @@ class TrafficStream(NodeStream):
     @property
     def facts(self) -> Mapping[str, object]:
         """Values for the node's report: seed, detector, vehicles."""
-        waiting = self._waiting
+        tracker, detector = self.vehicles.session.tracker, self.vehicles.session.detector
+        waiting, found = self._waiting, len(self._detections or ())
+        seconds = waiting.latency
+        if isinstance(detector, PacedDetector):
+            found, seconds = detector.found, detector.seconds
         detections = {
             "images with detections": waiting.matched,
             "images without detections": waiting.missed,
@@ -165,17 +162,14 @@ class TrafficStream(NodeStream):
         }
         return {
             "variant": TRAFFIC.name,
-            "seed": self.vehicles.session.tracker.seed,
+            "seed": tracker.seed,
             "detector": self._configuration.tracker.detector.kind,
             **self.vehicles.summary(),
-            **{name: round(value, 2) for name, value in self._rates.values.items()},
+            "detections of the last image": found,
+            "detector's latency (ms)": round(seconds * 1e3, 2),
+            "places with false alarms": tracker.cluttered_places,
             **(detections if self._awaits_detections else {}),
         }
-
-    @property
-    def is_waiting(self) -> bool:
-        """True while an image waits for its detections."""
-        return bool(self._waiting)
 
     def take(self, message: Image | CompressedImage) -> None:
         """Take an image, which is answered with exactly one `~/mode`, now or after its detector."""
@@ -238,11 +232,6 @@ class TrafficStream(NodeStream):
         one = self.vehicles.selected
         return one.box if one is not None and one.mode is TrackMode.TRACKING else None
 
-    @property
-    def period(self) -> float:
-        """Nominal period of the images, s."""
-        return self.vehicles.session.tracker.frame_period
-
     def start_on(self, box: Box) -> None:
         """Follow and select the vehicle in `box` of the first image."""
         self.vehicles.select_first(box)
@@ -283,11 +272,8 @@ class TrafficStream(NodeStream):
         while vehicles.given:
             events += self.doubts(frame, vehicles.given.pop())
         period = vehicles.session.tracker.frame_period
-        estimates, selected = vehicles.estimates, vehicles.selected
-        there = in_pixels(header, own)
-        self._outputs.publish_vehicles(header, there, estimates, period)
-        if vehicles.counter.plan.is_counting:
-            self._outputs.publish_counts(header, vehicles.counter, vehicles.latest)
+        selected, there = vehicles.selected, in_pixels(header, own)
+        self._outputs.publish_vehicles(header, there, vehicles, period)
         if selected is not None:
             self._outputs.publish_vehicle(there, selected, own, period)
         self._show(header, frame)
@@ -304,7 +290,6 @@ class TrafficStream(NodeStream):
         if events:
             values["event"] = "; ".join(events)
         self.health.answered(mode, step_ms)
-        self._note_rates(estimates)
         self.publish_mode(header, mode, values)
 
     def _show(self, header: Header, frame: Frame) -> None:
@@ -313,18 +298,3 @@ class TrafficStream(NodeStream):
             self._outputs.publish_overlay(header, frame, self.vehicles)
         if self.page is not None:
             self.page.show(partial(self.vehicles.drawn, frame), self.vehicles.facts)
-
-    def judge(self) -> str:
-        """Name the rates that are not as usual; called once a second."""
-        return self._rates.judge()
-
-    def _note_rates(self, estimates: Sequence[TrackEstimate]) -> None:
-        detector, found, seconds = self.vehicles.session.detector, len(self._detections or ()), 0.0
-        if self._awaits_detections:
-            seconds = self._waiting.latency
-        elif isinstance(detector, PacedDetector):
-            found, seconds = detector.found, detector.seconds
-        known = [one.identity for one in estimates if one.mode in CONFIRMED]
-        visible = sum(one.mode is TrackMode.TRACKING for one in estimates)
-        cluttered = self.vehicles.session.tracker.cluttered_places
-        self._rates.note(known, found, visible, seconds, cluttered)

@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from geometry_msgs.msg import PointStamped
@@ -80,9 +79,11 @@ class TrafficNode(ImageNode):
         if is_url(configuration.tracker.detector.model):
             self.get_logger().info("fetching the network, unless it is in the cache")
         outputs = TrafficOutputs(self, image_topic(self, configuration.node.image_transport))
-        self._outputs = outputs
+        self.held.callback(outputs.close)
         self.stream = TrafficStream(self, configuration, outputs, self.diagnostics.begin())
-        self._look_timer = self.poll(_LOOK_EVERY, self._look)
+        if self.stream.page is not None:
+            self.held.callback(self.stream.page.close)
+        self._look_timer = self.poll(_LOOK_EVERY, self.stream.go_on)
         self._free_timer = self.poll(_FREE_AFTER, self._free)
         for timer in (self._look_timer, self._free_timer):
             timer.cancel()
@@ -91,31 +92,22 @@ class TrafficNode(ImageNode):
     def activate(self) -> None:
         """Open the inputs."""
         source = self.open_images()
-        self.listen(RegionOfInterest, "~/add_target", self._on_region)
-        self.listen(PointStamped, "~/clicked_point", self._on_point)
-        self.listen(Int64, "~/select", self._on_select)
+        self.listen(RegionOfInterest, "~/add_target", "target", self._add)
+        self.listen(PointStamped, "~/clicked_point", "selection", self._choose_at)
+        self.listen(Int64, "~/select", "selection", self._choose)
         detector = self.table.configuration.tracker.detector.kind
         if detector == TOPIC:
             self._listen_to_detections()
-        self.warn_of_overrides()
+            self._look_timer.reset()
+        self.warn_of_overrides(qos=True)
         self.get_logger().info(f"ready: images on {source}, detections: {detector}")
 
     def deactivate(self) -> None:
         """Close the inputs."""
         super().deactivate()
         if self.stream is not None:
+            self._look_timer.cancel()
             self.stream.drop_waiting()
-
-    def cleanup(self) -> None:
-        """Release all of it, the page too."""
-        if self.stream is not None and self.stream.page is not None:
-            self.stream.page.close()
-        super().cleanup()
-
-    def _on_image(self, message: Any, info: Mapping[str, Any]) -> None:
-        super()._on_image(message, info)
-        if self.stream is not None:
-            self._after_step(self.stream)
 
     def _listen_to_detections(self) -> None:
         # As many as images may wait: a detector may answer several at once.
@@ -129,7 +121,6 @@ class TrafficNode(ImageNode):
         if len(message) > LONGEST and self._free_timer.is_canceled():
             self._free_timer.reset()
         self.stream.take_detections(message)
-        self._after_step(self.stream)
 
     def _free(self) -> None:
         """Free what a flood took: Fast DDS keeps each of a reader's buffers at its longest."""
@@ -139,40 +130,19 @@ class TrafficNode(ImageNode):
             self._listen_to_detections()
         return_memory()
 
-    def _look(self) -> None:
-        if self.stream is not None:
-            self.stream.go_on()
-            self._after_step(self.stream)
-
-    def _after_step(self, stream: TrafficStream) -> None:
-        if not stream.is_waiting:
-            self._look_timer.cancel()
-        elif self._look_timer.is_canceled():
-            self._look_timer.reset()
-
-    def _on_region(self, message: RegionOfInterest) -> None:
+    def _add(self, message: RegionOfInterest, stream: TrafficStream) -> None:
         box = box_of_region(message)
+        identity = stream.vehicles.add(box)
+        if identity is not None:
+            self.get_logger().info(f"following {box} as {identity}")
 
-        def add(stream: TrafficStream) -> None:
-            identity = stream.vehicles.add(box)
-            if identity is not None:
-                self.get_logger().info(f"following {box} as {identity}")
+    def _choose_at(self, message: PointStamped, stream: TrafficStream) -> None:
+        stream.check_frame_id("~/clicked_point", message.header)
+        x, y = finite("~/clicked_point", message.point.x, message.point.y)
+        stream.vehicles.selection.choose_at((x, y), stream.vehicles.estimates)
 
-        self.ask("target", add)
-
-    def _on_point(self, message: PointStamped) -> None:
-        def choose(stream: TrafficStream) -> None:
-            stream.check_frame_id("~/clicked_point", message.header)
-            x, y = finite("~/clicked_point", message.point.x, message.point.y)
-            stream.vehicles.selection.choose_at((x, y), stream.vehicles.estimates)
-
-        self.ask("selection", choose)
-
-    def _on_select(self, message: Int64) -> None:
-        def choose(stream: TrafficStream) -> None:
-            stream.vehicles.selection.choose(message.data, stream.vehicles.estimates)
-
-        self.ask("selection", choose)
+    def _choose(self, message: Int64, stream: TrafficStream) -> None:
+        stream.vehicles.selection.choose(message.data, stream.vehicles.estimates)
 
     def _remove(self) -> str:
         assert self.stream is not None
