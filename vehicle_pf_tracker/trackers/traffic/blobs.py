@@ -32,6 +32,8 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.detections import (
+    HALF,
+    LITTLE,
     SHIPPED,
     TrafficNumbers,
     areas,
@@ -43,35 +45,29 @@ _LEAST_AREA = 0.0003
 """Smallest area of a vehicle, of the image: 23 px in 320 x 240."""
 _LEAST_PIECE = 4
 """Smallest area in px of a piece of a vehicle."""
+_USUAL, _ASPECT_SPREAD = math.log(0.8), 0.3
+"""Usual logarithm of height over width, and of a vehicle's share of its box, to start from; and the
+standard deviation of the first."""
+_SPREAD = 0.2
+"""That of the second, and of the logarithm of a car's size."""
 _TRIMMED = 0.15
 """Rows and columns at the rim with less of the fullest one are cut off: reflections, shadows."""
-_COVERED = 0.5
-"""Share of a predicted vehicle in a blob above which the blob is, or contains, that vehicle."""
 _PIECE = 0.8
 """Share of a blob inside a prediction above which it is a piece of that vehicle."""
-_ASPECT, _ASPECT_SPREAD = math.log(0.8), 0.3
-"""Usual logarithm of height over width, to start from, and its standard deviation."""
+_OWN = 0.15
+"""Share of a blob above which a part of it can be a vehicle."""
 _ASPECT_RATE = 0.02
 """Rate at which the usual aspect follows blobs of one vehicle each."""
 _ASPECT_SIDE = 10
-"""Least side in px of a blob whose aspect is learnt."""
-_NOTABLE = 0.1
-"""Share of the largest piece above which another one is part of the vehicle, and no noise."""
-_OWN = 0.15
-"""Share of a blob above which a part of it can be a vehicle."""
-_SHAPED = 100
-"""Least area in px of a blob that has a shape."""
-_FULLNESS, _FULLNESS_SPREAD = math.log(0.8), 0.2
-"""Usual logarithm of a vehicle's share of its box, to start from, and its standard deviation."""
-_SIZE_SPREAD, _MOST_SIZE_COST = 0.2, 4.0
-"""Standard deviation of the logarithm of a car's size, and most cost of another size: a lorry is
-twice as large, and has to stay whole."""
-_SPECK = math.log(0.4) / _SIZE_SPREAD
+"""Least side in px of a blob whose aspect is learnt; one of less area has no shape."""
+_MOST_SIZE_COST = 4.0
+"""Most cost of another size: a lorry is twice as large, and has to stay whole."""
+_SPECK = math.log(0.4) / _SPREAD
 """Deviation from the usual size below which a box is of leaves, captions or noise: a motorcycle has
 two thirds of a car's size, and a car beside many lorries half of the usual one."""
-_SIZES_NEEDED, _SIZE_MEMORY = 50, 0.998
+_SIZES_NEEDED, MEMORY = 50, 0.998
 """Least boxes that a usual size is taken from: of one vehicle that has driven through; and weight
-of those before each: some minutes."""
+of those before each, or of earlier images: some minutes."""
 _SCALE, _SINGULAR = 400.0, 1e-4
 """Largest width of a mask in px; and least singular value, of the largest one's, that tells: while
 all vehicles have driven on one line, the size beside it is taken to be the same."""
@@ -126,8 +122,8 @@ class UsualSize:
         """Add the box of one vehicle; all count alike, near and far ones."""
         size = math.sqrt(math.prod(piece.sides))
         place = np.array([(piece.left + piece.right) / 2 / _SCALE, piece.bottom / _SCALE, 1.0])
-        self._squares = _SIZE_MEMORY * self._squares + np.outer(place, place) / size**2
-        self._sums = _SIZE_MEMORY * self._sums + place / size
+        self._squares = MEMORY * self._squares + np.outer(place, place) / size**2
+        self._sums = MEMORY * self._sums + place / size
         self._count += 1
 
     def settle(self) -> None:
@@ -142,7 +138,7 @@ class UsualSize:
             return 0.0
         across, down, level = self._slopes
         usual = ((piece.left + piece.right) / 2 * across + piece.bottom * down) / _SCALE + level
-        return math.log(math.sqrt(math.prod(piece.sides)) / max(usual, 1.0)) / _SIZE_SPREAD
+        return math.log(math.sqrt(math.prod(piece.sides)) / max(usual, 1.0)) / _SPREAD
 
     def cost(self, piece: Piece) -> float:
         """Squared deviation of a box, of a larger one not more than lorries cost."""
@@ -161,8 +157,8 @@ class BlobReader:
 
     def __init__(self, numbers: TrafficNumbers = SHIPPED) -> None:
         self._numbers = numbers
-        self._aspect = _ASPECT
-        self._fullness = _FULLNESS
+        self._aspect = _USUAL
+        self._fullness = _USUAL
         self._sizes = UsualSize()
 
     def read(self, mask: Mask, predicted: Array) -> tuple[Array, Array]:
@@ -188,7 +184,7 @@ class BlobReader:
         pieces: dict[int, list[Piece]] = {}
         room = areas(predicted)
         for part, box in _components(mask):
-            members = int(np.count_nonzero(intersections(box, predicted) > _COVERED * room))
+            members = int(np.count_nonzero(intersections(box, predicted) > HALF * room))
             for piece in self._apart(part, *box[:2].astype(int).tolist()):
                 self._learn_shape(piece, mask.shape, members)
                 inside = intersections(piece.edges, predicted)
@@ -211,7 +207,7 @@ class BlobReader:
     def _apart(self, part: Mask, x: int, y: int) -> list[Piece]:
         """Divide a blob again and again, while its parts look more like vehicles than the whole."""
         whole = _piece(part, x, y)
-        if whole.area < _SHAPED or self._shape_cost(whole) <= self._numbers.apart:
+        if whole.area < _ASPECT_SIDE**2 or self._shape_cost(whole) <= self._numbers.apart:
             return [whole]
         cuts = [_cut(part, axis) for axis in (0, 1) if part.shape[axis] > 1]
         pieces = [[_piece(half, x + u, y + v) for half, u, v in halves] for halves in cuts]
@@ -230,7 +226,7 @@ class BlobReader:
 
     def _are_several(self, parts: list[Piece], whole: Piece) -> bool:
         """Test whether parts of a blob look more like vehicles than the whole does."""
-        if min(one.area for one in parts) < _OWN * whole.area or whole.area < _SHAPED:
+        if min(one.area for one in parts) < _OWN * whole.area or whole.area < _ASPECT_SIDE**2:
             return False
         return self._worst(parts) + self._numbers.apart < self._shape_cost(whole)
 
@@ -240,7 +236,7 @@ class BlobReader:
     def _shape_cost(self, piece: Piece) -> float:
         """Squared standard deviations of aspect, fullness and size from the usual ones."""
         aspect = (piece.log_aspect - self._aspect) / _ASPECT_SPREAD
-        fullness = (piece.log_fullness - self._fullness) / _FULLNESS_SPREAD
+        fullness = (piece.log_fullness - self._fullness) / _SPREAD
         return aspect**2 + fullness**2 + self._sizes.cost(piece)
 
     def _learn_shape(self, piece: Piece, shape: tuple[int, ...], members: int) -> None:
@@ -296,6 +292,6 @@ def _joined(pieces: list[Piece]) -> Piece:
     """Join pieces of one vehicle; specks that happen to be in its prediction are none."""
     largest = max(piece.area for piece in pieces)
     left, top, right, bottom, area = zip(
-        *(piece for piece in pieces if piece.area > _NOTABLE * largest), strict=True
+        *(piece for piece in pieces if piece.area > LITTLE * largest), strict=True
     )
     return Piece(min(left), min(top), max(right), max(bottom), sum(area))

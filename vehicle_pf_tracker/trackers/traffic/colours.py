@@ -26,7 +26,7 @@ _LEVELS = 4
 """Levels of each channel: enough to tell colours, few enough for a box of 100 px."""
 BINS = _LEVELS**3
 """Joint bins of the three channels."""
-_INNER = 0.1
+RIM = 0.1
 """Margin on each side, of the size, that is left out: background."""
 
 
@@ -52,7 +52,7 @@ class ColourBins:
             Shares of the colours; zero where nothing of the box is in sight.
         """
         left, top, right, bottom = edges.tolist()
-        dx, dy = _INNER * (right - left), _INNER * (bottom - top)
+        dx, dy = RIM * (right - left), RIM * (bottom - top)
         x0, x1 = max(int(left + dx), 0), max(int(right - dx) + 1, 0)
         y0, y1 = max(int(top + dy), 0), max(int(bottom - dy) + 1, 0)
         part, seen = self._frame[y0:y1, x0:x1], None

@@ -55,8 +55,6 @@ _ASPECT = 0.8
 """Height of a vehicle over its width where a border cuts it when it is first seen: that of cars
 from the front. From the side it is half of it, hence the deviation."""
 _ASPECT_DEVIATION = 0.25
-_IMPLAUSIBLE = 0.6
-"""Side of a first box, of the usual one, below which something hides a part: its edges may grow."""
 _CONTRADICTED = 4.0
 """Sum of the squared mean residuals, of the edges whose opposite went as far, from which a drive is
 wrong. At 2.5 the errors that detectors repeat are followed, too: HOTA of CenterNet on the exam's
@@ -92,7 +90,7 @@ def first_state(
     ):
         if side >= usual:
             continue
-        if side < _IMPLAUSIBLE * usual:
+        if side < HALF * usual:
             spread[low] = spread[high] = _ASPECT_DEVIATION * usual
         if cut[low]:
             edges[low], spread[low] = edges[high] - usual, _ASPECT_DEVIATION * usual

@@ -32,7 +32,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, check_frame
-from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
+from vehicle_pf_tracker.trackers.traffic.blobs import MEMORY, BlobReader
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, Detections, TrafficNumbers
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.steady import Steadier
@@ -60,8 +60,8 @@ _COMPARED = 3
 _EDGE = 0.04
 """Largest change per px of the brightness, of the background's, inside a shadow: noise is half of
 it. At .03 noisy shadows are vehicles; at .06 half the dark cars of a cloudy day are shadows."""
-_SHADES, _SHADES_MEMORY = 20, 0.998
-"""Steps of brightness that shadows are counted in, and the weight of those of earlier images."""
+_SHADES = 20
+"""Steps of brightness that shadows are counted in."""
 _DARKEST, _STANDS_OUT, _FEW_SHADED = 0.25, 2.0, 100.0
 """Least brightness of a shadow of the sun, its pixels over those of the brightnesses two steps
 beside it, and pixels that tell nothing: dark cars have as many of each. Of `traffic-overtaking`,
@@ -181,7 +181,7 @@ class Background:
         inner = cv2.erode(changed.astype(np.uint8), _RIM) > 0
         dark &= ~(inner & (slope > _EDGE))
         self._shades += np.bincount((share[dark] * _SHADES).astype(int), minlength=_SHADES + 1)
-        self._shades *= _SHADES_MEMORY
+        self._shades *= MEMORY
         return np.asarray(dark & (share >= self._darkest()))
 
     def _darkest(self) -> float:

@@ -29,7 +29,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.shared_motion import PointFlow
-from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
+from vehicle_pf_tracker.trackers.traffic.colours import RIM, ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import HALF, areas
 from vehicle_pf_tracker.trackers.traffic.track import FEW, Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR, PIXEL_NOISE, V, X
@@ -37,13 +37,10 @@ from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR, PIXEL_NOISE, 
 Grey: TypeAlias = npt.NDArray[np.uint8]
 
 _GRID = 5
-"""Points along each side of a box, and the fewest that a motion is taken from."""
-_REACH = 0.8
-"""Part of the box that points are placed in; its rim is background."""
+"""Points along each side of a box; the fewest that a motion is taken from, and as many as count as
+independent: neighbours err together."""
 _POINT_NOISE = 0.5
 """Standard deviation of a point's flow, px."""
-_INDEPENDENT = 6
-"""Number of points that count as independent: neighbours err together."""
 _OUTLIER = 0.02
 """Likelihood of a point that went elsewhere."""
 _SLIP = 0.02
@@ -52,13 +49,12 @@ _SLIP_PX = 0.3
 """The same in px."""
 _CAUTION = 1.5
 """Factor on these deviations: errors of successive frames go the same way and add up."""
-_STANDS = 0.4
-"""Share of the predicted way below which a point stands; no vehicle brakes that hard in a frame."""
 _HELD_SHARE = 0.3
 """Least visible share of a vehicle, and share in the image, for pixels to hold it. At a half, and
 without the caution, IDF1 by motion falls by three."""
 _HELD_FALL = 0.15
-"""Fall of the colours' similarity below its usual value above which pixels do not hold it."""
+"""Fall of the colours' similarity below its usual value above which pixels do not hold it. At .2,
+as for vehicles that come back, IDF1 by motion behind the bridge falls by five."""
 _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 
 
@@ -143,7 +139,7 @@ def _hold(
     expected += particles[:, np.newaxis, :2]
     squared = ((observed - expected) ** 2).sum(axis=2) / _POINT_NOISE**2
     logs = np.log(np.exp(-squared / 2) + _OUTLIER).mean(axis=1)
-    logs *= min(_INDEPENDENT, len(relative))
+    logs *= _GRID
     middles = centre + particles[:, :2]
     halves = size * (1 + particles[:, 2:]) / 2
     boxes = np.hstack([middles - halves, middles + halves])
@@ -168,7 +164,7 @@ def _standing(old: Array, new: Array, before: Array, predicted: Array) -> npt.ND
     length = float(np.hypot(*drive))
     if length < PIXEL_NOISE:
         return np.zeros(len(old), dtype=np.bool_)
-    return np.asarray(np.hypot(*(new - old).T) < _STANDS * length)
+    return np.asarray(np.hypot(*(new - old).T) < HALF * length)
 
 
 def _particles(track: Track, motions: Array, normals: Array) -> Array:
@@ -198,7 +194,7 @@ def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
 
 
 def _points(edges: Array) -> Array:
-    places = ((np.arange(_GRID) + 0.5) / _GRID - 0.5) * _REACH
+    places = ((np.arange(_GRID) + 0.5) / _GRID - 0.5) * (1 - 2 * RIM)
     x, y = np.meshgrid(places, places)
     middle, size = (edges[:2] + edges[2:]) / 2, edges[2:] - edges[:2]
     return np.asarray(np.column_stack([x.ravel(), y.ravel()]) * size + middle)

@@ -24,18 +24,17 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.shared_motion import PointFlow, shared_similarity
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import PIXEL_NOISE, SETTLED_AFTER
 
 Image: TypeAlias = npt.NDArray[np.uint8]
 
 _CORNERS, _QUALITY, _APART = 120, 0.01, 10
 """Most corners that are followed, their least strength, of the strongest one's, and their least
 distance in px: of thirty that are hidden by vehicles, ninety are left."""
-_RETURNS_PX = 0.5
-"""Largest error of a corner that was followed forth and back."""
 _FARTHEST = 0.1
 """Largest shift that is a shake, of the image's width; beyond it the camera was turned."""
-_STANDS_AFTER, _CHECKED_EVERY = 30, 5
-"""Images without a shake after which only every so many are measured: gusts last longer."""
+_CHECKED_EVERY = 5
+"""After `SETTLED_AFTER` images without a shake only every so many are measured."""
 _RENEWED_AFTER = 300
 """Images after which corners are chosen anew: the light changes."""
 _FLOW = PointFlow(window=15, levels=3, steps=10, precision=0.03)
@@ -91,7 +90,7 @@ class Steadier:
             self._refer_to(grey)
             return
         self._age += 1
-        if self._still >= _STANDS_AFTER and self._age % _CHECKED_EVERY:
+        if self._still >= SETTLED_AFTER and self._age % _CHECKED_EVERY:
             return
         found = self._similarity(self._reference, grey)
         if np.abs(found[:, 2]).max() > _FARTHEST * grey.shape[1] or (found == _STILL).all():
@@ -108,7 +107,7 @@ class Steadier:
         back = np.asarray(cv2.invertAffineTransform(self._map))
         guess = (self._corners @ back[:, :2].T + back[:, 2]).astype(np.float32)
         moved, found, error = _FLOW.follow_and_return(reference, grey, self._corners, guess)
-        good = found & (np.abs(error).max(axis=1, initial=0.0) < _RETURNS_PX)
+        good = found & (np.abs(error).max(axis=1, initial=0.0) < PIXEL_NOISE)
         return shared_similarity(moved[good].astype(float), self._corners[good].astype(float))
 
     def _refer_to(self, grey: Image) -> None:

@@ -34,9 +34,9 @@ SEEN_WITHIN = 2.0
 """Nominal periods within which a vehicle counts as seen: one frame may fail."""
 FEW = 4
 """Detections, or nominal periods without one, that tell something: fewer come by chance."""
-RATE = 0.25
+RATE = 1 / FEW
 """Rate per detection at which colours, their usual similarity and residuals of edges are learnt:
-the latest four count for two thirds."""
+the latest few count for two thirds."""
 FALL = 0.2
 """Fall of the colours' similarity below its usual value above which it is not the vehicle."""
 

@@ -59,9 +59,6 @@ _VEHICLE_WIDTH = 1.8
 """Width of a car in m, by which speeds and accelerations become widths."""
 _FOCAL = 1.2
 """Focal length, of the image's width: that of a camera with a field of view of 45 degrees."""
-_STRONG = -0.4
-"""Log odds from which a detection is offered first. In one round, weak boxes beside a vehicle took
-its identity: IDF1 of YOLOX from .1 is 93.2 with two rounds, 90.7 with one."""
 
 
 class TrafficTracker:
@@ -213,7 +210,7 @@ class TrafficTracker:
         self._evidence.look()
         found = FrameDetections(detections, self._evidence, self._colours, self._size)
         confirmed = [one for one in self._tracks if one.confirmed]
-        for least in (_STRONG, -math.inf):
+        for least in (0.0, -math.inf):
             self._match([one for one in confirmed if one.undetected], found, least)
             self._drop_inside([one for one in confirmed if not one.undetected], found)
         self._match_tentative([one for one in self._tracks if not one.confirmed], found)
