@@ -44,9 +44,7 @@ from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.report.writing import Report
 
-_GRID_ONLY = (
-    "params", "baseline_model", "max_rmse", "topic", "id", "figures",
-)  # fmt: skip
+_GRID_ONLY = ("params", "baseline_model", "max_rmse", "topic", "id", "figures")
 """Options of the grid that do not apply."""
 
 

@@ -30,11 +30,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.canonical_patch import Patch, cut_image, cut_patch
-from vehicle_pf_tracker.image.correlation_filter import (
-    UPSAMPLING,
-    CorrelationFilter,
-    Response,
-)
+from vehicle_pf_tracker.image.correlation_filter import UPSAMPLING, CorrelationFilter, Response
 from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures, Grey
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.spectra import Spectrum, shifted

@@ -26,11 +26,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.fusion.perspective import (
-    KEPT_FRAMES,
-    PerspectiveMotion,
-    Sighting,
-)
+from vehicle_pf_tracker.trackers.fusion.perspective import KEPT_FRAMES, PerspectiveMotion, Sighting
 
 _FRAMES, _MOVED = 8, 0.5
 """Frames in a row that prove it, and its way in them, of the size: as for a return."""

@@ -30,12 +30,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import (
 )
 from vehicle_pf_tracker.trackers.traffic.occlusion import Returns
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import (
-    FEW,
-    SEEN_WITHIN,
-    Track,
-    edges_of,
-)
+from vehicle_pf_tracker.trackers.traffic.track import FEW, SEEN_WITHIN, Track, edges_of
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR, SETTLED_AFTER
 
 _MOST = 3.0
