@@ -276,8 +276,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         if self._broke_at is None:
             self._broke_at = time.monotonic()
         self.get_logger().warning(
-            f"{why}; trying again after {self._retry:.0f} s",
-            throttle_duration_sec=_SAY_AGAIN,
+            f"{why}; trying again after {self._retry:.0f} s", throttle_duration_sec=_SAY_AGAIN
         )
         self._stop.wait(self._retry)
         self._retry = min(2 * self._retry, _LAST_RETRY)

@@ -121,10 +121,7 @@ class Report(NamedTuple):
 
 
 def write_report(
-    folder: Path,
-    *,
-    figures: Sequence[str] = (),
-    on_stage: Callable[[str], object] = lambda _: None,
+    folder: Path, *, figures: Sequence[str] = (), on_stage: Callable[[str], object] = lambda _: None
 ) -> Report:
     """Write the report of the evaluation in `folder` there.
 

@@ -296,12 +296,7 @@ def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) ->
 
 @compiled(types.float64[::1](FRAME, _POSITIONS, types.int64, PAIR, TABLE, _SCALE))
 def compare_joint(
-    frame: Frame,
-    positions: Positions,
-    bits: int,
-    half: tuple[int, int],
-    table: Table,
-    scale: Scale,
+    frame: Frame, positions: Positions, bits: int, half: tuple[int, int], table: Table, scale: Scale
 ) -> Reals:
     """Compare windows of joint colours in one call, the main cost of most trackers' steps.
 

@@ -69,7 +69,8 @@ class Strangers:
         Highest response elsewhere, relative to the vehicle's usual one.
     """
 
-    response = 0.0
+    def __init__(self) -> None:
+        self.response = 0.0
 
     @property
     def level(self) -> float:

@@ -67,7 +67,9 @@ class HpfmsParameters(ColourParameters):
 class HpfmsTracker(ColourTracker[HpfmsParameters]):
     """The hybrid filter; its histograms are weighted with mean shift's kernel."""
 
-    _evidence = 0.0
+    def __init__(self, parameters: HpfmsParameters) -> None:
+        super().__init__(parameters)
+        self._evidence = 0.0
 
     def _learn(self) -> None:
         bits = self.parameters.histogram_bits

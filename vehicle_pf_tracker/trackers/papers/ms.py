@@ -56,8 +56,10 @@ class MsTracker(BaseTracker[MsParameters]):
     The paper finds that step needed in one of a thousand cases.
     """
 
-    _reference: Reference
-    _velocity: MeanVelocity
+    def __init__(self, parameters: MsParameters) -> None:
+        super().__init__(parameters)
+        self._reference = Reference(np.zeros(0))
+        self._velocity = MeanVelocity(VELOCITY_WINDOW)
 
     def _learn(self) -> None:
         bits = self.parameters.histogram_bits

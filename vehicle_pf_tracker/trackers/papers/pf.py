@@ -66,9 +66,11 @@ ColourParametersT = TypeVar("ColourParametersT", bound=ColourParameters)
 class ColourTracker(ParticleTracker[ColourParametersT]):
     """The steps of a colour particle filter, for `_advance` to put in order."""
 
-    _reference: Reference
-    _velocity: shared.MeanVelocity
-    _position: tuple[float, float]
+    def __init__(self, parameters: ColourParametersT) -> None:
+        super().__init__(parameters)
+        self._reference = Reference(np.zeros(0))
+        self._velocity = shared.MeanVelocity(VELOCITY_WINDOW)
+        self._position = (0.0, 0.0)
 
     def _learn(self) -> None:
         histogram = self.target.joint_histogram(self.window, self._settings.histogram_bits)

@@ -69,7 +69,9 @@ class PfclParameters(ColourParameters):
 class PfclTracker(ColourTracker[PfclParameters]):
     """The colour and line filter."""
 
-    line_reference: Array
+    def __init__(self, parameters: PfclParameters) -> None:
+        super().__init__(parameters)
+        self.line_reference: Array = np.zeros(1)
 
     def _learn(self) -> None:
         super()._learn()

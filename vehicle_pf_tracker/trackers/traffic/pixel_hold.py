@@ -118,13 +118,7 @@ class PixelHold:
         ]
 
 
-def _hold(
-    track: Track,
-    old: Array,
-    new: Array,
-    normals: Array,
-    colours: ColourBins,
-) -> Hold | None:
+def _hold(track: Track, old: Array, new: Array, normals: Array, colours: ColourBins) -> Hold | None:
     """Weight particles by the flow of one vehicle's points."""
     before, predicted = track.before, track.state.edges
     found = np.isfinite(new[:, 0])
