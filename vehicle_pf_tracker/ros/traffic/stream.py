@@ -208,14 +208,15 @@ class TrafficStream(NodeStream):
             self.warnings.say("flood", f"{words} of the highest scores are used")
         return detections
 
-    def go_on(self) -> None:
-        """Process the images that need not wait any longer."""
+    def go_on(self) -> bool:
+        """Process the images that need not wait any longer; True while others wait."""
         missed = self._waiting.missed
         for message, detections in self._waiting.ready(self._configuration.tracker.detector.every):
             self.process(message, detections)
         if self._waiting.missed > missed:
             words = f"{self._waiting.missed} images waited in vain for detections"
             self.warnings.say("missed", f"{words}; {_BY_PIXELS}")
+        return bool(self._waiting)
 
     def drop_waiting(self) -> None:
         """Forget the images that wait for detections."""

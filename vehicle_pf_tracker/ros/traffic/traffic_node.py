@@ -83,7 +83,7 @@ class TrafficNode(ImageNode):
         self.stream = TrafficStream(self, configuration, outputs, self.diagnostics.begin())
         if self.stream.page is not None:
             self.held.callback(self.stream.page.close)
-        self._look_timer = self.poll(_LOOK_EVERY, self.stream.go_on)
+        self._look_timer = self.poll(_LOOK_EVERY, self._look)
         self._free_timer = self.poll(_FREE_AFTER, self._free)
         for timer in (self._look_timer, self._free_timer):
             timer.cancel()
@@ -98,7 +98,6 @@ class TrafficNode(ImageNode):
         detector = self.table.configuration.tracker.detector.kind
         if detector == TOPIC:
             self._listen_to_detections()
-            self._look_timer.reset()
         self.warn_of_overrides(qos=True)
         self.get_logger().info(f"ready: images on {source}, detections: {detector}")
 
@@ -108,6 +107,17 @@ class TrafficNode(ImageNode):
         if self.stream is not None:
             self._look_timer.cancel()
             self.stream.drop_waiting()
+
+    def _on_image(self, image: Any, info: Any) -> None:
+        super()._on_image(image, info)
+        kind = self.table.configuration.tracker.detector.kind
+        # Without an image that waits, 50 looks a second would take a fortieth of a processor.
+        if kind == TOPIC and self._look_timer.is_canceled():
+            self._look_timer.reset()
+
+    def _look(self) -> None:
+        if self.stream is None or not self.stream.go_on():
+            self._look_timer.cancel()
 
     def _listen_to_detections(self) -> None:
         # As many as images may wait: a detector may answer several at once.

@@ -258,7 +258,8 @@ def birth_odds(
     covariances, spread = states.edge_covariance, deviations(detected, noise)
     reach = np.sqrt(covariances.diagonal(axis1=1, axis2=2))
     cut, also_cut = cut_edges(predicted, found.size), cut_edges(detected, found.size)
-    apart, reachable = np.abs(detected[:, 0] - predicted[:, :1]), math.sqrt(GATE)
+    apart = np.abs(detected[:, 0] - predicted[:, :1])
+    reachable = math.sqrt(GATE)
     rows, columns = np.nonzero(
         (apart < reachable * (reach[:, :1] + spread[:, 0])) | (cut[:, :1] & also_cut[:, 0])
     )

@@ -232,9 +232,8 @@ class Existence:
 
     def _is_doubtful(self, track: Track) -> bool:
         """Test whether a vehicle is rather not there, by what is known of it or of its place."""
-        if track.vanished is None:
-            return track.log_odds < 0
-        return track.log_odds < 0 or self.reappearances.share(track.vanished) < HALF
+        place = track.vanished
+        return track.log_odds < 0 or (place is not None and self.reappearances.share(place) < HALF)
 
     def _goes_on(self, track: Track, unseen: float, inside: float) -> bool:
         if not track.confirmed:
