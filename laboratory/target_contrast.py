@@ -28,6 +28,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.image.target_pixels import LEAST_CONTRAST, contrast
+from vehicle_pf_tracker.recordings.footage import Picture
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
 
 EVERY = 10
@@ -41,8 +42,10 @@ def measured(folder: Path) -> tuple[list[float], list[float]]:
     rng = np.random.default_rng(0)
     true, thrown = [], []
     for index, picture in enumerate(FrameFolder(folder).frames()):
+        if index % EVERY or not isinstance(picture, Picture):
+            continue
         truth = picture.truth
-        if index % EVERY or truth is None or truth.occlusion is Occlusion.TOTAL:
+        if truth is None or truth.occlusion is Occlusion.TOTAL:
             continue
         box, (width, height) = truth.box, frame_size(picture.frame)
         true.append(contrast(picture.frame, box))

@@ -33,6 +33,7 @@ from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.offline import pictures
 from vehicle_pf_tracker.offline.estimates import read_estimates
+from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
 from vehicle_pf_tracker.recordings.messages import IMAGE_ANNOTATIONS, deserialize
 from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
 
@@ -194,12 +195,25 @@ def test_a_video_takes_as_long_as_its_source(tmp_path):
     assert last == pytest.approx(1240, abs=1)
 
 
-def test_a_run_that_fails_leaves_no_video(run, tmp_path):
+def test_a_run_that_fails_leaves_no_video(run, tmp_path, monkeypatch):
     folder = frame_folder(tmp_path / "frames", count=40)
-    (folder / "img" / "000036.jpg").write_bytes(b"no image")  # after the video was begun
+    first = list(FrameFolder(folder).frames())[:36]  # after the video was begun
+
+    def broken(_):
+        yield from first
+        raise InputError("the disk is gone")
+
     made = tmp_path / "seen" / "made.mp4"
+    monkeypatch.setattr(FrameFolder, "frames", broken)
     assert run(folder, "--video", made) == 1
     assert not made.parent.exists()
+
+
+def test_a_broken_image_is_rejected_and_said(run, tmp_path, capsys):
+    folder = frame_folder(tmp_path / "frames", count=40)
+    (folder / "img" / "000036.jpg").write_bytes(b"no image")
+    assert run(folder, "--target", "9,9,12,10") == 0
+    assert "000036.jpg cannot be read" in capsys.readouterr().err
 
 
 @contextmanager

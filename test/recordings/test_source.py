@@ -58,6 +58,27 @@ def test_a_plain_folder_of_images_is_numbered_by_the_ends_of_their_names(tmp_pat
     assert source.notices == []
 
 
+def test_a_broken_image_of_a_folder_keeps_its_place_and_is_counted_and_said_once(tmp_path):
+    folder = write_images(tmp_path / "a", ["1.jpg", "2.jpg", "3.jpg", "4.png"])
+    for name in ("1.jpg", "3.jpg"):
+        (folder / name).write_bytes(b"no image")
+    source = open_source(folder, fps=10)
+    for _ in range(2):
+        images = list(source.frames())
+        assert [found.frame is None for found in images] == [True, False, True, False]
+        assert images[3].stamp_ns - images[0].stamp_ns == 300_000_000
+        (notice,) = source.notices
+        assert notice.startswith("images that cannot be read: 2; ") and "1.jpg" in notice
+
+
+def test_a_folder_of_broken_images_is_an_input_error(tmp_path):
+    folder = write_images(tmp_path / "a", ["1.jpg", "2.jpg"])
+    for path in folder.iterdir():
+        path.write_bytes(b"no image")
+    with pytest.raises(InputError, match=r"1\.jpg cannot be read"):
+        list(open_source(folder, fps=10).frames())
+
+
 def test_images_without_numbers_follow_their_names(tmp_path):
     folder = write_images(tmp_path / "a", ["b.png", "a.png", "c7.png"])
     brightness = [int(found.frame.mean()) for found in open_source(folder, fps=10).frames()]

@@ -84,13 +84,13 @@ class Footage(ABC):
     _notices: Sequence[str] = ()
 
     @abstractmethod
-    def frames(self) -> Iterator[Picture]:
-        """Yield the images in the order of time.
+    def frames(self) -> Iterator[StampedFrame]:
+        """Yield the images in the order of time, those that can be read as `Picture`.
 
         Raises
         ------
         InputError
-            If one is broken.
+            If none can be read, or the source breaks.
         """
 
     def truth(self) -> Sequence[Truth]:

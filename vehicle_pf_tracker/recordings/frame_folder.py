@@ -28,7 +28,13 @@ from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
-from vehicle_pf_tracker.recordings.footage import Footage, Picture, check_fps, stamp_of
+from vehicle_pf_tracker.recordings.footage import (
+    Footage,
+    Picture,
+    StampedFrame,
+    check_fps,
+    stamp_of,
+)
 from vehicle_pf_tracker.recordings.truth_files import read_truth, truth_beside
 from vehicle_pf_tracker.recordings.truth_formats import Images
 
@@ -110,12 +116,28 @@ class FrameFolder(Footage):
             )
         if lost := len(table) - len(self.truths):
             notices.append(f"frames of the truth without an image: {lost}")
-        self._notices = notices
+        self._notices = self._found = notices
 
-    def frames(self) -> Iterator[Picture]:
-        """Yield the images by their numbers."""
+    def frames(self) -> Iterator[StampedFrame]:
+        """Yield the images by their numbers; one that cannot be read has its stamp but no frame.
+
+        Raises
+        ------
+        InputError
+            If none can be read.
+        """
+        unread: list[str] = []
         for (number, path), stamp in zip(self.images.items(), self.stamps, strict=True):
-            yield read_picture(path, stamp, self.truths.get(number))
+            try:
+                picture: StampedFrame = read_picture(path, stamp, self.truths.get(number))
+            except InputError as error:
+                picture = StampedFrame(stamp, None)
+                unread.append(str(error))
+                said = f"images that cannot be read: {len(unread)}; {unread[0]}"
+                self._notices = [*self._found, said]
+            yield picture
+        if len(unread) == self.frame_count:
+            raise InputError(unread[0])
 
     def truth(self) -> list[Truth]:
         """Return the truth of all images, in order."""

@@ -22,7 +22,7 @@ from pathlib import Path
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.image.compressed_image import jpeg
-from vehicle_pf_tracker.recordings.footage import Picture
+from vehicle_pf_tracker.recordings.footage import Footage, Picture, StampedFrame
 from vehicle_pf_tracker.recordings.video import is_recording, open_footage
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
@@ -76,7 +76,8 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
     footage = open_footage(source, truth=truth, fps=fps, identity=identity)
     frames, truths, size = 0, 0, (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
-        for frames, picture in enumerate(footage.frames(), start=1):
+        for frames, found in enumerate(footage.frames(), start=1):
+            picture = _whole(found, footage)
             size = _check_size(picture, size if frames > 1 else frame_size(picture.frame))
             if coded := _coded(picture, format):
                 writer.write_compressed(picture.stamp_ns, *coded)
@@ -89,6 +90,12 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
                 progress(frames, footage.frame_count)
     made = f"{frames} frames of {size[0]}x{size[1]} px at {footage.fps:g} frames/s"
     return f"{made}, {truths} with truth", footage.notices
+
+
+def _whole(found: StampedFrame, footage: Footage) -> Picture:
+    if not isinstance(found, Picture):
+        raise InputError(footage.notices[-1])
+    return found
 
 
 def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:

@@ -34,7 +34,7 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs
-from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, Footage, Picture
+from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, Footage, StampedFrame
 from vehicle_pf_tracker.recordings.video import Camera, is_recording, open_footage
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
@@ -234,9 +234,9 @@ class VideoSourceNode(Node):  # type: ignore[misc]
             self._note_end(source)
         return self._goes_on
 
-    def _publish(self, picture: Picture) -> None:
+    def _publish(self, picture: StampedFrame) -> None:
         stamp = self._pace.stamp(picture.stamp_ns)
-        if self._stop.is_set():
+        if self._stop.is_set() or picture.frame is None:
             return
         header = Header(frame_id=self._settings.frame_id)
         header.stamp.sec, header.stamp.nanosec = divmod(stamp, 1_000_000_000)

@@ -111,8 +111,8 @@ and 37 of 105 before moving cameras: laboratory/notes/fusion_tried.md)."""
 _RATE_NEEDS = 8
 """Sightings below which the size is taken to stay. Where fewer sizes can be believed, all count."""
 _MEMORY = 10.0
-"""Frames after which an older position counts for 1 / e: a vehicle changes its speed. All sizes that
-are kept count alike, as the road stays what it is."""
+"""Frames after which an older position counts for 1 / e: a vehicle changes its speed. All sizes
+that are kept count alike, as the road stays what it is."""
 _POSITION_SIGMA = 0.03
 """Standard deviation of a sighting's position, of the size."""
 _SIZE_SIGMA = 0.04
