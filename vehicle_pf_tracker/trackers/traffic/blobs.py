@@ -45,9 +45,12 @@ _LEAST_AREA = 0.0003
 """Smallest area of a vehicle, of the image: 23 px in 320 x 240."""
 _LEAST_PIECE = 4
 """Smallest area in px of a piece of a vehicle."""
-_USUAL, _ASPECT_SPREAD = math.log(0.8), 0.3
-"""Usual logarithm of height over width, and of a vehicle's share of its box, to start from; and the
-standard deviation of the first."""
+_USUAL, _ASPECT_SPREAD = 0.8, 0.3
+"""Usual height over width, and usual share of a vehicle's box, to start from; and standard
+deviation of the logarithm of the first."""
+_FROM_THE_SIDE, _ACROSS = 0.5, 6
+"""Usual height over width, to start from, of vehicles that drive across the image; and power of the
+share of their motion across by which they are: of 76 clips, only a steep one fits."""
 _SPREAD = 0.2
 """That of the second, and of the logarithm of a car's size."""
 _TRIMMED = 0.15
@@ -157,11 +160,12 @@ class BlobReader:
 
     def __init__(self, numbers: TrafficNumbers = SHIPPED) -> None:
         self._numbers = numbers
-        self._aspect = _USUAL
-        self._fullness = _USUAL
+        self._fullness = math.log(_USUAL)
+        self._aspect = self._learnt_aspect = 0.0
+        self._unlearnt, self._motion = 1.0, np.array([0.0, 1e-9])
         self._sizes = UsualSize()
 
-    def read(self, mask: Mask, predicted: Array) -> tuple[Array, Array]:
+    def read(self, mask: Mask, predicted: Array, velocities: Array) -> tuple[Array, Array]:
         """Find vehicles.
 
         Parameters
@@ -170,6 +174,8 @@ class BlobReader:
             1 where something moves, else 0.
         predicted : (T, 4) array
             Edges of the vehicles that are followed, px of the mask.
+        velocities : (V, 2) array
+            Velocities of all that may be vehicles, px per frame.
 
         Returns
         -------
@@ -179,6 +185,7 @@ class BlobReader:
             Share of each box that moves.
         """
         self._sizes.settle()
+        self._expect_aspect(velocities)
         least = max(_LEAST_AREA * mask.size, _LEAST_PIECE)
         found: list[Piece] = []
         pieces: dict[int, list[Piece]] = {}
@@ -197,6 +204,14 @@ class BlobReader:
         boxes = np.array([one for one in found if self._is_vehicle(one, least, mask.shape)])
         boxes = boxes.reshape(-1, len(Piece._fields))
         return boxes[:, :4], boxes[:, 4] / areas(boxes[:, :4])
+
+    def _expect_aspect(self, velocities: Array) -> None:
+        """Find the usual aspect: until it is learnt, the motion tells which side is seen."""
+        motion = np.abs(velocities[:, 0]).sum(), np.hypot(*velocities.T).sum()
+        self._motion = MEMORY * self._motion + motion
+        across = float(self._motion[0] / self._motion[1]) ** _ACROSS
+        first = _USUAL + across * (_FROM_THE_SIDE - _USUAL)
+        self._aspect = self._learnt_aspect + self._unlearnt * math.log(first)
 
     def _is_vehicle(self, piece: Piece, least: float, shape: tuple[int, ...]) -> bool:
         """Test whether a piece is large enough; one that the border cuts may be smaller."""
@@ -241,7 +256,8 @@ class BlobReader:
 
     def _learn_shape(self, piece: Piece, shape: tuple[int, ...], members: int) -> None:
         if members == 1 and piece.is_free(shape) and min(piece.sides) > _ASPECT_SIDE:
-            self._aspect += _ASPECT_RATE * (piece.log_aspect - self._aspect)
+            self._learnt_aspect += _ASPECT_RATE * (piece.log_aspect - self._learnt_aspect)
+            self._unlearnt *= 1 - _ASPECT_RATE
             self._sizes.learn(piece)
             self._fullness += _ASPECT_RATE * (piece.log_fullness - self._fullness)
 

@@ -32,7 +32,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, check_frame
-from vehicle_pf_tracker.trackers.traffic.blobs import MEMORY, BlobReader
+from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
 from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, Detections, TrafficNumbers
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.steady import Steadier
@@ -60,12 +60,6 @@ _COMPARED = 3
 _EDGE = 0.04
 """Largest change per px of the brightness, of the background's, inside a shadow: noise is half of
 it. At .03 noisy shadows are vehicles; at .06 half the dark cars of a cloudy day are shadows."""
-_SHADES = 20
-"""Steps of brightness that shadows are counted in."""
-_DARKEST, _STANDS_OUT, _FEW_SHADED = 0.25, 2.0, 100.0
-"""Least brightness of a shadow of the sun, its pixels over those of the brightnesses two steps
-beside it, and pixels that tell nothing: dark cars have as many of each. Of `traffic-overtaking`,
-with the sun, it is 3 times as many, of three real clips below clouds 1.1 times."""
 _RIM = np.ones((5, 5), np.uint8)
 """Surroundings of a change's pixel that have to have changed, too, for an edge there to count."""
 _SPARSE = (slice(None), slice(None, None, 4), slice(None, None, 4))
@@ -100,7 +94,6 @@ class Background:
         self._noise = self._rng.integers(0, 256, 2 * shape[0] * shape[1], dtype=np.uint8)
         self._samples: list[Planes] = []
         self._age = 0
-        self._shades = np.zeros(_SHADES + 1)
         self._exposure = np.zeros(shape[:2], dtype=np.float32)
 
     @property
@@ -180,18 +173,7 @@ class Background:
         )
         inner = cv2.erode(changed.astype(np.uint8), _RIM) > 0
         dark &= ~(inner & (slope > _EDGE))
-        self._shades += np.bincount((share[dark] * _SHADES).astype(int), minlength=_SHADES + 1)
-        self._shades *= MEMORY
-        return np.asarray(dark & (share >= self._darkest()))
-
-    def _darkest(self) -> float:
-        """Find the least brightness of shadows: the sun makes one that stands out among others."""
-        shades = np.maximum(self._shades, _FEW_SHADED)
-        usual = np.convolve(shades, (0.5, 0, 0, 0, 0.5), mode="same")
-        first = int(_DARKEST * _SHADES)
-        sunny = np.flatnonzero(shades[first:] > _STANDS_OUT * usual[first:])
-        below = (first + float(sunny[0]) - 1) / _SHADES if len(sunny) else 1.0
-        return min(below, self._numbers.shadow)
+        return np.asarray(dark & (share >= self._numbers.shadow))
 
 
 def _planes(image: Colours) -> Planes:
@@ -293,7 +275,8 @@ class MotionDetector:
         moving = np.asarray(cv2.medianBlur(changed.astype(np.uint8), 3), np.uint8)
         moving = np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _CLOSED), np.uint8)
         self._background.learn(small, moving > 0, _covered(covered, small))
-        edges, fullness = self._blobs.read(moving, predicted)
+        velocities = np.array([one.velocity for one in tracks]).reshape(-1, 2)
+        edges, fullness = self._blobs.read(moving, predicted, velocities)
         edges = self._steadier.from_reference(edges)
         boxes = np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
         return Detections.make(boxes, fullness)
