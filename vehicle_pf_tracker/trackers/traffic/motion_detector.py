@@ -157,23 +157,26 @@ class Background:
         The inside of a shadow shows the road as it is, at one brightness; a dark vehicle has
         windows, lights and edges. The rim of a change has an edge in either case.
         """
-        background = np.zeros(planes.shape, np.float32)
+        index = np.flatnonzero(changed)
+        colours = np.take(planes.reshape(3, -1), index, axis=1).astype(np.float32)
+        background = np.zeros_like(colours)
         for sample in self._samples[::_COMPARED]:
-            cv2.accumulate(sample, background)
+            cv2.accumulate(np.take(sample.reshape(3, -1), index, axis=1), background)
         background /= len(self._samples[::_COMPARED])
-        colours = planes.astype(np.float32)
-        power = np.maximum(_sum(background * background), 1)
-        share = _sum(colours * background) / power
-        apart = _sum(colours * colours) - share * share * power
-        dark = changed & (share <= 1) & (apart < (_SHADE * share) ** 2)
-        smooth = cv2.blur(share, (3, 3))
+        power = np.maximum((background**2).sum(axis=0), 1)
+        share = (colours * background).sum(axis=0) / power
+        apart = (colours**2).sum(axis=0) - share**2 * power
+        shares, dark = np.ones(changed.shape, np.float32), np.zeros(changed.shape, np.bool_)
+        shares.flat[index] = share
+        dark.flat[index] = (self._numbers.shadow <= share) & (share <= 1)
+        dark.flat[index] &= apart < (_SHADE * share) ** 2
+        smooth = cv2.blur(shares, (3, 3))
         slope = cv2.magnitude(
             cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=1 / 8),
             cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=1 / 8),
         )
         inner = cv2.erode(changed.astype(np.uint8), _RIM) > 0
-        dark &= ~(inner & (slope > _EDGE))
-        return np.asarray(dark & (share >= self._numbers.shadow))
+        return np.asarray(dark & ~(inner & (slope > _EDGE)))
 
 
 def _planes(image: Colours) -> Planes:
