@@ -30,7 +30,6 @@ DRIVES = sorted(set(SCENES) - {"bar", "highway", "road"})
 TOTALS = {
     "bars": [(4, 9), (10, 15)],
     "bridge": [(14, 20)],
-    "signs": [(14, 20)],
     "bus": [(13, 19)],
     "cross": [(10, 20)],
     "braking": [(15, 23)],

@@ -16,13 +16,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.image.compressed_image import jpeg
-from vehicle_pf_tracker.recordings.footage import Footage, Picture, StampedFrame
+from vehicle_pf_tracker.recordings.footage import Footage, Picture
 from vehicle_pf_tracker.recordings.video import is_recording, open_footage
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
@@ -76,8 +76,7 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
     footage = open_footage(source, truth=truth, fps=fps, identity=identity)
     frames, truths, size = 0, 0, (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
-        for frames, found in enumerate(footage.frames(), start=1):
-            picture = _whole(found, footage)
+        for frames, picture in enumerate(_pictures(footage), start=1):
             size = _check_size(picture, size if frames > 1 else frame_size(picture.frame))
             if coded := _coded(picture, format):
                 writer.write_compressed(picture.stamp_ns, *coded)
@@ -92,10 +91,11 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
     return f"{made}, {truths} with truth", footage.notices
 
 
-def _whole(found: StampedFrame, footage: Footage) -> Picture:
-    if not isinstance(found, Picture):
-        raise InputError(footage.notices[-1])
-    return found
+def _pictures(footage: Footage) -> Iterator[Picture]:
+    for found in footage.frames():
+        if not isinstance(found, Picture):
+            raise InputError(footage.notices[-1])
+        yield found
 
 
 def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:

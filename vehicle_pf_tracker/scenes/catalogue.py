@@ -61,9 +61,6 @@ SCENES: dict[str, SceneKind[Scene]] = {
         DriveParameters, drives.bars, "four pillars of rising width in front of the road"
     ),
     "bridge": SceneKind(HidingParameters, drives.bridge, "a bridge hides the target"),
-    "signs": SceneKind(
-        HidingParameters, drives.signs, "lamp posts, and a large sign hides the target"
-    ),
     "trees": SceneKind(
         DriveParameters, drives.trees, "thin crowns of trees hide parts of the target"
     ),

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.scenes.drive import LANE, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.models import Pace, moving, standing
 from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene, noise_parameter, stamps_parameter
 from vehicle_pf_tracker.scenes.scenery import bridge as make_bridge
-from vehicle_pf_tracker.scenes.scenery import pillar, plain, post, sign, tree
+from vehicle_pf_tracker.scenes.scenery import pillar, plain, tree
 from vehicle_pf_tracker.scenes.solids import draw
 from vehicle_pf_tracker.scenes.vehicles import car, coach
 
@@ -118,23 +118,6 @@ def bridge_at(drive: Drive, share: float, frames: float) -> list[Actor]:
     return list(make_bridge(left, width, drive.height, stream(drive.seed, "bridge")))
 
 
-def sign_at(drive: Drive, share: float, frames: float) -> list[Actor]:
-    """Put up a road sign that hides the target for `frames` frames."""
-    middle, width = drive.x(drive.along(share)), hiding_width(drive, frames)
-    height = drive.target.size[1]
-    board = width, drive.row - height - 12, drive.row + 0.4 * height + 8
-    foot = drive.opposite.rows.stop + 22
-    return sign(middle, board, foot, stream(drive.seed, "sign"))
-
-
-def posts_at(drive: Drive, shares: tuple[float, ...], width: float = 9.0) -> list[Actor]:
-    """Put up lamp posts, which hide a part of the target for a moment."""
-    foot = drive.opposite.rows.stop + 14
-    return [
-        actor for share in shares for actor in post(drive.x(drive.along(share)), width, -5, foot)
-    ]
-
-
 def trees_at(drive: Drive, shares: tuple[float, ...], density: float = 0.36) -> list[Actor]:
     """Plant trees whose thin crowns hide a part of the target."""
     rng = stream(drive.seed, "trees")
@@ -166,13 +149,6 @@ def bridge(parameters: HidingParameters, seed: int) -> Scene:
     """Make the scene: a bridge across the road."""
     drive = Drive(parameters, seed)
     return drive.scene(bridge_at(drive, 0.5, parameters.hidden))
-
-
-def signs(parameters: HidingParameters, seed: int) -> Scene:
-    """Make the scene: lamp posts, and a large sign that hides the target."""
-    drive = Drive(parameters, seed)
-    front = [*posts_at(drive, (0.2, 0.82)), *sign_at(drive, 0.47, parameters.hidden)]
-    return drive.scene(front)
 
 
 def trees(parameters: DriveParameters, seed: int) -> Scene:

@@ -32,7 +32,6 @@ PAINT: Colour = (214, 214, 206)
 """Colour of markings."""
 STEEL: Colour = (128, 132, 134)
 BARK: Colour = (74, 62, 50)
-SIGN_COLOURS: tuple[Colour, ...] = ((28, 92, 60), (30, 66, 130), (196, 160, 40))
 
 
 def value_noise(
@@ -132,37 +131,6 @@ def post(middle: float, width: float, top: float, bottom: float) -> list[Actor]:
     return [opaque(colour, Box(middle - width / 2, top, width, bottom - top))]
 
 
-def sign(
-    middle: float, board: tuple[float, float, float], foot: float, rng: np.random.Generator
-) -> list[Actor]:
-    """Make a large road sign on two posts.
-
-    Parameters
-    ----------
-    middle : float
-        Middle of the sign on the stage, px.
-    board : tuple of float
-        Width, top and bottom of its board, px.
-    foot : float
-        Row of the ground it stands on, px.
-    rng : numpy.random.Generator
-        Source of its colour and lettering.
-    """
-    width, top, bottom = board
-    posts = [
-        actor
-        for side in (-0.32, 0.32)
-        for actor in post(middle + side * width, 5.0, bottom - 4, foot)
-    ]
-    rows, columns = round(2 * (bottom - top)), round(2 * width)
-    colour = np.tile(np.asarray(SIGN_COLOURS[rng.integers(3)]), (rows, columns, 1))
-    colour[3:6, 3:-3] = colour[-6:-3, 3:-3] = 226
-    colour[3:-3, 3:6] = colour[3:-3, -6:-3] = 226
-    for line in range(14, rows - 18, 22):
-        _lettering(colour[line : line + 11, 14 : 14 + int(columns * rng.uniform(0.4, 0.8))], rng)
-    return [*posts, opaque(colour, Box(middle - width / 2, top, width, bottom - top))]
-
-
 def tree(
     middle: float,
     crown: tuple[float, float, float],
@@ -201,16 +169,6 @@ def tree(
         Actor(Sprite(colour.clip(0, 255), leaves.astype(float)),
               standing(Box(middle - width / 2, top, width, bottom - top))),
     ]  # fmt: skip
-
-
-def _lettering(area: Array, rng: np.random.Generator) -> None:
-    """Write a line of white blocks that look like letters from afar."""
-    left = 0
-    while left < area.shape[1] - 6:
-        width = int(rng.integers(3, 7))
-        area[:, left : left + width] = 230
-        area[4:7, left + 1 : left + width - 1] = area[0, 0] * 0.5 + 90
-        left += width + int(rng.choice((2, 2, 2, 7)))
 
 
 PARAPET = 11
