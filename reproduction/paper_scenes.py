@@ -30,6 +30,7 @@ from typing import TypeAlias
 from laboratory import scenes as laboratory_scenes
 from laboratory.scenes.drives import cross, dense, near_traffic, tree_shadows
 from laboratory.scenes.turns import RADIUS, TurningDrive
+from reproduction.signs import posts_at, sign_at
 from vehicle_pf_tracker.core.truth import TOTAL_BELOW
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes import catalogue
@@ -41,8 +42,6 @@ from vehicle_pf_tracker.scenes.drives import (
     clear,
     coach_at,
     hiding_width,
-    posts_at,
-    sign_at,
     trees_at,
 )
 from vehicle_pf_tracker.scenes.models import Model, Pace
