@@ -59,6 +59,12 @@ def test_a_shadow_is_cut_off_and_a_dark_vehicle_is_not():
     )
 
 
+def test_nothing_is_found_where_nothing_changes():
+    detector, still = MotionDetector(), GROUND.astype(np.uint8)
+    assert all(len(detector.detect(still)) == 0 for _ in range(40))
+    assert not detector.is_blind
+
+
 def test_masks_repeat_whatever_else_the_process_draws():
     runs = []
     for _ in range(2):

@@ -158,6 +158,8 @@ class Background:
         windows, lights and edges. The rim of a change has an edge in either case.
         """
         index = np.flatnonzero(changed)
+        if not len(index):  # not every OpenCV adds up nothing
+            return changed
         colours = np.take(planes.reshape(3, -1), index, axis=1).astype(np.float32)
         background = np.zeros_like(colours)
         for sample in self._samples[::_COMPARED]:
