@@ -162,7 +162,7 @@ class BlobReader:
         self._numbers = numbers
         self._fullness = math.log(_USUAL)
         self._aspect = self._learnt_aspect = 0.0
-        self._unlearnt, self._motion = 1.0, np.array([0.0, 1e-9])
+        self._unlearnt, self._motion = 1.0, np.zeros(2)
         self._sizes = UsualSize()
 
     def read(self, mask: Mask, predicted: Array, velocities: Array) -> tuple[Array, Array]:
@@ -209,7 +209,8 @@ class BlobReader:
         """Find the usual aspect: until it is learnt, the motion tells which side is seen."""
         motion = np.abs(velocities[:, 0]).sum(), np.hypot(*velocities.T).sum()
         self._motion = MEMORY * self._motion + motion
-        across = float(self._motion[0] / self._motion[1]) ** _ACROSS
+        # After hours without a vehicle nothing is left of either.
+        across = float(self._motion[0] / max(self._motion[1], 1e-9)) ** _ACROSS
         first = _USUAL + across * (_FROM_THE_SIDE - _USUAL)
         self._aspect = self._learnt_aspect + self._unlearnt * math.log(first)
 

@@ -158,7 +158,7 @@ class Background:
         windows, lights and edges. The rim of a change has an edge in either case.
         """
         index = np.flatnonzero(changed)
-        if not len(index):  # not every OpenCV adds up nothing
+        if not len(index):
             return changed
         colours = np.take(planes.reshape(3, -1), index, axis=1).astype(np.float32)
         background = np.zeros_like(colours)
