@@ -21,7 +21,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import overlaps, places_of
 from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure, outgrown
 from vehicle_pf_tracker.trackers.traffic.occlusion import Returns
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
-from vehicle_pf_tracker.trackers.traffic.track import FEW, Track, predict
+from vehicle_pf_tracker.trackers.traffic.track import FEW, RATE, Track, predict
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge, VehicleState
 
 SIZE = (320, 240)
@@ -56,6 +56,17 @@ def test_a_covered_edge_does_not_brake_the_vehicle(track):
     assert not measured(track, PART)
     assert track.state.edges[Edge.BOTTOM] == pytest.approx(130, abs=0.3)
     assert track.partial == 1
+
+
+def test_a_box_is_reported_a_quarter_of_the_way_to_its_detection(track):
+    measured(track, BOX + 1)
+    shown, edges = track.estimate().box, track.state.edges
+    assert shown.corners[0] == pytest.approx(edges[:2] + RATE * (BOX + 1 - edges)[:2])
+    measured(track, PART)  # of the covered edge nothing is known
+    low = track.estimate().box.corners[2][1]
+    assert low == pytest.approx(track.state.edges[Edge.BOTTOM])
+    predict([track], -1e4, 1.0, DRIVE)
+    assert track.estimate().box == track.state.box
 
 
 def test_a_vehicle_that_brakes_is_followed(track):

@@ -181,6 +181,7 @@ class FrameDetections:
         self.edges = np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
         self.scores = detections.scores
         self.labels = detections.labels
+        self.are_shapes = detections.are_shapes
         self.samples = evidence.samples(self.edges, self.scores, size)
         self.log_odds = evidence.log_odds(self.samples)
         self.gains = evidence.gains(self.scores)

@@ -24,7 +24,7 @@ well.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple, TypeAlias
 
 import cv2
@@ -64,11 +64,15 @@ class Detections:
         Scores of the detector, of any scale: only their order counts.
     labels : tuple of str
         Class of each, or "".
+    are_shapes : bool
+        True where they are shapes of what has changed, and may be of pieces of vehicles, which
+        drive as well.
     """
 
     boxes: Array
     scores: Array
     labels: tuple[str, ...]
+    are_shapes: bool = False
 
     @classmethod
     def make(
@@ -93,7 +97,7 @@ class Detections:
     def take(self, indices: npt.NDArray[np.intp]) -> Detections:
         """Those at `indices`, in this order."""
         labels = tuple(self.labels[i] for i in indices.tolist())
-        return Detections(self.boxes[indices], self.scores[indices], labels)
+        return replace(self, boxes=self.boxes[indices], scores=self.scores[indices], labels=labels)
 
     def within(self, regions: Sequence[Region]) -> Detections:
         """Those whose centre lies in one of the inner regions, if any, and in no outer one."""

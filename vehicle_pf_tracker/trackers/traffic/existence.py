@@ -138,7 +138,9 @@ class Existence:
                 self._evidence.learn(sample, True)
             return False
         known = track.confirmed or track.log_odds >= self.parameters.birth.evidence
-        track.judge(known and self._drives(track))
+        # A piece of a vehicle drives as well, and is soon joined with the rest.
+        is_old = track.age >= HALF * SETTLED_AFTER or not found.are_shapes
+        track.judge(known and is_old and self._drives(track))
         self._teach(track)
         proven = track.has_driven or track.strength > _PROVEN
         return not track.confirmed and known and proven

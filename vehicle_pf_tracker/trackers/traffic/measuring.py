@@ -152,8 +152,10 @@ def measure(
     states.measure(edges, np.where(left_out, np.inf, spread))
     states.give_back([track.state for track in tracks])
     whole = ~covered.any(axis=1)
-    for track, shown, drift, is_whole in zip(tracks, latest, drifts, whole.tolist(), strict=True):
-        track.measured(shown, drift, is_whole=is_whole)
+    lags = RATE * np.where(left_out, 0.0, edges - states.edges)
+    rows = zip(tracks, latest, drifts, lags, whole.tolist(), strict=True)
+    for track, shown, drift, lag, is_whole in rows:
+        track.measured(shown, drift, lag, is_whole=is_whole)
     return np.asarray(whole)
 
 

@@ -24,6 +24,7 @@ one colour hides a place for seconds, and would melt in.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import cv2
@@ -284,7 +285,7 @@ class MotionDetector:
         edges, fullness = self._blobs.read(moving, predicted, velocities)
         edges = self._steadier.from_reference(edges)
         boxes = np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
-        return Detections.make(boxes, fullness)
+        return replace(Detections.make(boxes, fullness), are_shapes=True)
 
     def _restart(self) -> None:
         self._background = Background(self._shape, self._seed, self._numbers)

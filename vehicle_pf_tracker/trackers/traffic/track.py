@@ -28,7 +28,13 @@ from vehicle_pf_tracker.trackers.traffic.detections import CERTAIN, HALF, NOTHIN
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
 from vehicle_pf_tracker.trackers.traffic.straight_drive import StraightDrive
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import ACROSS, Drive, VehicleState, W
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
+    ACROSS,
+    Drive,
+    VehicleState,
+    W,
+    box_of,
+)
 
 SEEN_WITHIN = 2.0
 """Nominal periods within which a vehicle counts as seen: one frame may fail."""
@@ -100,6 +106,9 @@ class Track:
         Detections before the vehicle was confirmed.
     drift : (4,) array
         Mean of the latest outward residuals of its edges, in standard deviations.
+    lag : (4,) array
+        What is added to its edges where they are reported, px: states stay behind a little, and
+        err from image to image in the same way.
     usual_similarity : float
         Similarity of its colours to those learnt, while it is detected.
     growth : Growth
@@ -138,6 +147,7 @@ class Track:
     before: Array = field(default_factory=lambda: np.zeros(4))
     samples: list[Sample] = field(default_factory=list)
     drift: Array = field(default_factory=lambda: np.zeros(4))
+    lag: Array = field(default_factory=lambda: np.zeros(4))
     usual_similarity: float = 1.0
     growth: Growth = field(default_factory=Growth)
     _first: Array = field(default_factory=lambda: np.zeros(2))
@@ -164,7 +174,7 @@ class Track:
         self.age += elapsed
         self.unseen += elapsed
         self.undetected += elapsed
-        self.score = math.nan
+        self.score, self.lag = math.nan, np.zeros(4)
 
     def show(self, visible: float, inside: float, covers: Array, hidden_by: int | None) -> None:
         """Take what of it is in sight, and what hides the rest."""
@@ -195,9 +205,9 @@ class Track:
         if label:
             self.votes[label] = self.votes.get(label, 0) + 1
 
-    def measured(self, sides: Array, drift: Array, *, is_whole: bool) -> None:
-        """Take its largest sides (2,) in px, drift (4,), and if a detection showed all of it."""
-        self.shown, self.drift = sides / self.state.mean[W:ACROSS], drift
+    def measured(self, sides: Array, drift: Array, lag: Array, *, is_whole: bool) -> None:
+        """Take largest sides (2,) and lag (4,) in px, drift (4,), and if a detection was whole."""
+        self.shown, self.drift, self.lag = sides / self.state.mean[W:ACROSS], drift, lag
         self.partial = 0 if is_whole else self.partial + 1
 
     def shorten(self, place: Place, *, is_short: bool) -> int:
@@ -321,7 +331,7 @@ class Track:
             identity=self.identity,
             serial=self.serial,
             joined=self.joined,
-            box=state.box,
+            box=box_of(state.edges + self.lag),
             velocity=state.velocity,
             mode=mode,
             confidence=confidence * (HALF if hidden else 1.0),
