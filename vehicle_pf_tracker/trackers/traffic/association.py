@@ -156,6 +156,8 @@ class FrameDetections:
         As the detector gave them.
     labels : tuple of str
         Classes.
+    are_shapes : bool
+        True where they may be pieces of vehicles.
     samples : list of Sample
         For learning what becomes of them.
     log_odds : (N,) array
