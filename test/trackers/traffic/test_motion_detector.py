@@ -40,6 +40,7 @@ def test_a_moving_vehicle_is_one_box_where_it_is():
     found = [detector.detect(frame) for frame in frames(45)]
     assert all(len(one) == 0 for one in found[:30])
     assert found[-1].boxes == pytest.approx(np.array([[42, 60, 36, 24]]), abs=3)
+    assert found[-1].usable(*GROUND.shape[1::-1]).are_shapes
 
 
 def test_a_shadow_is_cut_off_and_a_dark_vehicle_is_not():

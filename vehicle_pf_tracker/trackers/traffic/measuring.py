@@ -152,6 +152,7 @@ def measure(
     states.measure(edges, np.where(left_out, np.inf, spread))
     states.give_back([track.state for track in tracks])
     whole = ~covered.any(axis=1)
+    # Successive residuals agree: states stay behind.
     lags = RATE * np.where(left_out, 0.0, edges - states.edges)
     rows = zip(tracks, latest, drifts, lags, whole.tolist(), strict=True)
     for track, shown, drift, lag, is_whole in rows:

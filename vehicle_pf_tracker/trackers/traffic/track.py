@@ -28,13 +28,7 @@ from vehicle_pf_tracker.trackers.traffic.detections import CERTAIN, HALF, NOTHIN
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
 from vehicle_pf_tracker.trackers.traffic.straight_drive import StraightDrive
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
-    ACROSS,
-    Drive,
-    VehicleState,
-    W,
-    box_of,
-)
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import ACROSS, Drive, VehicleState, W
 
 SEEN_WITHIN = 2.0
 """Nominal periods within which a vehicle counts as seen: one frame may fail."""
@@ -107,8 +101,7 @@ class Track:
     drift : (4,) array
         Mean of the latest outward residuals of its edges, in standard deviations.
     lag : (4,) array
-        What is added to its edges where they are reported, px: states stay behind a little, and
-        err from image to image in the same way.
+        What its state stays behind, px: its edges are reported with it.
     usual_similarity : float
         Similarity of its colours to those learnt, while it is detected.
     growth : Growth
@@ -331,7 +324,7 @@ class Track:
             identity=self.identity,
             serial=self.serial,
             joined=self.joined,
-            box=box_of(state.edges + self.lag),
+            box=state.shown(self.lag),
             velocity=state.velocity,
             mode=mode,
             confidence=confidence * (HALF if hidden else 1.0),

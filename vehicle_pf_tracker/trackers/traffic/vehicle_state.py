@@ -85,12 +85,6 @@ _LOWEST_MEAN = np.array([-_LARGEST, _LEAST, _LEAST, _LEAST, -_LARGEST, -_LARGEST
 _TINY = float(np.finfo(float).tiny)
 
 
-def box_of(edges: Array) -> Box:
-    """Make a box of its edges (4,), px."""
-    left, top, right, bottom = edges.tolist()
-    return Box(left, top, max(right - left, 1.0), max(bottom - top, 1.0))
-
-
 @dataclass(frozen=True, slots=True)
 class Drive:
     """Motion model that all vehicles share.
@@ -168,7 +162,12 @@ class VehicleState:
     @property
     def box(self) -> Box:
         """Box of one vehicle in px."""
-        return box_of(self.edges)
+        return self.shown(np.zeros(len(Edge)))
+
+    def shown(self, lag: Array) -> Box:
+        """Make the box of one vehicle whose edges lag behind (4,) px."""
+        left, top, right, bottom = (self.edges + lag).tolist()
+        return Box(left, top, max(right - left, 1.0), max(bottom - top, 1.0))
 
     @property
     def edge_covariance(self) -> Array:
