@@ -144,7 +144,7 @@ class Existence:
         track.judge(known and is_old and self._drives(track))
         self._teach(track)
         proven = track.has_driven or track.strength > _PROVEN
-        return not track.confirmed and known and proven
+        return not track.confirmed and known and is_old and proven
 
     def _teach(self, track: Track) -> None:
         """Learn from the detections of what has driven, or stands for long."""
