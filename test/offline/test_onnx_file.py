@@ -14,6 +14,8 @@
 
 """Networks in ONNX files, on pictures whose boxes are known."""
 
+import os
+import subprocess
 import sys
 
 import numpy as np
@@ -180,3 +182,15 @@ def test_without_onnx_runtime_the_extra_is_named(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "onnxruntime", None)
     with pytest.raises(InputError, match=r"vehicle_pf_tracker\[video\]"):
         detector_maker(DetectorParameters(kind="model", model=str(tmp_path / "net.onnx")))
+
+
+def test_onnx_runtime_neither_keeps_an_identity_nor_reports(tmp_path):
+    pytest.importorskip("onnxruntime")
+    home, network = tmp_path / "home", networks.yolov8(tmp_path / "net.onnx")
+    home.mkdir()
+    module = "vehicle_pf_tracker.offline.detectors"
+    code = f"from {module} import open_network; open_network({str(network)!r})"
+    left_out = {"ORT_DISABLE_TELEMETRY", "XDG_CACHE_HOME"}
+    environment = {name: one for name, one in os.environ.items() if name not in left_out}
+    subprocess.run([sys.executable, "-c", code], env={**environment, "HOME": str(home)}, check=True)
+    assert list(home.iterdir()) == []

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import importlib
 import math
+import os
 import time
 from array import array
 from collections.abc import Callable, Sequence
@@ -48,6 +49,7 @@ def open_network(model: str, progress: Progress = silent) -> Network:
     InputError
         If ONNX Runtime is not installed, or the file cannot be used.
     """
+    os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # by default it reports to its makers
     try:
         runtime = importlib.import_module("onnxruntime")
     except ImportError:
