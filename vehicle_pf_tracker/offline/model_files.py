@@ -65,6 +65,7 @@ def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
     url, demand = urldefrag(model)
     if urlsplit(url).scheme not in {"http", "https"}:
         raise InputError(f"the network {url} is at no http or https address")
+    demand = demand.lower()
     if demand and not re.fullmatch(r"sha256=[0-9a-f]{64}", demand):
         raise InputError(f"after # of a network's URL stands sha256= and 64 digits, not {demand!r}")
     path = cached(url)
