@@ -21,7 +21,7 @@ from traffic_samples import vehicle
 
 from vehicle_pf_tracker.core.box import Box, intersections
 from vehicle_pf_tracker.offline import drawing
-from vehicle_pf_tracker.offline.drawing import NEUTRAL, draw_box, draw_pixel_grid, write_labels
+from vehicle_pf_tracker.offline.drawing import draw_box, draw_pixel_grid, write_labels
 from vehicle_pf_tracker.offline.traffic_drawing import (
     Trails,
     annotated,
@@ -59,14 +59,9 @@ def test_an_occluded_vehicle_is_dashed():
     assert 0.4 < share < 0.8
 
 
-def test_a_tentative_vehicle_is_grey_and_has_no_number():
-    picture = drawn(TrackMode.TENTATIVE)
-    assert share_of_lower_edge(picture, NEUTRAL) == 1.0
-    assert not picture[:119].any()
-
-
-def test_a_lost_vehicle_is_not_drawn():
-    assert not drawn(TrackMode.LOST).any()
+@pytest.mark.parametrize("mode", [TrackMode.TENTATIVE, TrackMode.LOST])
+def test_what_is_not_known_to_be_there_is_not_drawn(mode):
+    assert not drawn(mode).any()
 
 
 def test_a_trail_is_drawn_behind_a_vehicle_until_it_is_lost():

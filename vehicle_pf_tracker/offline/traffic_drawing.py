@@ -71,15 +71,12 @@ def draw_vehicle(
 ) -> None:
     """Draw the box of a vehicle, and label it with number, class and speed.
 
-    The box is in the colour of its number, dashed where it is predicted, and grey without a number
-    while it is tentative; a lost vehicle has none.
+    The box is in the colour of its number, and dashed where it is predicted; a vehicle that is
+    tentative or lost has none.
     """
-    if estimate.mode is TrackMode.LOST:
+    if estimate.mode not in CONFIRMED:
         return
     width = drawing.line_width(picture)
-    if estimate.mode is TrackMode.TENTATIVE:
-        drawing.draw_box(picture, estimate.box, drawing.NEUTRAL, width)
-        return
     colour, is_hidden = identity_colour(estimate.identity), estimate.mode is TrackMode.OCCLUDED
     drawing.draw_box(picture, estimate.box, colour, width, dashed=is_hidden)
     words = [str(estimate.identity), estimate.label, "" if kmh is None else f"{kmh:.0f} km/h"]
