@@ -35,6 +35,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
 from vehicle_pf_tracker.trackers.traffic.detections import (
     HALF,
+    LEAST_PART,
     NOTHING,
     DetectionEvidence,
     Detections,
@@ -59,9 +60,6 @@ _SIZES = 2.0
 """Logarithm of the ratio of the largest and the smallest false alarms, by which they are spread. At
 1 vehicles that pass close and fast are found late: IDF1 of three scenes is 67 instead of 83."""
 
-_LEAST_PART = 0.15
-"""Smallest share of the vehicle that a detection may show. At a tenth IDF1 of YOLOX behind the
-bridge falls by six."""
 _PARTIAL, _MISSING = 3.0, 12.0
 """Cost of taking a detection for a part of the vehicle, and of all of it that it lacks. At 0 and 15
 IDF1 by motion behind the bridge falls by four: pieces of blobs are taken for the vehicle."""
@@ -116,7 +114,7 @@ def edge_costs(predicted: Array, deviations: Array, detected: Array) -> Array:
     lacking = np.maximum(inward, 0.0)
     kept = np.clip(1 - (lacking[..., :2] + lacking[..., 2:]) / size, 0.0, 1.0).prod(axis=2)
     part = outward + _PARTIAL + _MISSING * (1 - kept)
-    return np.asarray(np.where(kept > _LEAST_PART, np.minimum(whole, part), whole))
+    return np.asarray(np.where(kept > LEAST_PART, np.minimum(whole, part), whole))
 
 
 def assign(costs: Array) -> list[tuple[int, int]]:
@@ -145,6 +143,8 @@ class FrameDetections:
         Colours of the frame.
     size : (int, int)
         Width and height of the image.
+    wait : float
+        Nominal periods before a track of shapes is a vehicle.
 
     Attributes
     ----------
@@ -156,8 +156,9 @@ class FrameDetections:
         As the detector gave them.
     labels : tuple of str
         Classes.
-    are_shapes : bool
-        True where they may be pieces of vehicles.
+    wait : float
+        Nominal periods before a track of them is a vehicle: a piece of a vehicle drives as well,
+        and is soon joined with the rest.
     samples : list of Sample
         For learning what becomes of them.
     log_odds : (N,) array
@@ -178,12 +179,13 @@ class FrameDetections:
         evidence: DetectionEvidence,
         colours: ColourBins,
         size: tuple[int, int],
+        wait: float = 0.0,
     ) -> None:
         boxes, self.size = detections.boxes, size
         self.edges = np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
         self.scores = detections.scores
         self.labels = detections.labels
-        self.are_shapes = detections.are_shapes
+        self.wait = wait if detections.are_shapes else 0.0
         self.samples = evidence.samples(self.edges, self.scores, size)
         self.log_odds = evidence.log_odds(self.samples)
         self.gains = evidence.gains(self.scores)
@@ -225,15 +227,19 @@ def pair_costs(
     return np.minimum(costs, np.where(may_be, GATE * (1 + HALF - overlap), np.inf)), odds
 
 
-_BORDER = 1.0
-"""Distance in px from the border of the image up to which an edge counts as cut."""
-_NEAR_BORDER = 0.05
-"""The same, of the side: the usual error of an edge."""
+def cut_edges(edges: Array, size: tuple[int, int], noise: float) -> npt.NDArray[np.bool_]:
+    """Find the edges of boxes (..., 4) that lie beyond the borders of the image, or may do.
 
-
-def cut_edges(edges: Array, size: tuple[int, int]) -> npt.NDArray[np.bool_]:
-    """Find the edges of boxes (..., 4) that lie on or beyond the borders of the image."""
-    margin = np.maximum(_NEAR_BORDER * (edges[..., 2:] - edges[..., :2]), _BORDER)
+    Parameters
+    ----------
+    edges : (..., 4) array
+        Boxes in px.
+    size : (int, int)
+        Width and height of the image.
+    noise : float
+        Standard deviation of an edge, fraction of the size.
+    """
+    margin = deviations(edges, noise)[..., :2]
     return np.concatenate([edges[..., :2] <= margin, edges[..., 2:] >= size - margin], axis=-1)
 
 
@@ -260,7 +266,7 @@ def birth_odds(
     predicted, detected = states.edges, found.edges[indices]
     covariances, spread = states.edge_covariance, deviations(detected, noise)
     reach = np.sqrt(covariances.diagonal(axis1=1, axis2=2))
-    cut, also_cut = cut_edges(predicted, found.size), cut_edges(detected, found.size)
+    cut, also_cut = (cut_edges(edges, found.size, noise) for edges in (predicted, detected))
     apart = np.abs(detected[:, 0] - predicted[:, :1])
     reachable = math.sqrt(GATE)
     rows, columns = np.nonzero(

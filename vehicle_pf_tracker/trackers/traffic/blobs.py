@@ -33,11 +33,13 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.detections import (
     HALF,
+    LEAST_PART,
     LITTLE,
     SHIPPED,
     TrafficNumbers,
     areas,
 )
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import USUAL_ASPECT
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
 
@@ -45,22 +47,15 @@ _LEAST_AREA = 0.0003
 """Smallest area of a vehicle, of the image: 23 px in 320 x 240."""
 _LEAST_PIECE = 4
 """Smallest area in px of a piece of a vehicle."""
-_USUAL, _ASPECT_SPREAD = 0.8, 0.3
-"""Usual height over width, and usual share of a vehicle's box, to start from; and standard
-deviation of the logarithm of the first."""
+_USUAL_FULLNESS, _ASPECT_SPREAD = 0.8, 0.3
+"""Usual share of a vehicle's box to start from; standard deviation of the aspect's logarithm."""
 _FROM_THE_SIDE, _ACROSS = 0.5, 6
 """Usual height over width, to start from, of vehicles that drive across the image; and power of the
 share of their motion across by which they are: of 76 clips, only a steep one fits."""
 _SPREAD = 0.2
 """That of the second, and of the logarithm of a car's size."""
-_TRIMMED = 0.15
-"""Rows and columns at the rim with less of the fullest one are cut off: reflections, shadows."""
 _PIECE = 0.8
 """Share of a blob inside a prediction above which it is a piece of that vehicle."""
-_OWN = 0.15
-"""Share of a blob above which a part of it can be a vehicle."""
-_ASPECT_RATE = 0.02
-"""Rate at which the usual aspect follows blobs of one vehicle each."""
 _ASPECT_SIDE = 10
 """Least side in px of a blob whose aspect is learnt; one of less area has no shape."""
 _MOST_SIZE_COST = 4.0
@@ -71,9 +66,13 @@ two thirds of a car's size, and a car beside many lorries half of the usual one.
 _SIZES_NEEDED, MEMORY = 50, 0.998
 """Least boxes that a usual size is taken from: of one vehicle that has driven through; and weight
 of those before each, or of earlier images: some minutes."""
-_SCALE, _SINGULAR = 400.0, 1e-4
-"""Largest width of a mask in px; and least singular value, of the largest one's, that tells: while
-all vehicles have driven on one line, the size beside it is taken to be the same."""
+_RATE = 1 / _SIZES_NEEDED
+"""Rate at which the usual shape follows blobs of one vehicle each."""
+WIDEST = 400
+"""Largest width of a mask in px: finer says nothing more about vehicles."""
+_SINGULAR = 1e-4
+"""Least singular value, of the largest one's, that tells: while all vehicles have driven on one
+line, the size beside it is taken to be the same."""
 
 
 class Piece(NamedTuple):
@@ -124,7 +123,7 @@ class UsualSize:
     def learn(self, piece: Piece) -> None:
         """Add the box of one vehicle; all count alike, near and far ones."""
         size = math.sqrt(math.prod(piece.sides))
-        place = np.array([(piece.left + piece.right) / 2 / _SCALE, piece.bottom / _SCALE, 1.0])
+        place = np.array([(piece.left + piece.right) / 2 / WIDEST, piece.bottom / WIDEST, 1.0])
         self._squares = MEMORY * self._squares + np.outer(place, place) / size**2
         self._sums = MEMORY * self._sums + place / size
         self._count += 1
@@ -140,7 +139,7 @@ class UsualSize:
         if not self._slopes:
             return 0.0
         across, down, level = self._slopes
-        usual = ((piece.left + piece.right) / 2 * across + piece.bottom * down) / _SCALE + level
+        usual = ((piece.left + piece.right) / 2 * across + piece.bottom * down) / WIDEST + level
         return math.log(math.sqrt(math.prod(piece.sides)) / max(usual, 1.0)) / _SPREAD
 
     def cost(self, piece: Piece) -> float:
@@ -160,7 +159,7 @@ class BlobReader:
 
     def __init__(self, numbers: TrafficNumbers = SHIPPED) -> None:
         self._numbers = numbers
-        self._fullness = math.log(_USUAL)
+        self._fullness = math.log(_USUAL_FULLNESS)
         self._aspect = self._learnt_aspect = 0.0
         self._unlearnt, self._motion = 1.0, np.zeros(2)
         self._sizes = UsualSize()
@@ -211,7 +210,7 @@ class BlobReader:
         self._motion = MEMORY * self._motion + motion
         # After hours without a vehicle nothing is left of either.
         across = float(self._motion[0] / max(self._motion[1], 1e-9)) ** _ACROSS
-        first = _USUAL + across * (_FROM_THE_SIDE - _USUAL)
+        first = USUAL_ASPECT + across * (_FROM_THE_SIDE - USUAL_ASPECT)
         self._aspect = self._learnt_aspect + self._unlearnt * math.log(first)
 
     def _is_vehicle(self, piece: Piece, least: float, shape: tuple[int, ...]) -> bool:
@@ -235,14 +234,14 @@ class BlobReader:
     def _grouped(self, pieces: list[Piece]) -> list[Piece]:
         """Join the pieces in one prediction, unless they look like vehicles of their own."""
         joined = _joined(pieces)
-        notable = [one for one in pieces if one.area > _OWN * joined.area]
+        notable = [one for one in pieces if one.area > LEAST_PART * joined.area]
         if len(notable) > 1 and self._are_several(notable, joined):
             return notable
         return [joined]
 
     def _are_several(self, parts: list[Piece], whole: Piece) -> bool:
         """Test whether parts of a blob look more like vehicles than the whole does."""
-        if min(one.area for one in parts) < _OWN * whole.area or whole.area < _ASPECT_SIDE**2:
+        if min(one.area for one in parts) < LEAST_PART * whole.area or whole.area < _ASPECT_SIDE**2:
             return False
         return self._worst(parts) + self._numbers.apart < self._shape_cost(whole)
 
@@ -257,10 +256,10 @@ class BlobReader:
 
     def _learn_shape(self, piece: Piece, shape: tuple[int, ...], members: int) -> None:
         if members == 1 and piece.is_free(shape) and min(piece.sides) > _ASPECT_SIDE:
-            self._learnt_aspect += _ASPECT_RATE * (piece.log_aspect - self._learnt_aspect)
-            self._unlearnt *= 1 - _ASPECT_RATE
+            self._learnt_aspect += _RATE * (piece.log_aspect - self._learnt_aspect)
+            self._unlearnt *= 1 - _RATE
             self._sizes.learn(piece)
-            self._fullness += _ASPECT_RATE * (piece.log_fullness - self._fullness)
+            self._fullness += _RATE * (piece.log_fullness - self._fullness)
 
 
 def _components(mask: Mask) -> Iterator[tuple[Mask, Array]]:
@@ -274,11 +273,14 @@ def _components(mask: Mask) -> Iterator[tuple[Mask, Array]]:
 
 
 def _piece(part: Mask, x: int, y: int) -> Piece:
-    """Make a piece of the pixels of a mask whose corner is at (x, y), without its thin rim."""
+    """Make a piece of the pixels of a mask whose corner is at (x, y), without its thin rim.
+
+    Reflections and shadows make rows and columns with few pixels.
+    """
     edges = []
     for axis in (0, 1):
         sums = cv2.reduce(part, axis, cv2.REDUCE_SUM, dtype=cv2.CV_32S).ravel()
-        kept = np.flatnonzero(sums >= _TRIMMED * sums.max())
+        kept = np.flatnonzero(sums >= LEAST_PART * sums.max())
         edges.append((int(kept[0]), int(kept[-1]) + 1))
     (left, right), (top, bottom) = edges
     return Piece(x + left, y + top, x + right, y + bottom, int(sums.sum()))

@@ -33,8 +33,14 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, check_frame
-from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
-from vehicle_pf_tracker.trackers.traffic.detections import SHIPPED, Detections, TrafficNumbers
+from vehicle_pf_tracker.trackers.traffic.blobs import WIDEST, BlobReader
+from vehicle_pf_tracker.trackers.traffic.detections import (
+    HALF,
+    LITTLE,
+    SHIPPED,
+    Detections,
+    TrafficNumbers,
+)
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.steady import Steadier
 
@@ -51,9 +57,6 @@ _AGREEING = 2
 """Least samples of the pixel's colour for it to be background: one may be of a vehicle."""
 _RENEWED = 40
 """Images after which a sample is renewed, on average: light and leaves change within a second."""
-_RECOVERY = 0.1
-"""Images of a change that are forgiven in an image without one: behind a vehicle in ten there is
-still a road, while leaves in the wind are learnt in the end."""
 _SHADE = 20.0
 """Largest distance in colour of a shadow from the darkened background."""
 _COMPARED = 3
@@ -65,8 +68,6 @@ _RIM = np.ones((5, 5), np.uint8)
 """Surroundings of a change's pixel that have to have changed, too, for an edge there to count."""
 _SPARSE = (slice(None), slice(None, None, 4), slice(None, None, 4))
 """Pixels that the camera's gain is taken from."""
-_LIT = 60
-"""Sum of the channels above which a pixel tells the gain."""
 _MOST_GAIN = 1.3
 """Largest change of the camera's gain, either way; beyond it the light was switched."""
 _NEIGHBOURS = ((-1, 0), (1, 0), (0, -1), (0, 1))
@@ -120,7 +121,8 @@ class Background:
     def learn(self, image: Colours, changed: Pixels, held: Pixels) -> None:
         """Renew samples, but where something has changed lately or is held."""
         patience = self._numbers.patience
-        self._exposure += np.where(changed, np.float32(1), np.float32(-_RECOVERY))
+        # Behind a vehicle in ten there is still a road; leaves in the wind are learnt in the end.
+        self._exposure += np.where(changed, np.float32(1), np.float32(-LITTLE))
         np.clip(self._exposure, 0, 2 * patience, out=self._exposure)
         near = cv2.dilate(changed.astype(np.uint8), _AROUND) > 0
         learnt = ~(held | (near & (self._exposure < patience)))
@@ -137,7 +139,7 @@ class Background:
             one.reshape(3, -1, one.shape[1])[_SPARSE].sum(axis=0, dtype=np.float32)
             for one in (self._samples[0], planes)
         )
-        lit = before > _LIT
+        lit = before > self._numbers.colour_threshold  # darker ones are noise
         if not lit.any():
             return planes
         gain = float(np.median(now[lit] / before[lit]))
@@ -203,14 +205,10 @@ def _give(planes: Planes, chosen: Pixels, sample: Planes, offset: tuple[int, int
         cv2.copyTo(new[rows, columns], mask, part)
 
 
-_WIDEST = 400
-"""Width in px above which the image is halved: finer says nothing more about vehicles."""
 _CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
 """Holes and gaps up to this size are closed: windscreens show the sky."""
 _FOLLOWED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
 """Modes of vehicles that join their pieces; tentative ones may be pieces of a lorry."""
-_ALL_MOVES = 0.5
-"""Share of moving pixels above which the camera moves, or the light was switched."""
 
 
 class MotionDetector:
@@ -274,7 +272,8 @@ class MotionDetector:
         changed = self._background.compare(small)
         if seen is not None:
             changed &= seen > 0
-        if np.count_nonzero(changed) > _ALL_MOVES * changed.size:
+        # The camera moves, or the light was switched.
+        if np.count_nonzero(changed) > HALF * changed.size:
             self.disturbed = self.is_blind = True
             self._restart()
             return Detections.none()
@@ -303,7 +302,7 @@ def _covered(boxes: Array, image: Colours) -> Pixels:
 def _reduced(frame: Frame) -> tuple[npt.NDArray[np.uint8], float]:
     """Halve the image until it is narrow enough; also its scale."""
     small, zoom = np.ascontiguousarray(frame), 1.0
-    while small.shape[1] > _WIDEST:
+    while small.shape[1] > WIDEST:
         half = (max(small.shape[1] // 2, 1), max(small.shape[0] // 2, 1))
         small = np.asarray(cv2.resize(small, half, interpolation=cv2.INTER_AREA), np.uint8)
         zoom *= 0.5

@@ -20,6 +20,7 @@ well they explain where the points went; their mean and spread are the measureme
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -39,9 +40,7 @@ Grey: TypeAlias = npt.NDArray[np.uint8]
 _GRID = 5
 """Points along each side of a box; the fewest that a motion is taken from, and as many as count as
 independent: neighbours err together."""
-_POINT_NOISE = 0.5
-"""Standard deviation of a point's flow, px."""
-_OUTLIER = 0.02
+_OUTLIER = math.exp(-(FAR**2) / 2)
 """Likelihood of a point that went elsewhere."""
 _SLIP = 0.02
 """Standard deviation, of its size, by which a box grows or slips on its vehicle in a frame."""
@@ -131,7 +130,7 @@ def _hold(track: Track, old: Array, new: Array, normals: Array, colours: ColourB
     particles = _particles(track, observed - relative, normals)
     expected = (1 + particles[:, 2])[:, np.newaxis, np.newaxis] * relative
     expected += particles[:, np.newaxis, :2]
-    squared = ((observed - expected) ** 2).sum(axis=2) / _POINT_NOISE**2
+    squared = ((observed - expected) ** 2).sum(axis=2) / PIXEL_NOISE**2
     logs = np.log(np.exp(-squared / 2) + _OUTLIER).mean(axis=1)
     logs *= _GRID
     middles = centre + particles[:, :2]

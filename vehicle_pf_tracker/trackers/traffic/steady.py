@@ -24,6 +24,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.shared_motion import PointFlow, shared_similarity
+from vehicle_pf_tracker.trackers.traffic.detections import LITTLE
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import PIXEL_NOISE, SETTLED_AFTER
 
 Image: TypeAlias = npt.NDArray[np.uint8]
@@ -31,8 +32,6 @@ Image: TypeAlias = npt.NDArray[np.uint8]
 _CORNERS, _QUALITY, _APART = 120, 0.01, 10
 """Most corners that are followed, their least strength, of the strongest one's, and their least
 distance in px: of thirty that are hidden by vehicles, ninety are left."""
-_FARTHEST = 0.1
-"""Largest shift that is a shake, of the image's width; beyond it the camera was turned."""
 _CHECKED_EVERY = 5
 """After `SETTLED_AFTER` images without a shake only every so many are measured."""
 _RENEWED_AFTER = 300
@@ -93,7 +92,8 @@ class Steadier:
         if self._still >= SETTLED_AFTER and self._age % _CHECKED_EVERY:
             return
         found = self._similarity(self._reference, grey)
-        if np.abs(found[:, 2]).max() > _FARTHEST * grey.shape[1] or (found == _STILL).all():
+        # A larger shift is no shake: the camera was turned.
+        if np.abs(found[:, 2]).max() > LITTLE * grey.shape[1] or (found == _STILL).all():
             found = _STILL
         self._map = found
         self._still = self._still + 1 if found is _STILL else 0

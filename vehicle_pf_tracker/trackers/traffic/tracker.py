@@ -57,6 +57,9 @@ from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, Edge
 
 _VEHICLE_WIDTH = 1.8
 """Width of a car in m, by which speeds and accelerations become widths."""
+_WAIT = 0.5
+"""Time in s before a track of shapes is a vehicle. On 34 public clips of 24 to 30 Hz, 8, 15 and 22
+images give 42.4, 44.2 and 43.3 IDF1; on a close road at 10 Hz 15 images are too long."""
 _FOCAL = 1.2
 """Focal length, of the image's width: that of a camera with a field of view of 45 degrees."""
 
@@ -208,7 +211,8 @@ class TrafficTracker:
     def _take(self, detections: Detections, elapsed: float) -> None:
         """Give the detections to the tracks; what is left over may be new vehicles."""
         self._evidence.look()
-        found = FrameDetections(detections, self._evidence, self._colours, self._size)
+        wait = _WAIT / self.frame_period
+        found = FrameDetections(detections, self._evidence, self._colours, self._size, wait)
         confirmed = [one for one in self._tracks if one.confirmed]
         for least in (0.0, -math.inf):
             self._match([one for one in confirmed if one.undetected], found, least)
@@ -255,7 +259,7 @@ class TrafficTracker:
         edges = found.edges[indices]
         settings, uncoverings = self.parameters.detections, self._existence.uncoverings
         whole = measure(tracks, edges, settings, self._size, found.edges, uncoverings)
-        cut = np.asarray(cut_edges(edges, self._size).any(axis=1))
+        cut = np.asarray(cut_edges(edges, self._size, settings.edge_noise).any(axis=1))
         rows = zip(tracks, indices, fits, whole, cut, strict=True)
         for track, index, fit, is_whole, is_cut in rows:
             track.name(found.labels[index], float(found.scores[index]))

@@ -46,6 +46,9 @@ SETTLED_AFTER = 30
 """Detections or nominal periods, one second of 30 Hz, by which what is seen is no passing state: a
 covered edge, a part of another vehicle, standing still."""
 
+USUAL_ASPECT = 0.8
+"""Height of a vehicle over its width: that of cars from the front."""
+
 X, V, W, H, ACROSS, ALONG = range(6)
 """Components of the state: centre and distance from the horizon, size (px), road velocities."""
 
