@@ -31,7 +31,8 @@ from vehicle_pf_tracker.cli.synth import record_scene
 def main() -> int:
     """Write a scene as a recording, or traffic as a folder in MOTChallenge's layout."""
     parser = argparse.ArgumentParser(prog="python -m laboratory.scenes", description=main.__doc__)
-    parser.add_argument("scene", metavar="SCENE", choices=(*SCENES, *TRAFFIC_SCENES))
+    scenes = (*SCENES, *TRAFFIC_SCENES)
+    parser.add_argument("scene", metavar="SCENE", choices=scenes, help=", ".join(scenes))
     parser.add_argument("out", metavar="OUT", type=Path)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
