@@ -26,15 +26,16 @@ from vehicle_pf_tracker.trackers.traffic.detections import CERTAIN, DetectionEvi
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.track import FEW, predict
+from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 SIZE = (320, 240)
 SCORE = 0.8
 
 
-def found(evidence, *boxes, are_shapes=False):
+def found(evidence, *boxes):
     """Detections of one frame, as the tracker has them."""
     frame = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
-    detections = replace(Detections.make(boxes, np.full(len(boxes), SCORE)), are_shapes=are_shapes)
+    detections = Detections.make(boxes, np.full(len(boxes), SCORE))
     evidence.look()
     return FrameDetections(detections, evidence, ColourBins(frame), SIZE)
 
@@ -68,18 +69,22 @@ def test_what_was_seen_a_few_times_speaks_against_its_scores():
     assert ended_unconfirmed([(20 + 4 * frame, 100) for frame in range(3)]) < -1
 
 
-@pytest.mark.parametrize("are_shapes", [True, False])
-def test_a_shape_that_drives_may_be_a_piece_of_a_vehicle_for_half_a_second(are_shapes):
-    evidence = DetectionEvidence()
-    existence = Existence(TrafficParameters(), evidence)
-    one = track(1, 20.0)
-    for frame in range(30):
-        predict([one], -1000.0, 1.0 if frame else 0.0, DRIVE)
-        detections = found(evidence, (20 + 4 * frame, 100, 40, 30), are_shapes=are_shapes)
-        one.state.measure(detections.edges[0], np.ones(4))
-        if existence.detected(one, detections, 0, 3.0):
+@pytest.mark.parametrize(
+    ("are_shapes", "rate", "first", "last"),
+    [(True, 30.0, 0.5, 0.6), (True, 10.0, 0.5, 0.8), (False, 30.0, 0.0, 0.3)],
+)
+def test_a_shape_that_drives_may_be_a_piece_of_a_vehicle_for_half_a_second(
+    are_shapes, rate, first, last
+):
+    tracker = TrafficTracker()
+    tracker.frame_period = 1 / rate
+    frame = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    for index in range(30):
+        box = (20 + 4 * index, 100, 40, 30)
+        detections = replace(Detections.make([box]), are_shapes=are_shapes)
+        if any(one.identity for one in tracker.step(frame, detections)):
             break
-    assert frame == 15 if are_shapes else frame < 10
+    assert first <= index / rate <= last
 
 
 def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_alarm():

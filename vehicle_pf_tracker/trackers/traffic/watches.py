@@ -27,14 +27,12 @@ from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingZone
 from vehicle_pf_tracker.road.motion import KMH
 from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.trackers.traffic.detections import LITTLE
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
-_MARGIN = 0.1
-"""Distance from a line at which a vehicle is clearly on one side, in heights of its box. Of two
-detectors on a real highway, the lower edges of nine boxes in ten lay within 9 and 12 % of the
-height around the true ones: closer to the line, a standing vehicle could be on either side."""
 _LEAST_MARGIN = 1.0
-"""The same in px, for the smallest boxes: detections are rounded to whole pixels."""
+"""Distance from a line in px at which the smallest box is clearly on one side: detections are
+rounded to whole pixels."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +58,12 @@ class Place:
 
     @property
     def margin(self) -> float:
-        """Distance in px over which a standing vehicle may seem to move."""
-        return max(_LEAST_MARGIN, _MARGIN * self.height)
+        """Distance in px over which a standing vehicle may seem to move.
+
+        Of two detectors on a real highway, the lower edges of nine boxes in ten lay within 9 and
+        12 % of the height around the true ones.
+        """
+        return max(_LEAST_MARGIN, LITTLE * self.height)
 
     def towards(self, other: Place, share: float) -> Place:
         """Return the place that lies `share` of the way to `other`, with the mode of that one."""
