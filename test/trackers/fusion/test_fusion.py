@@ -204,6 +204,11 @@ def parts(monkeypatch):
     return latest
 
 
+def change(tracker, **values):
+    """Replace parts of the tracker's state."""
+    tracker._state = tracker._state._replace(**values)
+
+
 def extent(estimate):
     return math.sqrt(estimate.box.width * estimate.box.height)
 
@@ -245,8 +250,8 @@ def test_of_a_vehicle_that_is_partly_hidden_nothing_is_learnt_and_its_size_is_pr
     tracker.start(street.frame(0), street.box(0))
     for ago in range(12, 0, -1):
         size = np.array([24.0, 16.0]) / (1 + 0.01 * ago)
-        parts.sightings.add(np.array([32.0 - 2.0 * ago, 58.0]), size, 1.0)
-        parts.sightings.pass_time(1.0, CameraMotion())
+        sightings = tracker._state.sightings.added(np.array([32.0 - 2.0 * ago, 58.0]), size, 1.0)
+        change(tracker, sightings=sightings.moved_on(1.0, CameraMotion()))
     monkeypatch.setattr(parts.surface, "judge", lambda *_: parts.surface.share)
     parts.surface.share = 0.5
     while (estimate := tracker.step(street.frame(1))).similarities["whole"] > 0.5:
@@ -291,12 +296,13 @@ def test_a_hidden_vehicle_is_found_though_its_size_was_mistaken(monkeypatch):
     assert sizes[1.0,] < 1.1
 
 
-def test_before_a_camera_that_moved_a_hidden_vehicle_is_looked_for_farther_away(parts):
+def test_before_a_camera_that_moved_a_hidden_vehicle_is_looked_for_farther_away():
     def spread(shift):
         values = {"motion.hidden_velocity_sigma": 0.003, "motion.camera_velocity_sigma": 0.02}
         street, tracker = Street(speed=2.0, hidden=(20, 99)), fusion(**values)
         follow(tracker, street, range(20))
-        parts.sightings.pass_time(1e-6, CameraMotion(np.eye(2), np.array([shift, 0.0])))
+        camera = CameraMotion(np.eye(2), np.array([shift, 0.0]))
+        change(tracker, sightings=tracker._state.sightings.moved_on(1e-6, camera))
         for time in range(20, 30):
             estimate = tracker.step(street.frame(time))
         return estimate.particles[:, 0].std()
@@ -304,9 +310,10 @@ def test_before_a_camera_that_moved_a_hidden_vehicle_is_looked_for_farther_away(
     assert spread(3.0) > 1.5 * spread(0.0)
 
 
-def test_a_pan_is_noticed_as_a_camera_that_moves(parts):
-    follow(fusion(), Spinning(), range(4))
-    assert not parts.sightings.are_steady
+def test_a_pan_is_noticed_as_a_camera_that_moves():
+    tracker = fusion()
+    follow(tracker, Spinning(), range(4))
+    assert not tracker._state.sightings.are_steady
 
 
 def counted(parts, monkeypatch):

@@ -99,10 +99,12 @@ def test_noise_is_averaged():
 def test_only_clear_sightings_are_fitted():
     sightings = Sightings()
     for time in range(12):
-        sightings.pass_time(1.0, CameraMotion())
+        sightings = sightings.moved_on(1.0, CameraMotion())
         clear = time < 9
         position = np.array([10.0 + 3 * time, 50.0]) if clear else np.array([37.0, 50.0])
-        sightings.add(position, np.array([30.0, 20.0]), CLEAR_RESPONSE + (0.1 if clear else -0.1))
+        sightings = sightings.added(
+            position, np.array([30.0, 20.0]), CLEAR_RESPONSE + (0.1 if clear else -0.1)
+        )
     motion, last = sightings.fit()
     assert last.age == 3
     assert last.position == pytest.approx([34, 50])
@@ -114,12 +116,12 @@ def growing(*, cut_from, response, camera=None):
     """Sightings of a vehicle that comes closer at a rate of 0.01, of which the last are cut."""
     sightings = Sightings()
     for time in range(40):
-        sightings.pass_time(1.0, camera or CameraMotion())
+        sightings = sightings.moved_on(1.0, camera or CameraMotion())
         size = np.array([30.0, 20.0]) / (1 - 0.01 * (time - 39))
         is_cut = time >= cut_from
         if is_cut:
             size *= 0.97 ** (time - cut_from)
-        sightings.add(np.array([50.0, 50.0]), size, response if is_cut else 1.0)
+        sightings = sightings.added(np.array([50.0, 50.0]), size, response if is_cut else 1.0)
     return sightings
 
 
@@ -146,26 +148,28 @@ def test_before_a_camera_that_moves_the_size_stays():
 def test_sightings_are_steady_when_the_camera_has_stood_for_as_long_as_they_are_kept():
     sightings = Sightings()
     assert sightings.are_steady
-    sightings.pass_time(1.0, CameraMotion(np.eye(2), np.array([3.0, 0.0])))
+    sightings = sightings.moved_on(1.0, CameraMotion(np.eye(2), np.array([3.0, 0.0])))
     assert not sightings.are_steady
     for _ in range(60):
-        sightings.pass_time(1.0, CameraMotion())
+        sightings = sightings.moved_on(1.0, CameraMotion())
     assert not sightings.are_steady
-    sightings.pass_time(1.0, CameraMotion())
+    sightings = sightings.moved_on(1.0, CameraMotion())
     assert sightings.are_steady
 
 
 def test_without_clear_sightings_there_is_nothing_to_fit():
     sightings = Sightings()
     assert sightings.fit() is None
-    sightings.add(np.zeros(2), np.ones(2), CLEAR_RESPONSE - 0.01)
+    sightings = sightings.added(np.zeros(2), np.ones(2), CLEAR_RESPONSE - 0.01)
     assert sightings.fit() is None
 
 
 def test_sightings_move_with_the_camera_and_age():
     sightings = Sightings()
-    sightings.add(np.array([10.0, 20.0]), np.array([8.0, 6.0]), 1.0)
-    sightings.pass_time(2.0, CameraMotion(np.array([[0.0, -1.0], [1.0, 0.0]]), np.array([5, 1])))
+    sightings = sightings.added(np.array([10.0, 20.0]), np.array([8.0, 6.0]), 1.0)
+    sightings = sightings.moved_on(
+        2.0, CameraMotion(np.array([[0.0, -1.0], [1.0, 0.0]]), np.array([5, 1]))
+    )
     _, last = sightings.fit()
     assert last.age == 2
     assert last.position == pytest.approx([-15, 11])
@@ -174,9 +178,9 @@ def test_sightings_move_with_the_camera_and_age():
 
 def test_old_sightings_are_discarded():
     sightings = Sightings()
-    sightings.add(np.zeros(2), np.ones(2), 1.0)
+    sightings = sightings.added(np.zeros(2), np.ones(2), 1.0)
     for _ in range(60):
-        sightings.pass_time(1.0, CameraMotion())
+        sightings = sightings.moved_on(1.0, CameraMotion())
     assert sightings.fit()[1].age == 60
-    sightings.pass_time(1.0, CameraMotion())
+    sightings = sightings.moved_on(1.0, CameraMotion())
     assert sightings.fit() is None

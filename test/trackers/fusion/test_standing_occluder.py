@@ -18,7 +18,8 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.trackers.fusion.perspective import Sightings, made_whole
+from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
+from vehicle_pf_tracker.trackers.fusion.standing_occluder import restored_sightings
 
 COUNT = 30
 AGES = np.arange(COUNT)[::-1].astype(float)
@@ -46,14 +47,14 @@ def sides(speed, wall=None, *, axis=0, growth=0.0):
 def test_the_side_behind_a_wall_is_restored(speed, wall, axis):
     seen, whole = sides(speed, wall, axis=axis)
     assert seen[1][-1, axis] < 0.75 * whole[1][-1, axis]
-    positions, sizes = made_whole(AGES, *seen, CLEAR)
+    positions, sizes = restored_sightings(AGES, *seen, CLEAR)
     assert positions == pytest.approx(whole[0])
     assert sizes == pytest.approx(whole[1])
 
 
 def test_a_vehicle_that_grows_is_restored_to_its_present_size():
     seen, whole = sides(2.0, 155.0, growth=0.01)
-    positions, sizes = made_whole(AGES, *seen, CLEAR)
+    positions, sizes = restored_sightings(AGES, *seen, CLEAR)
     assert sizes[-1] == pytest.approx(whole[1][-1], rel=0.02)
     assert positions[-1] == pytest.approx(whole[0][-1], abs=1.0)
 
@@ -61,7 +62,7 @@ def test_a_vehicle_that_grows_is_restored_to_its_present_size():
 def test_what_is_seen_is_not_changed():
     seen, _ = sides(2.0, 150.0)
     before = [each.copy() for each in seen]
-    made_whole(AGES, *seen, CLEAR)
+    restored_sightings(AGES, *seen, CLEAR)
     assert all(np.array_equal(*pair) for pair in zip(before, seen, strict=True))
 
 
@@ -69,7 +70,7 @@ def test_a_vehicle_that_turns_is_left_as_it_is():
     """Its box becomes narrower, but both sides of it drive on."""
     (positions, sizes), _ = sides(3.0)
     sizes[:, 0] *= np.exp(-0.02 * np.arange(COUNT))
-    assert made_whole(AGES, positions, sizes, CLEAR) is None
+    assert restored_sightings(AGES, positions, sizes, CLEAR) is None
 
 
 @pytest.mark.parametrize(
@@ -81,13 +82,15 @@ def test_a_vehicle_that_turns_is_left_as_it_is():
     ids=["drives in the open", "stands", "comes closer", "all of one moment"],
 )  # fmt: skip
 def test_what_no_wall_is_seen_to_cut_is_left_as_it_is(ages, speed, options):
-    assert made_whole(ages, *sides(speed, **options)[0], CLEAR) is None
+    assert restored_sightings(ages, *sides(speed, **options)[0], CLEAR) is None
 
 
 @pytest.mark.parametrize(("kept", "response"), [(12, 1.0), (COUNT, 0.5)])
 def test_few_or_unclear_sightings_are_left_as_they_are(kept, response):
     (positions, sizes), _ = sides(2.0, 150.0)
-    found = made_whole(AGES[-kept:], positions[-kept:], sizes[-kept:], response * CLEAR[-kept:])
+    found = restored_sightings(
+        AGES[-kept:], positions[-kept:], sizes[-kept:], response * CLEAR[-kept:]
+    )
     assert found is None
 
 
@@ -95,8 +98,8 @@ def test_the_prediction_begins_with_the_whole_vehicle():
     (positions, sizes), whole = sides(2.0, 150.0)
     sightings = Sightings()
     for position, size in zip(positions, sizes, strict=True):
-        sightings.pass_time(1.0, CameraMotion())
-        sightings.add(position, size, 1.0)
+        sightings = sightings.moved_on(1.0, CameraMotion())
+        sightings = sightings.added(position, size, 1.0)
     motion, last = sightings.fit()
     assert last.cut
     assert last.size == pytest.approx(whole[1][-1])

@@ -71,7 +71,7 @@ def follow(state: State, seen: Observation, step: Step) -> State:
 
 def _entering_occlusion(state: State, step: Step) -> State:
     """Predict from the last clear sightings: the occluder has dragged later ones along."""
-    fitted = step.memory.sightings.fit()
+    fitted = state.sightings.fit()
     if fitted is None:
         return state._replace(particles=state.particles.all_visible(DOUBT), measured=state.size)
     path, last = fitted
@@ -79,7 +79,7 @@ def _entering_occlusion(state: State, step: Step) -> State:
         step.memory.turning.begin(path, last)
     size = last.size * path.scale_at(last.age)
     state = state._replace(size=size, measured=size)
-    count, sigma = step.parameters.num_particles, step.hidden_velocity_sigma
+    count, sigma = step.parameters.num_particles, step.hidden_velocity_sigma(state.sightings)
     particles = hidden_hypotheses(step.rng, path, last.age, count, state.extent, sigma)
     return state._replace(particles=particles)
 
@@ -90,8 +90,8 @@ def _follow_sighting(state: State, seen: Observation, step: Step) -> State:
     sized = Work.SIZE in state.work and seen.response > _WEAK_RESPONSE
     if sized and _is_sure(state):
         state = _sized(state, step, again=seen.again)
-    step.memory.sightings.add(state.position, state.size, seen.response)
-    return state
+    sightings = state.sightings.added(state.position, state.size, seen.response)
+    return state._replace(sightings=sightings)
 
 
 def _is_sure(state: State) -> bool:
@@ -143,8 +143,8 @@ def told_by_points(stretch: Array, share: float, size: Array, options: SizeParam
 def _follow_outline(state: State, turned: Turned, step: Step) -> State:
     """Take position, size and velocity from the outline of a vehicle that turns."""
     position, size = step.inside(turned.position), step.bounded(turned.size)
-    state = state._replace(position=position, size=size)
-    step.memory.sightings.add(position, size, 1.0)
+    sightings = state.sightings.added(position, size, 1.0)
+    state = state._replace(position=position, size=size, sightings=sightings)
     particles = gathered(state, step, position, turned.velocity, 1 - DOUBT)
     return state._replace(particles=particles)
 

@@ -65,7 +65,7 @@ def _moved_with_camera(state: State, step: Step) -> State:
         small = small_grey(step.frame)
         camera = memory.camera.measure(small, state.box)
         memory.turning.keep(small, still=camera.still)
-    memory.sightings.pass_time(step.elapsed, camera)
+    state = state._replace(sightings=state.sightings.moved_on(step.elapsed, camera))
     memory.surface.move_with_camera(camera)
     if camera.still:
         return state
@@ -93,7 +93,7 @@ def _driven(state: State, step: Step) -> State:
     seen = state.visibility.is_seen
     sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
     if not seen:
-        sigmas = 0.0, step.hidden_velocity_sigma * extent
+        sigmas = 0.0, step.hidden_velocity_sigma(state.sightings) * extent
         growth = float(particles.weights @ particles.growths)
         size = step.bounded(
             np.minimum(size * np.exp(growth * elapsed), LARGEST_GROWTH * state.measured)

@@ -12,91 +12,22 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Constant velocity on the road as the camera sees it, fitted to where the vehicle was seen.
+"""Constant velocity on the road as the camera sees it, fitted to earlier positions and sizes.
 
-Before the fit, sightings that a standing occluder has cut are made whole.
-A vehicle that drives behind a wall slowly is followed while less and less of it shows: the box
-shrinks with what is visible. One of its sides then stands with the wall while the opposite one
-drives on; and the other dimension tells the size.
+Before the fit, sightings that a standing occluder has cut are restored (`standing_occluder.py`).
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
-
-_JUDGED = 8
-"""Last sightings that the sides' motion is fitted to: a quarter of a second."""
-_LEAST_RESPONSE = 0.6
-"""Response, of the usual one, of sightings that are judged, as sizes are followed from there on."""
-_WHOLE_QUANTILE = 0.9
-"""Quantile of the ratio of the sides that is the whole vehicle's: two seconds may mostly be cut."""
-_CUT = 0.9
-"""Ratio of the sides, of the whole vehicle's, below which the box is cut; sizes are good to 4 %."""
-_STANDS = 0.4
-"""Speed of a side that stands, of the opposite one's."""
-_LEAST_SPEED = 0.01
-"""Speed of the side that drives on, of the size per frame; below it all sides stand."""
-
-
-def made_whole(
-    ages: Array, positions: Array, sizes: Array, responses: Array
-) -> tuple[Array, Array] | None:
-    """Restore sightings that were cut from one side; None where the last ones are not cut.
-
-    Parameters
-    ----------
-    ages : (N,) array
-        Frames ago, descending.
-    positions, sizes : (N, 2) arrays
-        Centres, and widths and heights, px; the background stands.
-    responses : (N,) array
-        Responses of the filter, fractions of the usual one.
-
-    Returns
-    -------
-    positions, sizes : (N, 2) arrays
-        With the side that drives on where it was seen, and the other one as far away as the whole
-        vehicle's ratio of width and height tells.
-    """
-    judged = np.flatnonzero(responses >= _LEAST_RESPONSE)[-_JUDGED:]
-    if len(judged) < _JUDGED or len(ages) < 2 * _JUDGED:
-        return None
-    seen, positions, sizes, restored = sizes, positions.copy(), sizes.copy(), False
-    for axis in (0, 1):
-        ratio = seen[:, axis] / seen[:, 1 - axis]
-        whole = float(np.quantile(ratio, _WHOLE_QUANTILE))
-        low = positions[:, axis] - seen[:, axis] / 2
-        sides = np.stack([low, low + seen[:, axis]])
-        driving = _driving_side(ages[judged], sides[:, judged], float(np.sqrt(seen[-1].prod())))
-        if driving is None or ratio[judged[-1]] > _CUT * whole:
-            continue
-        cut = ratio < whole
-        sizes[cut, axis] = whole * seen[cut, 1 - axis]
-        inwards = 0.5 if driving == 0 else -0.5
-        positions[cut, axis] = sides[driving, cut] + inwards * sizes[cut, axis]
-        restored = True
-    return (positions, sizes) if restored else None
-
-
-def _driving_side(ages: Array, sides: Array, extent: float) -> int | None:
-    """Find the one of two sides (2, N) that drives towards the other, if it stands."""
-    times = ages.mean() - ages
-    spread = float(times @ times)
-    if not spread:  # repeated stamps: no time has passed
-        return None
-    speeds = sides @ times / spread
-    driving = int(np.abs(speeds).argmax())
-    stands = abs(speeds[1 - driving]) <= _STANDS * abs(speeds[driving])
-    moves = abs(speeds[driving]) >= _LEAST_SPEED * extent
-    inwards = (speeds[driving] > 0) == (driving == 0)
-    return driving if stands and moves and inwards else None
-
+from vehicle_pf_tracker.trackers.fusion.standing_occluder import PROOF_FRAMES, restored_sightings
 
 KEPT_FRAMES = 60.0
 """Age in frames from which a sighting tells nothing about the present motion."""
@@ -108,21 +39,25 @@ _SIZE_RESPONSE = 0.9
 _RATES = np.linspace(-0.04, 0.04, 33)
 """Rates of approach per frame that are tried; to 0.15, as many walls are recovered from (83 of 126,
 and 37 of 105 before moving cameras: laboratory/notes/fusion_tried.md)."""
-_RATE_NEEDS = 8
-"""Sightings below which the size is taken to stay. Where fewer sizes can be believed, all count."""
 _MEMORY = 10.0
 """Frames after which an older position counts for 1 / e: a vehicle changes its speed. All sizes
 that are kept count alike, as the road stays what it is."""
-_POSITION_SIGMA = 0.03
-"""Standard deviation of a sighting's position, of the size."""
-_SIZE_SIGMA = 0.04
-"""Standard deviation of the logarithm of a sighting's size."""
+_POSITION_SIGMA, _SIZE_SIGMA = 0.03, 0.04
+"""Standard deviations of a sighting's position, fraction of the size, and of its log size. With
+positions believed a third as much, or sizes alone, as many walls are recovered (83 of 126 each:
+laboratory/notes/fusion_tried.md)."""
 _RATE_SIGMA = 0.02
-"""Standard deviation of rates of approach, per frame."""
+"""Standard deviation of rates of approach, per frame: half of the largest tried. A prior half as
+wide predicts sizes no better (log error .161 and .162: laboratory/notes/fusion_tried.md)."""
 _LEAST_DIVISOR = 0.25
-"""A vehicle that comes closer passes the camera; it does not grow without bound."""
+"""Least 1 - r t, a bound of growth to fourfold: above that of an occlusion (threefold,
+`hypotheses.LARGEST_GROWTH`). A vehicle that comes closer passes the camera."""
 _LARGEST_CHANGE = 0.7
-"""Largest share of its size, two seconds ago, that a vehicle may have lost."""
+"""Largest share of its size, when the oldest sighting was made, that a vehicle may have lost: so
+1 - r t is above `_LEAST_DIVISOR` for all sightings of a fit."""
+_LAST_WEIGHT = 0.5
+"""Weight of the last position against the fitted one, even as neither is known to be better: the
+fit averages noise, the last one knows of changes of speed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +107,7 @@ class Sighting:
     position, size : (2,) arrays
         Centre, and width and height, px.
     cut : bool
-        True where a standing occluder had cut the vehicle, which was made whole.
+        True where a standing occluder had cut the vehicle; position and size are restored.
     """
 
     age: float
@@ -181,30 +116,37 @@ class Sighting:
     cut: bool = False
 
 
-class Sightings:
-    """The last sightings, carried along with time and with the camera."""
+class Sightings(NamedTuple):
+    """The last sightings, carried along with time and with the camera.
 
-    def __init__(self) -> None:
-        self._rows = np.empty((0, 6))  # age, position, size, response
-        self._camera_stood = math.inf
+    Attributes
+    ----------
+    rows : (N, 6) array
+        Age in frames, position and size in px, and response of each.
+    camera_stood : float
+        Frames since the camera moved last.
+    """
 
-    def add(self, position: Array, size: Array, response: float) -> None:
+    rows: Array = np.empty((0, 6))
+    camera_stood: float = math.inf
+
+    def added(self, position: Array, size: Array, response: float) -> Sightings:
         """Add a sighting of the present frame."""
-        self._rows = np.vstack([self._rows, [0.0, *position, *size, response]])
+        return self._replace(rows=np.vstack([self.rows, [0.0, *position, *size, response]]))
 
-    def pass_time(self, elapsed: float, camera: CameraMotion) -> None:
+    def moved_on(self, elapsed: float, camera: CameraMotion) -> Sightings:
         """Let `elapsed` frames pass and the camera move."""
-        self._rows = self._rows[self._rows[:, 0] < KEPT_FRAMES]
-        self._rows[:, 0] += elapsed
-        self._camera_stood += elapsed
-        if not camera.still:
-            self._camera_stood = 0.0
-            self._rows[:, 1:3] = camera.apply(self._rows[:, 1:3])
+        rows = self.rows[self.rows[:, 0] < KEPT_FRAMES]
+        rows[:, 0] += elapsed
+        if camera.still:
+            return Sightings(rows, self.camera_stood + elapsed)
+        rows[:, 1:3] = camera.apply(rows[:, 1:3])
+        return Sightings(rows, 0.0)
 
     @property
     def are_steady(self) -> bool:
         """True where the camera has stood for as long as sightings are kept."""
-        return self._camera_stood > KEPT_FRAMES
+        return self.camera_stood > KEPT_FRAMES
 
     def fit(self) -> tuple[PerspectiveMotion, Sighting] | None:
         """Fit the motion to clear sightings; also give the last of them, which is at time 0.
@@ -213,18 +155,18 @@ class Sightings:
         last there: of 22 sequences .6 of it is right for 10 frames, and a fifth for 20
         (laboratory/notes/fusion_tried.md).
         """
-        ages, responses = self._rows[:, 0], self._rows[:, 5]
-        positions, sizes = self._rows[:, 1:3], self._rows[:, 3:5]
+        ages, responses = self.rows[:, 0], self.rows[:, 5]
+        positions, sizes = self.rows[:, 1:3], self.rows[:, 3:5]
         clear = responses >= CLEAR_RESPONSE
         if not clear.any():
             return None
-        whole = made_whole(ages, positions, sizes, responses)
+        whole = restored_sightings(ages, positions, sizes, responses)
         positions, sizes = whole or (positions, sizes)
         positions, sizes, ages = positions[clear], sizes[clear], ages[clear]
         last = Sighting(float(ages[-1]), positions[-1], sizes[-1], whole is not None)
         times = last.age - ages
         believed = responses[clear] >= _SIZE_RESPONSE
-        if believed.sum() < _RATE_NEEDS:
+        if believed.sum() < PROOF_FRAMES:
             believed[:] = True
         path = fit_motion(times, positions, np.sqrt(sizes.prod(axis=1)), believed.astype(float))
         return path if self.are_steady else replace(path, rate=0.0), last
@@ -249,10 +191,9 @@ def fit_motion(
     Returns
     -------
     PerspectiveMotion
-        Its position is half way between the fitted and the last one: the fit averages noise, the
-        last one knows of changes of speed.
+        Its position is the mean of the fitted and the last one.
     """
-    rates = _RATES if len(times) >= _RATE_NEEDS else np.zeros(1)
+    rates = _RATES if len(times) >= PROOF_FRAMES else np.zeros(1)
     weights = np.exp(times / _MEMORY)
     total = weights.sum()
     divisors = np.maximum(1.0 - rates[:, np.newaxis] * times, _LEAST_DIVISOR)
@@ -271,4 +212,5 @@ def fit_motion(
     possible = rates * times[0] <= _LARGEST_CHANGE
     best = int(np.argmin(np.where(possible, costs, np.inf)))
     fitted = middle - centres[best] * velocities[best]
-    return PerspectiveMotion(0.5 * (fitted + positions[-1]), velocities[best], float(rates[best]))
+    position = (1 - _LAST_WEIGHT) * fitted + _LAST_WEIGHT * positions[-1]
+    return PerspectiveMotion(position, velocities[best], float(rates[best]))

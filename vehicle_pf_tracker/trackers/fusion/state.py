@@ -93,6 +93,8 @@ class State(NamedTuple):
         True where the prediction's mean is outside the image.
     sets_off : bool
         True in a first step that has measured what moves in the first box.
+    sightings : Sightings
+        Earlier positions and sizes.
     """
 
     particles: Hypotheses
@@ -108,6 +110,7 @@ class State(NamedTuple):
     departure: Departure | None = None
     left_image: bool = False
     sets_off: bool = False
+    sightings: Sightings = Sightings()
 
     @property
     def box(self) -> Box:
@@ -131,7 +134,6 @@ class Memory:
 
     appearance: Appearance = field(init=False)
     camera: CameraFlow = field(default_factory=CameraFlow)
-    sightings: Sightings = field(default_factory=Sightings)
     points: SurfacePoints = field(default_factory=SurfacePoints)
     surface: SurfaceFlow = field(default_factory=SurfaceFlow)
     turning: TurningBranch = field(default_factory=TurningBranch)
@@ -162,15 +164,14 @@ class Step:
         low, high = np.maximum(position - size / 2, 0), position + size / 2
         return float(((np.minimum(high, frame_size(self.frame)) - low) / size).prod())
 
-    @property
-    def hidden_velocity_sigma(self) -> float:
+    def hidden_velocity_sigma(self, sightings: Sightings) -> float:
         """Change of a hidden vehicle's velocity, of the size, per frame squared.
 
         Larger where sightings were carried along with a camera that moved: the background's motion
         is not quite that of the road under the vehicle.
         """
         motion = self.parameters.motion
-        if self.memory.sightings.are_steady:
+        if sightings.are_steady:
             return motion.hidden_velocity_sigma
         return math.hypot(motion.hidden_velocity_sigma, motion.camera_velocity_sigma)
 

@@ -129,7 +129,7 @@ def _judged_whole(state: State, seen: Observation, step: Step) -> State:
         return state._replace(whole=whole)
     growth, measured = state.growth, state.measured
     if state.is_whole:
-        fitted = step.memory.sightings.fit()
+        fitted = state.sightings.fit()
         growth = 0.0 if fitted is None else fitted[0].rate
     if state.is_whole or seen.again:
         measured = state.size
