@@ -51,9 +51,10 @@ def coming_out(time, speed=3.0, size=(12, 14)):
 def run(others=lambda time: [], earlier=(), out=coming_out):
     """Frame in which the vehicle is proven, and what was given; None if it never is."""
     before = [(ago, sides(*boxes)) for ago, boxes in earlier]
-    emergence = Emergence(Sighting(0.0, LAST, SIZE), MOTION, IMAGE, before)
+    emergence = Emergence.begun(Sighting(0.0, LAST, SIZE), MOTION, IMAGE, before)
     for time in range(1, 60):
-        found = emergence.step(sides(*out(time), *others(time)), 1.0)
+        emergence = emergence and emergence.observed(sides(*out(time), *others(time)), 1.0)
+        found = emergence and emergence.proven(1.0)
         if found is not None:
             return time, found
     return None
@@ -88,10 +89,9 @@ def test_what_may_be_another_vehicle_is_not_taken(options):
 
 
 def test_paint_is_judged_over_all_frames():
-    emergence = Emergence(Sighting(0.0, LAST, SIZE), MOTION, IMAGE, [])
-    assert [emergence.has_paint(unlike) for unlike in (1.5, 0.9, 0.5, 0.2)] == [
-        False, False, True, True,
-    ]  # fmt: skip
+    emergence, differences = Emergence(Sighting(0.0, LAST, SIZE), MOTION, IMAGE), (1.5, 0.9, 0.5)
+    alike = [emergence._replace(paint=differences[:count]).has_paint for count in (1, 2, 3)]
+    assert alike == [False, False, True]
 
 
 @pytest.fixture(scope="module")

@@ -26,6 +26,7 @@ from laboratory.scenes import make_scene
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.foreground import Foreground
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion import follow as follow_module
@@ -34,7 +35,6 @@ from vehicle_pf_tracker.trackers.fusion import tracker as tracker_module
 from vehicle_pf_tracker.trackers.fusion.hypotheses import HIDDEN_SCALES
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.state import Memory
-from vehicle_pf_tracker.trackers.fusion.turning import TurningBranch
 
 
 def run(name, seed, **values):
@@ -221,7 +221,7 @@ def test_a_turn_is_learnt_the_faster_the_lower_the_response(parts, monkeypatch):
         follow(tracker, street, range(8))  # later frames may be calm, and learn in turns
         with monkeypatch.context() as patch:
             patch.setattr(parts.appearance, "learn", lambda *values: learnt.append(values[-1]))
-            patch.setattr(TurningBranch, "can_begin", outlines)
+            patch.setattr(Foreground, "is_known", outlines)
             patch.setattr(
                 observe,
                 "likeliest_peak",

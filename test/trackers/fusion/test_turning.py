@@ -22,9 +22,10 @@ from fusion_samples import grey_road
 
 from vehicle_pf_tracker.image.camera_motion import SmallGrey
 from vehicle_pf_tracker.image.canonical_patch import Patch
+from vehicle_pf_tracker.image.foreground import Foreground
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion, Sighting
-from vehicle_pf_tracker.trackers.fusion.turning import TurningBranch
+from vehicle_pf_tracker.trackers.fusion.turning import Turning
 
 SIZE = np.array([26.0, 16.0])
 SPEED = 2.0
@@ -55,18 +56,21 @@ def path(turns):
 
 def drive(turns, paint=lambda picture, time: None, response=0.1, still=lambda time: True):
     """Run the branch from the doubt on; what it gives, frame by frame, and the true centres."""
-    branch, centres, given = TurningBranch(), path(turns), []
+    turning, foreground, centres, given = Turning(), Foreground(), path(turns), []
     for time, centre in enumerate(centres):
         picture = ROAD.copy()
         left, top = np.rint(centre - SIZE / 2).astype(int)
         picture[top : top + 16, left : left + 26] = 230
         paint(picture, time)
-        branch.keep(SmallGrey(picture, 1.0), still=still(time))
+        foreground.keep(SmallGrey(picture, 1.0), still=still(time))
+        if not foreground.is_known:
+            turning = Turning()
         if time > DOUBT:
-            given.append(branch.follow(1.0, view(response), lambda size, position: True))
+            turning = turning.followed(foreground, 1.0, view(response), lambda *_: 1.0)
+            given.append(turning.vehicle)
         elif time == DOUBT:
             motion = PerspectiveMotion(centre, np.array([SPEED, 0.0]), 0.0)
-            branch.begin(motion, Sighting(0.0, centre, SIZE))
+            turning = Turning.begun(foreground, motion, Sighting(0.0, centre, SIZE))
     return given, centres[DOUBT + 1 :]
 
 
@@ -109,10 +113,11 @@ def test_the_turn_is_over_when_the_filter_knows_the_vehicle_again():
 
 
 def test_frames_of_another_size_begin_anew():
-    branch = TurningBranch()
+    foreground = Foreground()
     for time in range(60):
         picture = ROAD if time < 59 else ROAD[:100]
-        assert branch.can_begin is (time > 20)
-        branch.keep(SmallGrey(picture, 1.0), still=True)
-    assert not branch.can_begin
-    assert branch.follow(1.0, view(0.1), lambda size, position: True) is None
+        assert foreground.is_known is (time > 20)
+        foreground.keep(SmallGrey(picture, 1.0), still=True)
+    assert not foreground.is_known
+    motion = PerspectiveMotion(START, np.array([SPEED, 0.0]), 0.0)
+    assert Turning.begun(foreground, motion, Sighting(0.0, START, SIZE)) == Turning()

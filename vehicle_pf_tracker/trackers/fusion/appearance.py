@@ -217,8 +217,8 @@ class Appearance:
         """Measure the paint of a vehicle that is clearly seen whole: occluders have another."""
         self._paint = _paint(frame, position, size)
 
-    def unlike(self, frame: Frame, size: Array, position: Array) -> float:
-        """How far the paint in a box is from the one learnt last: above 1 it is another."""
+    def paint_difference(self, frame: Frame, size: Array, position: Array) -> float:
+        """Measure how far the paint in a box is from the one learnt last: above 1 it is another."""
         lightness, *chroma = (_paint(frame, position, size) - self._paint).tolist()
         return float(max(abs(lightness) / _OTHER_LIGHTNESS, math.hypot(*chroma) / _OTHER_CHROMA))
 

@@ -22,7 +22,6 @@ frame, than anything else did while the vehicle was tracked.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +30,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, KEPT_FRAMES
+from vehicle_pf_tracker.trackers.fusion.standing_occluder import PROOF_FRAMES
 
 TOO_FAR = "too far to see"
 _SMALLEST = 8.0
@@ -38,30 +38,29 @@ _SMALLEST = 8.0
 ones are dots, and what is taken for their return is a pattern of the background in most cases."""
 _SHRUNK = 0.5
 """The same, of the first one: a vehicle that was as small from the beginning has not shrunk."""
-_FRAMES = 8
-"""Frames in a row that prove a return: a quarter of a second, as for other motions of sides."""
 _ENTERS_WITHIN = 1.5
 """Distance from the border at which something that enters is first seen, of the size: its centre
 has to be half a size inside, and moves at less than one per frame."""
-_MOVED = 0.5
-"""Way that proves a return, of the size: the background stands, and the noise of peaks is a tenth
-of that."""
+PROOF_DISTANCE = 0.5
+"""Distance moved within `PROOF_FRAMES` that proves a vehicle, of the size: the background stands,
+and the noise of peaks is a tenth of that."""
 _FARTHEST_STEP = 1.0
-"""Way from one frame to the next within which peaks are of the same vehicle, of the size."""
+"""Distance from one frame to the next within which peaks are of the same vehicle, of the size: no
+vehicle that drives in a lane follows another one more closely than by its own length."""
 _STRANGERS_RATE = 0.005
 """Rate per frame at which the strangers' response is forgotten: the road behind is another one."""
 
 
 class _Candidate(NamedTuple):
-    """A possible return: where it was first seen, where it is now, and for how many frames."""
+    """A possible return: first and latest position, px, and for how many frames it was seen."""
 
     first: Array
     latest: Array
     frames: int
 
 
-class Strangers:
-    """How much the filter answers to what is not the vehicle, measured while it is visible.
+class Strangers(NamedTuple):
+    """Response of the filter to what is not the vehicle, measured while it is visible.
 
     Attributes
     ----------
@@ -69,25 +68,23 @@ class Strangers:
         Highest response elsewhere, relative to the vehicle's usual one.
     """
 
-    def __init__(self) -> None:
-        self.response = 0.0
+    response: float = 0.0
 
     @property
     def level(self) -> float:
         """Response that no stranger has reached, and that is clear in any case."""
         return max(CLEAR_RESPONSE, self.response)
 
-    def measure(self, view: View, position: Array, size: Array) -> None:
+    def measured(self, view: View, position: Array, size: Array) -> Strangers:
         """Take a frame in which the vehicle is at `position`, px."""
         elsewhere = view.response.copy()
         (left, top), (right, bottom) = view.places(np.stack([position - size, position + size]))
         elsewhere[top : bottom + 1, left : right + 1] = 0.0
         faded = self.response * (1 - _STRANGERS_RATE)
-        self.response = max(faded, float(elsewhere.max()))
+        return Strangers(max(faded, float(elsewhere.max())))
 
 
-@dataclass(slots=True, eq=False)
-class Departure:
+class Departure(NamedTuple):
     """Waits for a vehicle that has left, at the size and around the position where it did.
 
     Attributes
@@ -102,6 +99,8 @@ class Departure:
         Response that a return has to reach, relative to the usual one.
     waited : float
         Frames since then.
+    candidate : _Candidate or None
+        What may be the vehicle on its way back.
     """
 
     reason: str
@@ -110,7 +109,7 @@ class Departure:
     size: Array
     response: float
     waited: float = 0.0
-    _candidate: _Candidate | None = None
+    candidate: _Candidate | None = None
 
     @classmethod
     def by_border(
@@ -133,31 +132,43 @@ class Departure:
         direction = heading / max(float(np.hypot(*heading)), 1e-9)
         return cls(TOO_FAR, direction, position, size, strangers.level)
 
-    def returned(self, view: View, elapsed: float = 1.0) -> tuple[Array, Array] | None:
-        """Look for a return in the next frame; position and velocity, px, once it is proven.
+    def observed(self, view: View, elapsed: float = 1.0) -> Departure:
+        """Look for a return in the next frame.
 
         Of one too far to see the heading tells for as long as sightings tell of a motion.
         """
-        self.waited += elapsed
-        if self.reason == TOO_FAR and self.waited > KEPT_FRAMES:
+        waited = self.waited + elapsed
+        is_old = self.reason == TOO_FAR and waited > KEPT_FRAMES
+        return self._replace(waited=waited, candidate=None if is_old else self._found_in(view))
+
+    @property
+    def returned(self) -> tuple[Array, Array] | None:
+        """Position and velocity, px, of a vehicle whose return is proven."""
+        if self.candidate is None:
             return None
+        first, latest, frames = self.candidate
+        moved = latest - first
+        if frames < PROOF_FRAMES or float(moved @ self.way) < PROOF_DISTANCE * self._extent:
+            return None
+        return latest, moved / (frames - 1)
+
+    @property
+    def _extent(self) -> float:
+        return float(np.sqrt(self.size.prod()))
+
+    def _found_in(self, view: View) -> _Candidate | None:
+        """Continue the candidate by the highest peak, or begin another one there."""
         row, column = np.unravel_index(int(view.response.argmax()), view.response.shape)
-        found = view.position(float(column), float(row))
-        before, extent = self._candidate, float(np.sqrt(self.size.prod()))
-        self._candidate = None
+        found, before = view.position(float(column), float(row)), self.candidate
         if float(view.response[row, column]) < self.response:
             return None
-        if before is None or np.linalg.norm(found - before.latest) > _FARTHEST_STEP * extent:
-            # Seen for the first time, it is as near to the border as one that enters.
-            depth = float((found - self.position) @ self.way)
-            if self.reason == TOO_FAR or depth < _ENTERS_WITHIN * extent:
-                self._candidate = _Candidate(found, found, 1)
-            return None
-        self._candidate = candidate = _Candidate(before.first, found, before.frames + 1)
-        moved = found - candidate.first
-        if candidate.frames < _FRAMES or float(moved @ self.way) < _MOVED * extent:
-            return None
-        return found, moved / (candidate.frames - 1)
+        reach = _FARTHEST_STEP * self._extent
+        if before is not None and np.linalg.norm(found - before.latest) <= reach:
+            return _Candidate(before.first, found, before.frames + 1)
+        # Seen for the first time, it is as near to the border as one that enters.
+        depth = float((found - self.position) @ self.way)
+        is_near = self.reason == TOO_FAR or depth < _ENTERS_WITHIN * self._extent
+        return _Candidate(found, found, 1) if is_near else None
 
 
 def is_too_far(size: Array, first: Array) -> bool:

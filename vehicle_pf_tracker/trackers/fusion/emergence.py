@@ -22,26 +22,30 @@ the border then, of the vehicle's size and speed, where it can be, that is the v
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.fusion.departure import PROOF_DISTANCE
 from vehicle_pf_tracker.trackers.fusion.perspective import KEPT_FRAMES, PerspectiveMotion, Sighting
+from vehicle_pf_tracker.trackers.fusion.standing_occluder import PROOF_FRAMES
 
-_FRAMES, _MOVED = 8, 0.5
-"""Frames in a row that prove it, and its way in them, of the size: as for a return."""
 _SPEEDS = 0.4, 1.6
-"""Speed of what comes out, of the vehicle's before: vehicles brake and accelerate while hidden."""
+"""Bounds of the speed of what comes out, of the vehicle's before: it may brake for the turn or
+accelerate out of it, by a factor of 2.5 down and 1.6 up (a turn is not driven into faster)."""
 _LEAST_AREA, _LARGEST_AREA = 0.2, 2.0
-"""Area of its bounding box, of the vehicle's: end on a car has half of what it has from aside."""
+"""Bounds of the area of its bounding box, of the vehicle's. End on, a car has half of the area that
+it has from aside, and twice as much the other way round; a part of it may still be hidden."""
 _LEAST_MOVING = 0.03
-"""The same from which something is seen to move: less flickers."""
+"""Least area of something that moves, of the vehicle's: less flickers, by the noise of the camera.
+A vehicle of 30 px has pieces of 27 px then."""
 
 
-class Emergence:
-    """Watches what moves around a hidden vehicle.
+class Emergence(NamedTuple):
+    """What moves around a hidden vehicle, as long as that is one thing at most.
 
-    Parameters
+    Attributes
     ----------
     last : Sighting
         Where the vehicle was last seen clearly.
@@ -49,84 +53,95 @@ class Emergence:
         Its motion then.
     image_size : (2,) array
         Width and height of the frame, px.
-    earlier : iterable of (float, (N, 2, 2) array)
-        Frames since, and bounding boxes (low, high; px) of what moved then.
-
-    Attributes
-    ----------
-    is_alone : bool
-        True as long as nothing else has moved around; nothing is found any more once it is False.
-    motion : PerspectiveMotion
-        As given.
+    age : float
+        Frames since the vehicle was hidden.
+    sides : tuple of (2, 2) arrays
+        Bounding boxes (low, high; px) of the one that moves, in the last frames.
+    paint : tuple of float
+        Differences of its paint from the vehicle's, in the frames in which it was proven.
     """
 
-    def __init__(
-        self, last: Sighting, motion: PerspectiveMotion, image_size: Array,
+    last: Sighting
+    motion: PerspectiveMotion
+    image_size: Array
+    age: float = 0.0
+    sides: tuple[Array, ...] = ()
+    paint: tuple[float, ...] = ()
+
+    @classmethod
+    def begun(
+        cls, last: Sighting, motion: PerspectiveMotion, image_size: Array,
         earlier: Iterable[tuple[float, Array]],
-    ) -> None:  # fmt: skip
-        self._centre, self._size, self._image_size = last.position, last.size, image_size
-        self._extent = float(np.sqrt(last.size.prod()))
-        self._speed = float(np.hypot(*motion.velocity))
-        self.motion, self._age = motion, 0.0
-        self._sides: list[Array] = []
-        self._unlike: list[float] = []
-        self.is_alone = all(
-            not len(self._near(boxes, last.position - motion.velocity * ago))
+    ) -> Emergence | None:  # fmt: skip
+        """Begin where nothing else has moved around; `earlier` has ages in frames, and boxes."""
+        new = cls(last, motion, image_size)
+        is_alone = all(
+            not len(new._near(boxes, last.position - motion.velocity * ago))
             for ago, boxes in earlier
         )
+        return new if is_alone else None
+
+    @property
+    def _extent(self) -> float:
+        return float(np.sqrt(self.last.size.prod()))
+
+    @property
+    def _speed(self) -> float:
+        return float(np.hypot(*self.motion.velocity))
+
+    def _area(self, sides: Array) -> float:
+        """Area of a bounding box (2, 2), of the vehicle's."""
+        return float((sides[1] - sides[0]).prod() / self._extent**2)
 
     def _near(self, boxes: Array, own: Array | None) -> Array:
         """Choose the boxes within reach that are not at the vehicle's `own` position."""
         middles, areas = boxes.mean(axis=1), (boxes[:, 1] - boxes[:, 0]).prod(axis=1)
         reach = KEPT_FRAMES * self._speed + 2 * self._extent
-        counts = np.linalg.norm(middles - self._centre, axis=1) < reach
+        counts = np.linalg.norm(middles - self.last.position, axis=1) < reach
         counts &= areas > _LEAST_MOVING * self._extent**2
         if own is not None:
-            counts &= (np.abs(middles - own) > self._size).any(axis=1)
+            counts &= (np.abs(middles - own) > self.last.size).any(axis=1)
         return np.asarray(boxes[counts])
 
-    def step(self, boxes: Array, elapsed: float) -> tuple[Array, Array] | None:
-        """Take what moves now; sides (2, 2) and velocity of the vehicle once it is proven."""
-        self._age += elapsed
+    def observed(self, boxes: Array, elapsed: float) -> Emergence | None:
+        """Take what moves now; None once anything else does."""
+        new, extent = self._replace(age=self.age + elapsed), self._extent
         # At first the rest of the vehicle goes in.
-        boxes = self._near(
-            boxes, self._centre if self._speed * self._age < 2 * self._extent else None
-        )
-        areas = (boxes[:, 1] - boxes[:, 0]).prod(axis=1) / self._extent**2
-        self.is_alone &= len(boxes) < 2 and bool((areas < _LARGEST_AREA).all())
-        if not self.is_alone or not len(boxes):
-            self._sides = []
+        is_entering = self._speed * new.age < 2 * extent
+        boxes = self._near(boxes, self.last.position if is_entering else None)
+        if not len(boxes):
+            return new._replace(sides=())
+        if len(boxes) > 1 or self._area(boxes[0]) >= _LARGEST_AREA:
             return None
-        sides = boxes[0]
-        if not self._sides:
-            self.is_alone = self._can_begin(sides)
-        elif np.abs(sides - self._sides[-1]).max() > self._extent:
-            self._sides = []
-        self._sides.append(sides)
-        return self._proven(elapsed) if areas[0] > _LEAST_AREA else None
+        sides, before = boxes[0], self.sides
+        if not before and not new._can_begin(sides):
+            return None
+        if before and np.abs(sides - before[-1]).max() > extent:
+            before = ()
+        return new._replace(sides=(*before, sides))
 
-    def has_paint(self, unlike: float) -> bool:
-        """Take how far its paint is from the vehicle's, from 1 another's; judge all frames so far.
-
-        In a single one the windows of a stranger may look like the vehicle.
-        """
-        self._unlike.append(unlike)
-        return bool(np.mean(self._unlike) < 1)
-
-    def _can_begin(self, sides: Array) -> bool:
-        """Test whether the vehicle can be there already, and nothing enters by the border."""
-        enters = (sides <= 0).any() or (sides >= self._image_size).any()
-        far = np.hypot(*(sides.mean(axis=0) - self._centre))
-        reached = far < _SPEEDS[1] * self._speed * self._age + self._extent
-        return bool(reached and not enters)
-
-    def _proven(self, elapsed: float) -> tuple[Array, Array] | None:
-        sides, frames = self._sides[-1], len(self._sides)
+    def proven(self, elapsed: float) -> tuple[Array, Array] | None:
+        """Sides (2, 2) and velocity of the vehicle, if its size, way and speed prove it."""
+        frames = len(self.sides)
+        if frames < PROOF_FRAMES or self._area(sides := self.sides[-1]) <= _LEAST_AREA:
+            return None
         # The side in front moves all the time, the other one once all has come out.
-        moves = sides - self._sides[0]
+        moves = sides - self.sides[0]
         moved = np.where(np.abs(moves[1]) > np.abs(moves[0]), moves[1], moves[0])
-        if frames < _FRAMES or np.hypot(*moved) < _MOVED * self._extent:
+        if np.hypot(*moved) < PROOF_DISTANCE * self._extent:
             return None
         velocity = moved / max((frames - 1) * elapsed, 1e-3)
         slowest, fastest = np.array(_SPEEDS) * self._speed
         return (sides, velocity) if slowest < np.hypot(*velocity) < fastest else None
+
+    @property
+    def has_paint(self) -> bool:
+        """True if its paint is the vehicle's in the mean; windows of a stranger may look alike."""
+        return bool(np.mean(self.paint) < 1)
+
+    def _can_begin(self, sides: Array) -> bool:
+        """Test whether the vehicle can be there already, and nothing enters by the border."""
+        enters = (sides <= 0).any() or (sides >= self.image_size).any()
+        far = np.hypot(*(sides.mean(axis=0) - self.last.position))
+        reached = far < _SPEEDS[1] * self._speed * self.age + self._extent
+        return bool(reached and not enters)

@@ -29,7 +29,7 @@ from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
-from vehicle_pf_tracker.trackers.fusion.turning import Turned
+from vehicle_pf_tracker.trackers.fusion.turning import Turning
 
 _STRONG = 0.8
 """Probability of visibility from which the size is followed."""
@@ -58,8 +58,8 @@ _LEAST_LEARNT = 0.5
 
 def follow(state: State, seen: Observation, step: Step) -> State:
     """Follow a vehicle that is seen, or the prediction of one that is not."""
-    if state.turned is not None:
-        return _follow_outline(state, state.turned, step)
+    if state.visibility is Visibility.TURNING:
+        return _follow_outline(state, step)
     if state.visibility.is_seen:
         return _follow_sighting(state, seen, step)
     if not seen.again:
@@ -76,7 +76,8 @@ def _entering_occlusion(state: State, step: Step) -> State:
         return state._replace(particles=state.particles.all_visible(DOUBT), measured=state.size)
     path, last = fitted
     if not last.cut:
-        step.memory.turning.begin(path, last)
+        turning = Turning.begun(step.memory.foreground, path, last)
+        state = state._replace(turning=turning)
     size = last.size * path.scale_at(last.age)
     state = state._replace(size=size, measured=size)
     count, sigma = step.parameters.num_particles, step.hidden_velocity_sigma(state.sightings)
@@ -140,8 +141,9 @@ def told_by_points(stretch: Array, share: float, size: Array, options: SizeParam
     return np.asarray(stretch + sure) / 2
 
 
-def _follow_outline(state: State, turned: Turned, step: Step) -> State:
+def _follow_outline(state: State, step: Step) -> State:
     """Take position, size and velocity from the outline of a vehicle that turns."""
+    turned = state.turned
     position, size = step.inside(turned.position), step.bounded(turned.size)
     sightings = state.sightings.added(position, size, 1.0)
     state = state._replace(position=position, size=size, sightings=sightings)
@@ -149,16 +151,20 @@ def _follow_outline(state: State, turned: Turned, step: Step) -> State:
     return state._replace(particles=particles)
 
 
-def learn(state: State, seen: Observation, step: Step) -> None:
+def learn(state: State, seen: Observation, step: Step) -> State:
     """Learn from a vehicle that is seen; keep what the next frame is compared with."""
-    if state.turned is not None:
+    strangers = state.strangers
+    if state.visibility is Visibility.TURNING:
         _learn_turn(state, seen.view, state.turned.position, step)
     elif state.visibility.is_seen:
+        if state.is_whole:
+            strangers = strangers.measured(seen.view, state.position, state.size)
         _learn_sighting(state, seen, step)
     patch = step.memory.appearance.usual_patch(seen.view.patch)
     if Work.SIZE in state.work:
         step.memory.points.keep(patch, state.position)
     step.memory.surface.keep(patch, state.position, state.size)
+    return state._replace(strangers=strangers)
 
 
 def _learn_sighting(state: State, seen: Observation, step: Step) -> None:
@@ -168,13 +174,11 @@ def _learn_sighting(state: State, seen: Observation, step: Step) -> None:
         memory.points.restart()
     if _is_sure(state) and seen.response > CLEAR_RESPONSE:
         memory.surface.learn_usual()
-        if memory.turning.can_begin:  # only then is it asked for
+        if memory.foreground.is_known:  # only then is it asked for
             memory.appearance.learn_paint(step.frame, state.position, state.size)
     if Work.SIZE in state.work:
         memory.points.renew(state.position, state.size, whole=state.is_whole)
     _learn_appearance(state, seen, step)
-    if state.is_whole:
-        memory.strangers.measure(seen.view, state.position, state.size)
     if seen.again:  # what was kept shows an occluder; until now its share bounds the learning
         memory.surface.restart()
 
@@ -196,7 +200,7 @@ def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
     memory, options, response = step.memory, step.parameters.filter, seen.response
     surface, appearance = memory.surface, memory.appearance
     turns = surface.tells and surface.share > _TURNING_SHARE and response < _TURNING_RESPONSE
-    turns &= not memory.turning.can_begin  # outlines tell more of a turn, size included
+    turns &= not memory.foreground.is_known  # outlines tell more of a turn, size included
     if not turns and (response <= _LEAST_LEARNT or not state.is_whole):
         return
     visible = state.particles.probability_visible

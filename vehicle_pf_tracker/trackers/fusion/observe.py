@@ -25,7 +25,6 @@ from vehicle_pf_tracker.image.camera_motion import CameraMotion, small_grey
 from vehicle_pf_tracker.image.correlation_filter import climbed
 from vehicle_pf_tracker.image.window import is_outside
 from vehicle_pf_tracker.trackers.fusion.appearance import View
-from vehicle_pf_tracker.trackers.fusion.departure import Departure
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     ACROSS_LANES,
     DOUBT,
@@ -34,7 +33,8 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     Hypotheses,
 )
 from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, VisibilityParameters
-from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step
+from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility
+from vehicle_pf_tracker.trackers.fusion.turning import Turning
 
 _LARGEST_LOG_RATIO = 6.0
 """Bound of one observation's log ratio: no single frame is believed beyond 400 to 1."""
@@ -64,8 +64,11 @@ def _moved_with_camera(state: State, step: Step) -> State:
     if step.parameters.motion.camera:
         small = small_grey(step.frame)
         camera = memory.camera.measure(small, state.box)
-        memory.turning.keep(small, still=camera.still)
-    state = state._replace(sightings=state.sightings.moved_on(step.elapsed, camera))
+        memory.foreground.keep(small, still=camera.still)
+    state = state._replace(
+        sightings=state.sightings.moved_on(step.elapsed, camera),
+        turning=state.turning if memory.foreground.is_known else Turning(),
+    )
     memory.surface.move_with_camera(camera)
     if camera.still:
         return state
@@ -111,8 +114,8 @@ def _driven(state: State, step: Step) -> State:
 
 def observe(state: State, step: Step) -> tuple[State, Observation]:
     """Weigh the hypotheses by the filter's response, and find its peak at the best of them."""
-    if state.departure is not None:
-        return _observe_return(state, state.departure, step)
+    if state.visibility is Visibility.GONE:
+        return _observe_return(state, step)
     state, view = _weighed(state, step)
     again = not state.visibility.is_seen
     if state.sets_off:
@@ -147,17 +150,17 @@ def _look(state: State, step: Step, scale: float) -> tuple[View, Array, Array]:
     return view, *response_evidence(view, particles.positions, climb, options.visibility)
 
 
-def _observe_return(
-    state: State, departure: Departure, step: Step
-) -> tuple[State, Observation]:  # fmt: skip
+def _observe_return(state: State, step: Step) -> tuple[State, Observation]:
     """Look for a vehicle that has left where it left; it is visible once that is proven."""
-    appearance = step.memory.appearance
+    appearance, departure = step.memory.appearance, state.departure
+    assert departure is not None, "a vehicle that is `GONE` has left"
     patch = appearance.patch(step.frame, departure.position, departure.size, wide=True)
     view = appearance.view(patch)
-    returned = departure.returned(view, step.elapsed)
-    if returned is None:
+    departure = departure.observed(view, step.elapsed)
+    state = state._replace(departure=departure)
+    if departure.returned is None:
         return state, Observation(view, departure.position, 0.0, again=True)
-    position, velocity = returned
+    position, velocity = departure.returned
     particles = gathered(state, step, position, velocity, 1 - DOUBT)
     seen = Observation(view, position, view.at(position), again=True)
     return state._replace(particles=particles), seen

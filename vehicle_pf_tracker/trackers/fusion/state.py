@@ -27,6 +27,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.camera_motion import CameraFlow
+from vehicle_pf_tracker.image.foreground import Foreground
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
 from vehicle_pf_tracker.trackers.fusion.departure import Departure, Strangers
@@ -35,7 +36,7 @@ from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
-from vehicle_pf_tracker.trackers.fusion.turning import Turned, TurningBranch
+from vehicle_pf_tracker.trackers.fusion.turning import Turned, Turning
 
 _LEAST_SIDE, _LARGEST_SHARE = 3.0, 1.5
 """Bounds of the sides: px, and share of the image."""
@@ -85,8 +86,8 @@ class State(NamedTuple):
         Size when it was measured last, before the vehicle was partly or wholly hidden, px.
     growth : float
         Rate at which a partly hidden vehicle grows.
-    turned : Turned or None
-        Outline of a vehicle that turns.
+    turning : Turning
+        Outlines that may be those of a vehicle that turns.
     departure : Departure or None
         How one that is gone has left.
     left_image : bool
@@ -95,6 +96,8 @@ class State(NamedTuple):
         True in a first step that has measured what moves in the first box.
     sightings : Sightings
         Earlier positions and sizes.
+    strangers : Strangers
+        Response to what is not the vehicle.
     """
 
     particles: Hypotheses
@@ -106,11 +109,12 @@ class State(NamedTuple):
     frames: int = 0
     work: Work = Work.BOTH
     growth: float = 0.0
-    turned: Turned | None = None
+    turning: Turning = Turning()
     departure: Departure | None = None
     left_image: bool = False
     sets_off: bool = False
     sightings: Sightings = Sightings()
+    strangers: Strangers = Strangers()
 
     @property
     def box(self) -> Box:
@@ -121,6 +125,13 @@ class State(NamedTuple):
     def extent(self) -> float:
         """Geometric mean of the sides of the box, px."""
         return float(np.sqrt(self.size.prod()))
+
+    @property
+    def turned(self) -> Turned:
+        """Outline of a vehicle that is `TURNING`."""
+        vehicle = self.turning.vehicle
+        assert vehicle is not None, "only a proven turn makes a vehicle `TURNING`"
+        return vehicle
 
     @property
     def is_whole(self) -> bool:
@@ -136,8 +147,7 @@ class Memory:
     camera: CameraFlow = field(default_factory=CameraFlow)
     points: SurfacePoints = field(default_factory=SurfacePoints)
     surface: SurfaceFlow = field(default_factory=SurfaceFlow)
-    turning: TurningBranch = field(default_factory=TurningBranch)
-    strangers: Strangers = field(default_factory=Strangers)
+    foreground: Foreground = field(default_factory=Foreground)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

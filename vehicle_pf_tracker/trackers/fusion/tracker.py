@@ -41,7 +41,7 @@ from vehicle_pf_tracker.trackers.fusion.follow import follow, learn
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import observe, predict
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.state import Memory, State, Step, Visibility
+from vehicle_pf_tracker.trackers.fusion.state import Memory, State, Step
 from vehicle_pf_tracker.trackers.fusion.visibility import judge
 
 __all__ = ["FusionParameters", "FusionTracker"]
@@ -104,24 +104,24 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         state, seen = observe(state, step)
         state = judge(state, seen, step)
         state = follow(state, seen, step)
-        learn(state, seen, step)
+        state = learn(state, seen, step)
         particles = state.particles.resampled(self._rng, self.parameters.num_particles)
         self._state = state._replace(particles=particles)
         return self._outcome(state, seen.response, step)
 
     def _outcome(self, state: State, response: float, step: Step) -> Outcome:
-        particles, gone = state.particles, state.visibility is Visibility.GONE
+        particles, departure = state.particles, state.departure
         (x, y), (vx, vy) = state.position.tolist(), particles.mean_velocity.tolist()
         width, height = state.size.tolist()
         regime = "visible" if state.visibility.is_seen else "occluded"
         return Outcome(
             Cloud(step.inside(particles.positions), particles.weights), (x, y), (vx, vy),
-            regime if state.departure is None else state.departure.reason,
+            regime if departure is None else departure.reason,
             particles.probability_visible,
             {
                 "response": min(max(response, 0.0), 1.0), "points": self._memory.surface.share,
                 "whole": state.whole,
             },
-            left_image=state.left_image or gone,
+            left_image=state.left_image or departure is not None,
             size=(width, height),
         )  # fmt: skip

@@ -26,13 +26,11 @@ One that was hidden as a whole is followed the same way where it comes out besid
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.camera_motion import SmallGrey
 from vehicle_pf_tracker.image.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
@@ -41,9 +39,11 @@ from vehicle_pf_tracker.trackers.fusion.perspective import (
     PerspectiveMotion,
     Sighting,
 )
+from vehicle_pf_tracker.trackers.fusion.standing_occluder import PROOF_FRAMES
 
 _ASIDE = 0.15
-"""Distance of both sides from the predicted path, of the size, that proves a turn."""
+"""Least distance of both sides from the predicted path, of the size, in a turn: an outline is good
+to 1 or 2 px, a tenth of a vehicle of 20 px."""
 _ACROSS = 0.25
 """Velocity to that side, of the speed: that of a heading changed by 15 degrees. What a wall leaves
 of an outline may lie aside, but it does not move there."""
@@ -52,12 +52,13 @@ _CONFIRMED = 2
 _LARGEST_LOG_CHANGE = np.log(1.3)
 """Largest change of a side's logarithm in a frame; a merged outline changes by more."""
 _LEAST_COVERED, _MOST_COVERED = 0.6, 2.0
-"""Area of the outline in the last clear sighting, of the box, between which it is the vehicle's."""
+"""Bounds of the area of the outline in the last clear sighting, of the box. The box holds some
+road, and the outline the shadow; beyond, parts are missing or another vehicle has merged."""
 _FURTHEST = 40.0
-"""Frames after the doubt began within which a turn is proven."""
-_CALM = 8
-"""Clear frames after which the turn is over."""
+"""Frames after the doubt began within which a turn is proven: a turn by 90 degrees takes 20 (scene
+`turn`), and leaves the path in its first half."""
 _VELOCITY_GAIN = 0.3
+"""Share of an outline's displacement that its velocity takes on, as `motion.gain` of the peak's."""
 
 
 class Turned(NamedTuple):
@@ -76,123 +77,155 @@ class Turned(NamedTuple):
     velocity: Array
 
 
-@dataclass(slots=True, eq=False)
-class _Branch:
-    """State since the doubt began."""
+class _Branch(NamedTuple):
+    """An outline, followed since the doubt began.
+
+    Attributes
+    ----------
+    motion : PerspectiveMotion
+        Predicted path.
+    size : (2,) array
+        Width and height of the box when it was seen last, px.
+    margins : pair of (2,) arrays
+        From the box's low and high sides to the outline's, of the size.
+    outline : Outline
+        In the present frame.
+    velocity : (2,) array
+        Of the outline, px per frame.
+    age : float
+        Frames since the doubt began.
+    aside : int
+        Frames in a row that it has been beside the path.
+    is_proven : bool
+        True for a vehicle that turns.
+    clear : int
+        Frames in a row in which the filter has recognised it since.
+    """
 
     motion: PerspectiveMotion
     size: Array
     margins: tuple[Array, Array]
     outline: Outline
     velocity: Array
-    age: float
+    age: float = 0.0
     aside: int = 0
-    proven: bool = False
-    calm: int = 0
+    is_proven: bool = False
+    clear: int = 0
 
-
-Unlike = Callable[[Array, Array], float]
-
-
-class TurningBranch:
-    """Follows outlines while the vehicle is in doubt."""
-
-    def __init__(self) -> None:
-        self._foreground = Foreground()
-        self._branch: _Branch | None = None
-        self._emergence: Emergence | None = None
-
-    @property
-    def can_begin(self) -> bool:
-        """True where outlines can be seen: before a camera that has stood for a while."""
-        return self._foreground.is_known
-
-    def keep(self, small: SmallGrey, *, still: bool) -> None:
-        """Take the next frame; a camera that moves ends the branch."""
-        self._foreground.keep(small, still=still)
-        if not self.can_begin:
-            self._branch = self._emergence = None
-
-    def begin(self, motion: PerspectiveMotion, last: Sighting) -> None:
-        """Begin where the vehicle was last seen clearly, of which `last.age` frames passed."""
-        self._branch = self._emergence = None
-        if self.can_begin:
-            earlier, image_size = self._foreground.history(), self._foreground.extent
-            self._emergence = Emergence(last, motion, image_size, earlier)
+    @classmethod
+    def begun(
+        cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting
+    ) -> _Branch | None:  # fmt: skip
+        """Begin `last.age` frames ago, and follow the outline to the frame before this one."""
         ago = round(last.age)
-        first = self._foreground.outline(last.position, last.size, ago)
+        first = foreground.outline(last.position, last.size, ago)
         if first is None:
-            return
-        covered = float(first.size.prod() / last.size.prod())
-        if not _LEAST_COVERED < covered < _MOST_COVERED:
-            return
+            return None
+        if not _LEAST_COVERED < float(first.size.prod() / last.size.prod()) < _MOST_COVERED:
+            return None
         half = last.size / 2
         margins = (
             (first.low - (last.position - half)) / last.size,
             (first.high - (last.position + half)) / last.size,
         )
-        self._branch = _Branch(motion, last.size, margins, first, motion.velocity, 0.0)
+        branch: _Branch | None = cls(motion, last.size, margins, first, motion.velocity)
         for back in range(ago - 1, -1, -1):
-            self._step(1.0, back)
+            branch = branch and branch.moved(foreground, 1.0, back)
+        return branch
 
-    def follow(self, elapsed: float, view: View, unlike: Unlike) -> Turned | None:
-        """Follow the outline into the present frame; give the vehicle once it is proven to turn.
+    def moved(self, foreground: Foreground, elapsed: float, ago: int = 0) -> _Branch | None:
+        """Follow the outline for `elapsed` frames, into the frame some `ago`; None: it is lost."""
+        before, velocity = self.outline, self.velocity
+        after = foreground.outline(before.centre + velocity * elapsed, before.size, ago)
+        if after is None or np.abs(np.log(after.size / before.size)).max() > _LARGEST_LOG_CHANGE:
+            return None
+        if elapsed:
+            moved = (after.centre - before.centre) / elapsed
+            velocity = velocity + _VELOCITY_GAIN * (moved - velocity)
+        return self._replace(outline=after, velocity=velocity, age=self.age + elapsed)
+
+    def judged(self, view: View) -> _Branch:
+        """Judge whether the outline has left the path, and the filter recognises the vehicle."""
+        position, size = self.box
+        aside = self.aside + 1 if _leaves(self, position, size) else 0
+        is_proven = self.is_proven or aside >= _CONFIRMED
+        is_clear = is_proven and view.at(position) > CLEAR_RESPONSE
+        clear = self.clear + 1 if is_clear else 0
+        return self._replace(aside=aside, is_proven=is_proven, clear=clear)
+
+    @property
+    def is_over(self) -> bool:
+        """True once the filter has recognised the vehicle for long, or nothing was proven."""
+        return self.clear > PROOF_FRAMES or (not self.is_proven and self.age > _FURTHEST)
+
+    @property
+    def box(self) -> tuple[Array, Array]:
+        """Centre and size, px, of the box that the outline belongs to."""
+        size = self.outline.size / (1 + self.margins[1] - self.margins[0])
+        return self.outline.low - self.margins[0] * size + size / 2, size
+
+
+PaintDifference = Callable[[Array, Array], float]
+
+
+class Turning(NamedTuple):
+    """Outlines of a vehicle in doubt: beside its path, or coming out there."""
+
+    branch: _Branch | None = None
+    emergence: Emergence | None = None
+
+    @classmethod
+    def begun(cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting) -> Turning:
+        """Begin where the vehicle was last seen clearly, of which `last.age` frames passed."""
+        if not foreground.is_known:
+            return cls()
+        earlier, image_size = foreground.history(), foreground.extent
+        emergence = Emergence.begun(last, motion, image_size, earlier)
+        return cls(_Branch.begun(foreground, motion, last), emergence)
+
+    def followed(
+        self, foreground: Foreground, elapsed: float, view: View, difference: PaintDifference
+    ) -> Turning:  # fmt: skip
+        """Follow the outline into the present frame.
 
         Parameters
         ----------
         view : View
-            Tells when the filter has long recognised the vehicle again, which ends the branch.
-        unlike : callable
+            Shows whether the filter recognises the vehicle again, which ends the branch.
+        difference : callable
             Difference of the paint in a box of a size and position, px, from the vehicle's.
         """
-        self._step(elapsed, 0)
-        emerged = self._emerged(elapsed, unlike)
-        branch = self._branch = self._branch or emerged
+        branch = self.branch and self.branch.moved(foreground, elapsed)
+        emergence, emerged = self._emerged(foreground, elapsed, difference)
+        branch = branch or emerged
         if branch is None:
-            return None
-        position, size = _box(branch.outline, branch.margins)
-        branch.aside = branch.aside + 1 if _leaves(branch, position, size) else 0
-        branch.proven |= branch.aside >= _CONFIRMED
-        if branch.proven:
-            self._emergence = None
-            branch.calm = branch.calm + 1 if view.at(position) > CLEAR_RESPONSE else 0
-        if branch.calm > _CALM or (not branch.proven and branch.age > _FURTHEST):
-            self._branch = None
-            return None
-        return Turned(position, size, branch.velocity) if branch.proven else None
+            return Turning(None, emergence)
+        branch = branch.judged(view)
+        return Turning(None if branch.is_over else branch, None if branch.is_proven else emergence)
 
-    def _emerged(self, elapsed: float, unlike: Unlike) -> _Branch | None:
+    @property
+    def vehicle(self) -> Turned | None:
+        """The vehicle, once it is proven to turn."""
+        branch = self.branch
+        if branch is None or not branch.is_proven:
+            return None
+        return Turned(*branch.box, branch.velocity)
+
+    def _emerged(
+        self, foreground: Foreground, elapsed: float, difference: PaintDifference
+    ) -> tuple[Emergence | None, _Branch | None]:
         """Find a vehicle that has come out beside its path."""
-        emergence = self._emergence
-        if emergence is None or not emergence.is_alone:
-            return None
-        found = emergence.step(self._foreground.boxes(), elapsed)
-        if found is None:
-            return None
+        emergence = self.emergence and self.emergence.observed(foreground.boxes(), elapsed)
+        found = emergence and emergence.proven(elapsed)
+        if emergence is None or found is None:
+            return emergence, None
         outline, velocity, margins = Outline(*found[0]), found[1], (np.zeros(2), np.zeros(2))
-        if not emergence.has_paint(unlike(outline.size, outline.centre)):
-            return None
-        return _Branch(emergence.motion, outline.size, margins, outline, velocity, 0.0, proven=True)
-
-    def end(self) -> None:
-        """End the branch: the vehicle was found another way."""
-        self._branch = self._emergence = None
-
-    def _step(self, elapsed: float, ago: int) -> None:
-        branch = self._branch
-        if branch is None:
-            return
-        before = branch.outline
-        branch.age += elapsed
-        centre = before.centre + branch.velocity * elapsed
-        after = self._foreground.outline(centre, before.size, ago)
-        if after is None or np.abs(np.log(after.size / before.size)).max() > _LARGEST_LOG_CHANGE:
-            self._branch = None
-            return
-        if elapsed:
-            moved = (after.centre - before.centre) / elapsed
-            branch.velocity = branch.velocity + _VELOCITY_GAIN * (moved - branch.velocity)
-        branch.outline = after
+        paint = difference(outline.size, outline.centre)
+        emergence = emergence._replace(paint=(*emergence.paint, paint))
+        if not emergence.has_paint:
+            return emergence, None
+        branch = _Branch(emergence.motion, outline.size, margins, outline, velocity, is_proven=True)
+        return emergence, branch
 
 
 def _leaves(branch: _Branch, position: Array, size: Array) -> bool:
@@ -207,9 +240,3 @@ def _leaves(branch: _Branch, position: Array, size: Array) -> bool:
     wider = float(np.abs(normal) @ (size - predicted)) / 2
     aside = (abs(off) - abs(wider)) / float(np.sqrt(predicted.prod()))
     return aside > _ASIDE and float(branch.velocity @ normal) * np.sign(off) > _ACROSS * speed
-
-
-def _box(outline: Outline, margins: tuple[Array, Array]) -> tuple[Array, Array]:
-    """Centre and size of the box that an outline belongs to."""
-    size = outline.size / (1 + margins[1] - margins[0])
-    return outline.low - margins[0] * size + size / 2, size

@@ -30,6 +30,7 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import chain
 from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
+from vehicle_pf_tracker.trackers.fusion.turning import Turning
 
 _LARGEST_PARTIAL_LOG_RATIO = 3.0
 """Bound of a frame's log ratio of whole against partial, 20 to 1: errors of flow last over
@@ -52,21 +53,19 @@ def judge(state: State, seen: Observation, step: Step) -> State:
     if not seen.again:
         state = _witnessed(state, seen, step)
     visible = state.particles.probability_visible > 0.5
-    turning = step.memory.turning
-    unlike = functools.partial(step.memory.appearance.unlike, step.frame)
-    departure, turned = _departure(state, step, visible=visible), None
-    if departure is not None:
-        visibility = Visibility.GONE
-    elif (turned := turning.follow(step.elapsed, seen.view, unlike)) is not None:
-        visibility = Visibility.TURNING
-    elif not visible:
-        visibility = Visibility.HIDDEN
-    else:
-        state = _judged_whole(state, seen, step)
-        visibility = Visibility.VISIBLE if state.is_whole else Visibility.PARTLY_HIDDEN
-    if departure is not None or (turned is None and visible):
-        turning.end()
-    return state._replace(visibility=visibility, departure=departure, turned=turned)
+    state = state._replace(departure=_departure(state, step, visible=visible))
+    if state.departure is not None:
+        return state._replace(visibility=Visibility.GONE, turning=Turning())
+    difference = functools.partial(step.memory.appearance.paint_difference, step.frame)
+    foreground = step.memory.foreground
+    turning = state.turning.followed(foreground, step.elapsed, seen.view, difference)
+    if turning.vehicle is not None:
+        return state._replace(visibility=Visibility.TURNING, turning=turning)
+    if not visible:
+        return state._replace(visibility=Visibility.HIDDEN, turning=turning)
+    state = _judged_whole(state, seen, step)
+    visibility = Visibility.VISIBLE if state.is_whole else Visibility.PARTLY_HIDDEN
+    return state._replace(visibility=visibility, turning=Turning())
 
 
 def _work(state: State, response: float, surface: SurfaceFlow) -> Work:
@@ -106,7 +105,7 @@ def _departure(state: State, step: Step, *, visible: bool) -> Departure | None:
         return None if visible else state.departure
     if state.visibility is not Visibility.HIDDEN:
         return None
-    position, strangers = step.inside(state.particles.mean), step.memory.strangers
+    position, strangers = step.inside(state.particles.mean), state.strangers
     if state.left_image and not visible:
         return Departure.by_border(step.frame, position, state.size, strangers)
     if is_too_far(state.size, step.memory.appearance.first_size):
