@@ -31,10 +31,11 @@ from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion import follow as follow_module
 from vehicle_pf_tracker.trackers.fusion import observe, visibility
-from vehicle_pf_tracker.trackers.fusion import tracker as tracker_module
+from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion.hypotheses import HIDDEN_SCALES
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.state import Memory
+from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
+from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 
 
 def run(name, seed, **values):
@@ -186,24 +187,6 @@ def test_a_turn_before_a_moving_camera_is_followed():
     assert followed >= 4
 
 
-class Latest:
-    """The memory of the tracker that is started last."""
-
-    def make(self):
-        self.memory = Memory()
-        return self.memory
-
-    def __getattr__(self, name):
-        return getattr(self.memory, name)
-
-
-@pytest.fixture
-def parts(monkeypatch):
-    latest = Latest()
-    monkeypatch.setattr(tracker_module, "Memory", latest.make)
-    return latest
-
-
 def change(tracker, **values):
     """Replace parts of the tracker's state."""
     tracker._state = tracker._state._replace(**values)
@@ -213,37 +196,39 @@ def extent(estimate):
     return math.sqrt(estimate.box.width * estimate.box.height)
 
 
-def test_a_turn_is_learnt_the_faster_the_lower_the_response(parts, monkeypatch):
-    def stiffness(response, share, *, tells=True, outlines=False, whole=1.0):
+def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
+    def stiffness(response, share, *, reliable=True, outlines=False, whole=1.0):
         """That of the next frame, and of none where nothing is learnt."""
         tracker, learnt = fusion(**{"filter.stiffness": 5.0}), []
         street = Street(speed=2.0)
-        follow(tracker, street, range(8))  # later frames may be calm, and learn in turns
+        follow(tracker, street, range(8))  # later frames may be undisturbed, and learn in turns
         with monkeypatch.context() as patch:
-            patch.setattr(parts.appearance, "learn", lambda *values: learnt.append(values[-1]))
+            patch.setattr(Appearance, "learn", lambda *values: learnt.append(values[-1]))
             patch.setattr(Foreground, "is_known", outlines)
             patch.setattr(
                 observe,
                 "likeliest_peak",
                 lambda view, particles, extent: (particles.mean, response),
             )
-            patch.setattr(parts.surface, "judge", lambda *_: None)
+            patch.setattr(SurfaceFlow, "judged", lambda *_: surface)
             patch.setattr(visibility, "wholeness", lambda *_: whole)
-            parts.surface.share, parts.surface.tells = share, tells
+            patch.setattr(visibility, "points_evidence", lambda *_: 0.0)
+            surface = tracker._state.surface._replace(share=share, is_reliable=reliable)
+            change(tracker, surface=surface)
             tracker.step(street.frame(8))
         return learnt
 
     for response, share, expected in ((0.9, 1.0, 5.0), (0.4, 0.95, 2.0), (0.1, 0.95, 1.0)):
         assert stiffness(response, share) == [pytest.approx(expected, rel=0.02)]
     assert stiffness(0.4, 0.8) == []
-    assert stiffness(0.4, 0.95, tells=False) == []
+    assert stiffness(0.4, 0.95, reliable=False) == []
     assert stiffness(0.4, 0.95, outlines=True) == []
     assert stiffness(0.9, 1.0, whole=0.4) == []
     assert stiffness(0.4, 0.95, whole=0.4) == [pytest.approx(0.4 * 5.0, rel=0.02)]
 
 
 def test_of_a_vehicle_that_is_partly_hidden_nothing_is_learnt_and_its_size_is_predicted(
-    parts, monkeypatch
+    monkeypatch,
 ):
     """It grows on at the rate that the sightings before tell."""
     street, tracker = Street(speed=2.0), fusion()
@@ -252,16 +237,17 @@ def test_of_a_vehicle_that_is_partly_hidden_nothing_is_learnt_and_its_size_is_pr
         size = np.array([24.0, 16.0]) / (1 + 0.01 * ago)
         sightings = tracker._state.sightings.added(np.array([32.0 - 2.0 * ago, 58.0]), size, 1.0)
         change(tracker, sightings=sightings.moved_on(1.0, CameraMotion()))
-    monkeypatch.setattr(parts.surface, "judge", lambda *_: parts.surface.share)
-    parts.surface.share = 0.5
+    half = tracker._state.surface._replace(share=0.5, is_reliable=True)
+    monkeypatch.setattr(SurfaceFlow, "judged", lambda *_: half)
     while (estimate := tracker.step(street.frame(1))).similarities["whole"] > 0.5:
         pass  # the first frames may still count as whole
-    done, size = counted(parts, monkeypatch), extent(estimate)
-    usual = parts.appearance.usual_response
+    done, size = counted(monkeypatch), extent(estimate)
+    appearance = tracker._memory.appearance
+    usual = appearance.usual_response
     estimate = tracker.step(street.frame(1), 2.0)
     assert estimate.mode is Mode.TRACKING
-    assert done == ["track", "judge"]
-    assert parts.appearance.usual_response == usual
+    assert done == ["tracked", "judged"]
+    assert appearance.usual_response == usual
     rate = math.log(extent(estimate) / size) / 2
     assert 0.003 < rate < 0.0126  # the first sighting of its own has not grown
     again = extent(tracker.step(street.frame(1)))
@@ -316,7 +302,7 @@ def test_a_pan_is_noticed_as_a_camera_that_moves():
     assert not tracker._state.sightings.are_steady
 
 
-def counted(parts, monkeypatch):
+def counted(monkeypatch):
     """Names of the costly tasks, in the order in which the tracker does them."""
     done = []
 
@@ -329,31 +315,31 @@ def counted(parts, monkeypatch):
 
         monkeypatch.setattr(owner, name, noted)
 
-    note(parts.points, "track")
-    note(parts.surface, "judge")
+    note(SurfacePoints, "tracked")
+    note(SurfaceFlow, "judged")
     note(follow_module, "searched_size")
-    note(parts.appearance, "learn")
+    note(Appearance, "learn")
     return done
 
 
-def test_calm_frames_share_the_work(parts, monkeypatch):
+def test_undisturbed_frames_share_the_work(monkeypatch):
     street, tracker = Street(speed=2.0), fusion()
     follow(tracker, street, range(20))
-    done = counted(parts, monkeypatch)
+    done = counted(monkeypatch)
     for time in range(20, 24):
         tracker.step(street.frame(time))
-    first, second = ["track", "searched_size"], ["judge", "learn"]
+    first, second = ["tracked", "searched_size"], ["judged", "learn"]
     assert done in ([*first, *second] * 2, [*second, *first] * 2)
 
 
-def test_before_ten_frames_and_in_doubt_all_of_the_work_is_done_in_each(parts, monkeypatch):
+def test_before_ten_frames_and_in_doubt_all_of_the_work_is_done_in_each(monkeypatch):
     street, tracker = Street(speed=2.0, hidden=(20, 30)), fusion()
     follow(tracker, street, range(5))
-    done = counted(parts, monkeypatch)
+    done = counted(monkeypatch)
     tracker.step(street.frame(5))
-    assert done == ["track", "judge", "searched_size", "learn"]
+    assert done == ["tracked", "judged", "searched_size", "learn"]
     for time in range(6, 20):
         tracker.step(street.frame(time))
     done.clear()
     tracker.step(street.frame(20))
-    assert done == ["track", "judge"]
+    assert done == ["tracked", "judged"]

@@ -63,14 +63,14 @@ class Drive:
         return cut_patch(picture, self.centre, 40.0 / SIZE, 128)
 
     def _keep(self, patch):
-        self.flow.keep(patch, self.centre, SIZE)
+        self.flow = self.flow.kept(patch, self.centre, SIZE)
 
     def step(self, occlude=None):
         self.time += 1
         patch = self._patch(occlude)
-        share = self.flow.judge(patch, self.centre, SIZE)
+        self.flow = self.flow.judged(patch, self.centre, SIZE)
         self._keep(patch)
-        return share
+        return self.flow.share
 
     def drive(self, frames, occlude=None):
         return [self.step(occlude) for _ in range(frames)][-1]
@@ -141,10 +141,9 @@ def panned_share(textures, *, told):
             wall(90, textures=textures)(picture, time)
         patch = cut_patch(np.roll(picture, -3 * time, axis=1), START, 40.0 / SIZE, 128)
         if told:
-            flow.move_with_camera(CameraMotion(shift=np.array([-3.0, 0.0])))
-        share = flow.judge(patch, START, SIZE)
-        flow.keep(patch, START, SIZE)
-    return share
+            flow = flow.moved(CameraMotion(shift=np.array([-3.0, 0.0])))
+        flow = flow.judged(patch, START, SIZE).kept(patch, START, SIZE)
+    return flow.share
 
 
 def test_a_wall_stands_in_the_scene_and_not_in_the_image():
@@ -155,23 +154,24 @@ def test_a_wall_stands_in_the_scene_and_not_in_the_image():
 def test_without_an_earlier_patch_flow_tells_nothing():
     flow = SurfaceFlow()
     patch = cut_patch(USUAL.road, START, 40.0 / SIZE, 128)
-    assert flow.judge(patch, START, SIZE) is None
+    flow = flow.judged(patch, START, SIZE)
+    assert not flow.is_reliable
     assert flow.share == 1.0
 
 
 def test_where_little_usually_moves_with_it_flow_tells_nothing():
     drive = Drive()
-    shares = [drive.step(wall(0)) for _ in range(12)]
-    assert shares[-1] is None
-    assert drive.flow.share == 1.0
+    assert drive.drive(12, wall(0)) == 1.0
+    assert not drive.flow.is_reliable
 
 
 def test_restarting_forgets_patches_but_not_the_usual_share():
     drive = Drive()
     drive.drive(30, wall(140))
-    drive.flow.restart()
+    drive.flow = drive.flow.restarted()
     assert drive.flow.share == 1.0
-    assert drive.step() is None
+    drive.step()
+    assert not drive.flow.is_reliable
     assert drive.step() == pytest.approx(1.0, abs=0.1)
 
 
@@ -180,4 +180,4 @@ def test_the_middle_of_a_wide_patch_will_do(side):
     drive = Drive()
     drive.drive(10)
     patch = cut_patch(picture_of(drive.centre), drive.centre, 40.0 / SIZE, side).middle(128)
-    assert drive.flow.judge(patch, drive.centre, SIZE) > 0.8
+    assert drive.flow.judged(patch, drive.centre, SIZE).share > 0.8

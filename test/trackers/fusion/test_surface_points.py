@@ -61,8 +61,8 @@ class Drive:
     def __init__(self, speed=2.0, growth=(0.0, 0.0)):
         self.points, self.time = SurfacePoints(), 0
         self.speed, self.growth = np.array([speed, 0.5 * speed]), np.array(growth)
-        self.points.keep(patch_of(frame(START), START), START)
-        self.points.renew(START, SIZE)
+        self.points = self.points.kept(patch_of(frame(START), START), START)
+        self.points = self.points.renewed(START, SIZE)
 
     @property
     def centre(self):
@@ -84,10 +84,10 @@ class Drive:
             occlude(picture, self.centre)
         patch = patch_of(picture, self.centre, SIZE * self.scale)
         size = SIZE * self.scale
-        self.points.track(patch, self.centre, size)
+        self.points = self.points.tracked(patch, self.centre, size)
         living = share_living(self.points)
-        self.points.renew(self.centre, size, whole=whole)
-        self.points.keep(patch, self.centre)
+        self.points = self.points.renewed(self.centre, size, whole=whole)
+        self.points = self.points.kept(patch, self.centre)
         return living
 
 
@@ -143,10 +143,10 @@ def test_points_of_a_turning_vehicle_survive():
         picture = cv2.warpAffine(ROAD, matrix, ROAD.shape[1::-1])
         patch = patch_of(picture, position)
         if frames:
-            points.track(patch, position, SIZE)
+            points = points.tracked(patch, position, SIZE)
             assert share_living(points) > 0.6
-        points.renew(position, SIZE)
-        points.keep(patch, position)
+        points = points.renewed(position, SIZE)
+        points = points.kept(patch, position)
 
 
 def test_what_stays_behind_with_a_standing_part_ends():
@@ -157,8 +157,10 @@ def test_what_stays_behind_with_a_standing_part_ends():
     patch = patch_of(frame(drive.centre), drive.centre)
     for number in range(1, 3):
         ahead = drive.centre + np.array([8.0 * number, 0.0])
-        drive.points.keep(patch, ahead)  # so that the search starts where the points are
-        drive.points.track(patch, ahead, SIZE)
+        drive.points = drive.points.kept(
+            patch, ahead
+        )  # so that the search starts where the points are
+        drive.points = drive.points.tracked(patch, ahead, SIZE)
     assert share_living(drive.points) < 0.1
 
 
@@ -175,12 +177,12 @@ def test_the_stretch_of_a_zoomed_texture_is_its_growth(growth):
 def test_a_flat_vehicle_tells_nothing():
     flat = np.full((240, 320, 3), 90, np.uint8)
     points = SurfacePoints()
-    points.keep(patch_of(flat, START), START)
-    points.renew(START, SIZE)
+    points = points.kept(patch_of(flat, START), START)
+    points = points.renewed(START, SIZE)
     for _ in range(8):
         noise = np.random.default_rng(0).integers(0, 256, flat.shape).astype(np.uint8)
-        points.track(patch_of(noise, START), START, SIZE)
-        points.keep(patch_of(noise, START), START)
+        points = points.tracked(patch_of(noise, START), START, SIZE)
+        points = points.kept(patch_of(noise, START), START)
     assert share_living(points) < 0.3
     assert points.stretch.tolist() == [0.0, 0.0]
 
@@ -205,16 +207,16 @@ def test_points_that_are_all_lost_are_replaced_in_time():
 def test_restarting_discards_all_points():
     drive = Drive(growth=(0.01, 0.01))
     drive.drive(12)
-    drive.points.restart()
+    drive.points = drive.points.restarted()
     assert drive.points.points is None
     assert drive.points.stretch.tolist() == [0.0, 0.0]
-    drive.points.renew(drive.centre, SIZE)
+    drive.points = drive.points.renewed(drive.centre, SIZE)
     assert share_living(drive.points) == 1
 
 
 def first_motion(before, after, size=SIZE):
     points = SurfacePoints()
-    points.keep(patch_of(before, START, size), START)
+    points = points.kept(patch_of(before, START, size), START)
     return points.first_motion(patch_of(after, START, size), size)
 
 

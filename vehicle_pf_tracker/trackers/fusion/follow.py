@@ -22,6 +22,7 @@ from functools import partial
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.trackers.fusion.appearance import View, searched_size
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, hidden_hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
@@ -29,6 +30,7 @@ from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
+from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 from vehicle_pf_tracker.trackers.fusion.turning import Turning
 
 _STRONG = 0.8
@@ -117,11 +119,10 @@ def _centred(state: State, seen: Observation, step: Step) -> State:
 
 def _sized(state: State, step: Step, *, again: bool) -> State:
     """Follow the size by the spread of points on the vehicle, and by the filter's response."""
-    options, memory, size = step.parameters.size, step.memory, state.size
-
-    peak = partial(memory.appearance.response_at, step.frame, state.position)
+    options, size = step.parameters.size, state.size
+    peak = partial(step.memory.appearance.response_at, step.frame, state.position)
     if not again and options.step:
-        told = told_by_points(memory.points.stretch, memory.surface.share, size, options)
+        told = told_by_points(state.points.stretch, state.surface.share, size, options)
         size = size * np.exp(told)
     size = searched_size(size, state.frames // 2, peak, options)
     return state._replace(size=step.bounded(size))
@@ -153,44 +154,44 @@ def _follow_outline(state: State, step: Step) -> State:
 
 def learn(state: State, seen: Observation, step: Step) -> State:
     """Learn from a vehicle that is seen; keep what the next frame is compared with."""
-    strangers = state.strangers
+    surface, strangers, memory = state.surface, state.strangers, step.memory
     if state.visibility is Visibility.TURNING:
-        _learn_turn(state, seen.view, state.turned.position, step)
+        _learn_turn(state, seen.view, step)
     elif state.visibility.is_seen:
+        _learn_appearance(state, seen, step)
+        if _is_sure(state) and seen.response > CLEAR_RESPONSE:
+            surface = surface.learnt_usual()
+            if memory.foreground.is_known:  # only then is it asked for
+                memory.appearance.learn_paint(step.frame, state.position, state.size)
         if state.is_whole:
             strangers = strangers.measured(seen.view, state.position, state.size)
-        _learn_sighting(state, seen, step)
-    patch = step.memory.appearance.usual_patch(seen.view.patch)
-    if Work.SIZE in state.work:
-        step.memory.points.keep(patch, state.position)
-    step.memory.surface.keep(patch, state.position, state.size)
-    return state._replace(strangers=strangers)
+        if seen.again:  # what was kept shows an occluder
+            surface = surface.restarted()
+    patch = memory.appearance.usual_patch(seen.view.patch)
+    return state._replace(
+        points=_renewed_points(state, seen, patch),
+        surface=surface.kept(patch, state.position, state.size),
+        strangers=strangers,
+    )
 
 
-def _learn_sighting(state: State, seen: Observation, step: Step) -> None:
-    """Learn the usual values, new points, and what the vehicle and strangers look like."""
-    memory = step.memory
-    if seen.again:
-        memory.points.restart()
-    if _is_sure(state) and seen.response > CLEAR_RESPONSE:
-        memory.surface.learn_usual()
-        if memory.foreground.is_known:  # only then is it asked for
-            memory.appearance.learn_paint(step.frame, state.position, state.size)
-    if Work.SIZE in state.work:
-        memory.points.renew(state.position, state.size, whole=state.is_whole)
-    _learn_appearance(state, seen, step)
-    if seen.again:  # what was kept shows an occluder; until now its share bounds the learning
-        memory.surface.restart()
+def _renewed_points(state: State, seen: Observation, patch: Patch) -> SurfacePoints:
+    """Place new points on a vehicle that is visible, and keep the patch if points are tracked."""
+    points, turns = state.points, state.visibility is Visibility.TURNING
+    visible, tracked = state.visibility.is_seen, Work.SIZE in state.work
+    if turns or (visible and seen.again):
+        points = points.restarted()
+    if turns or (visible and tracked):
+        points = points.renewed(state.position, state.size, whole=turns or state.is_whole)
+    return points.kept(patch, state.position) if tracked else points
 
 
-def _learn_turn(state: State, view: View, position: Array, step: Step) -> None:
+def _learn_turn(state: State, view: View, step: Step) -> None:
     """Learn fast what a vehicle that turns looks like now."""
-    appearance, points = step.memory.appearance, step.memory.points
-    points.restart()
-    points.renew(state.position, state.size)
-    response = min(max(view.at(position), _LEAST_LEVEL), 1.0)
+    appearance = step.memory.appearance
+    response = min(max(view.at(state.turned.position), _LEAST_LEVEL), 1.0)
     appearance.learn_usual(response, _TURNING_LEVEL_RATE)
-    # Without a spectrum the cells are measured again, at the size that the outline tells.
+    # Without a spectrum the cells are measured again, at the size of the outline.
     bare = replace(view, spectrum=None)
     appearance.learn(step.frame, bare, state.position, state.size, _TURNING_STIFFNESS)
 
@@ -198,8 +199,8 @@ def _learn_turn(state: State, view: View, position: Array, step: Step) -> None:
 def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
     """Train the filter on a whole or turning vehicle, the less the less surely it shows."""
     memory, options, response = step.memory, step.parameters.filter, seen.response
-    surface, appearance = memory.surface, memory.appearance
-    turns = surface.tells and surface.share > _TURNING_SHARE and response < _TURNING_RESPONSE
+    surface, appearance = state.surface, memory.appearance
+    turns = surface.is_reliable and surface.share > _TURNING_SHARE and response < _TURNING_RESPONSE
     turns &= not memory.foreground.is_known  # outlines tell more of a turn, size included
     if not turns and (response <= _LEAST_LEARNT or not state.is_whole):
         return

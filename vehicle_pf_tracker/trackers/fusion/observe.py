@@ -67,9 +67,9 @@ def _moved_with_camera(state: State, step: Step) -> State:
         memory.foreground.keep(small, still=camera.still)
     state = state._replace(
         sightings=state.sightings.moved_on(step.elapsed, camera),
+        surface=state.surface.moved(camera),
         turning=state.turning if memory.foreground.is_known else Turning(),
     )
-    memory.surface.move_with_camera(camera)
     if camera.still:
         return state
     position, particles = camera.apply(state.position), state.particles.moved(camera)
@@ -79,7 +79,7 @@ def _moved_with_camera(state: State, step: Step) -> State:
 def _set_off(state: State, step: Step) -> State:
     """Give the hypotheses the velocity of what moves in the first box, if anything does."""
     patch = step.memory.appearance.patch(step.frame, state.position, state.size)
-    move = step.memory.points.first_motion(patch, state.size)
+    move = state.points.first_motion(patch, state.size)
     if move is None:
         return state
     particles, share = state.particles, _MEASURED_SPREAD

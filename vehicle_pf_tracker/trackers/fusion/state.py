@@ -96,6 +96,10 @@ class State(NamedTuple):
         True in a first step that has measured what moves in the first box.
     sightings : Sightings
         Earlier positions and sizes.
+    points : SurfacePoints
+        Points on the vehicle.
+    surface : SurfaceFlow
+        Share of the surface that moves with the vehicle.
     strangers : Strangers
         Response to what is not the vehicle.
     """
@@ -114,6 +118,8 @@ class State(NamedTuple):
     left_image: bool = False
     sets_off: bool = False
     sightings: Sightings = Sightings()
+    points: SurfacePoints = SurfacePoints()
+    surface: SurfaceFlow = SurfaceFlow()
     strangers: Strangers = Strangers()
 
     @property
@@ -139,14 +145,16 @@ class State(NamedTuple):
         return self.whole > 0.5
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Memory:
-    """Appearance, motion and surroundings learnt so far; it changes in place."""
+    """Appearance of the vehicle, and earlier frames; each changes in place.
 
-    appearance: Appearance = field(init=False)
+    `predict` adds the present frame to those of `camera` and `foreground`. `learn` trains
+    `appearance`; its usual response is set by the first view, which everything is relative to.
+    """
+
+    appearance: Appearance
     camera: CameraFlow = field(default_factory=CameraFlow)
-    points: SurfacePoints = field(default_factory=SurfacePoints)
-    surface: SurfaceFlow = field(default_factory=SurfaceFlow)
     foreground: Foreground = field(default_factory=Foreground)
 
 

@@ -22,8 +22,7 @@ the filter's response, but still moves with the vehicle.
 from __future__ import annotations
 
 import math
-from collections import deque
-from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -55,48 +54,53 @@ _LEAST_KEPT = 3
 """Patches from which a share counts as usual."""
 
 
-@dataclass(slots=True, eq=False)
-class _Kept:
+class _Kept(NamedTuple):
     """An earlier patch, the vehicle's position and size in it, and the camera's next motion."""
 
     patch: Patch
     position: Array
     size: Array
-    camera: CameraMotion = field(default_factory=CameraMotion)
+    camera: CameraMotion = CameraMotion()
 
 
-class SurfaceFlow:
+class SurfaceFlow(NamedTuple):
     """Compares the present patch with an earlier one, point by point.
 
     Attributes
     ----------
+    patches : tuple of _Kept
+        The last patches.
+    usual, latest : float
+        Usual share of the box that moves with the vehicle, and the share when last judged.
     share : float
-        Share of the points in the box that move with the vehicle, of the usual share; 1 where flow
-        tells nothing.
-    tells : bool
-        True where flow told something when it was last asked.
+        Ratio of the two, at most 1; 1 where flow tells nothing.
+    is_reliable : bool
+        True where enough usually moves with the vehicle, when last judged.
     """
 
-    def __init__(self) -> None:
-        self._usual = 0.0
-        self._latest = 1.0
-        self.restart()
+    patches: tuple[_Kept, ...] = ()
+    usual: float = 0.0
+    latest: float = 1.0
+    share: float = 1.0
+    is_reliable: bool = False
 
-    def restart(self) -> None:
+    def restarted(self) -> SurfaceFlow:
         """Discard all patches, but not the usual share."""
-        self._kept: deque[_Kept] = deque(maxlen=_KEPT)
-        self.share, self.tells = 1.0, False
+        return SurfaceFlow((), self.usual, self.latest)
 
-    def move_with_camera(self, camera: CameraMotion) -> None:
+    def moved(self, camera: CameraMotion) -> SurfaceFlow:
         """Let the camera move, once between two patches that are kept."""
-        if self._kept:
-            self._kept[-1].camera = camera
+        if camera.still or not self.patches:
+            return self
+        latest = self.patches[-1]._replace(camera=camera)
+        return self._replace(patches=(*self.patches[:-1], latest))
 
-    def keep(self, patch: Patch, position: Array, size: Array) -> None:
+    def kept(self, patch: Patch, position: Array, size: Array) -> SurfaceFlow:
         """Keep a patch, and position and size of the vehicle in it, px."""
-        self._kept.append(_Kept(_middle(patch), position, size))
+        patches = (*self.patches, _Kept(_middle(patch), position, size))
+        return self._replace(patches=patches[-_KEPT:])
 
-    def judge(self, patch: Patch, position: Array, size: Array) -> float | None:
+    def judged(self, patch: Patch, position: Array, size: Array) -> SurfaceFlow:
         """Judge how much of the vehicle still moves with it.
 
         Parameters
@@ -105,32 +109,27 @@ class SurfaceFlow:
             Shows the present frame.
         position, size : (2,) arrays
             Estimated centre, and width and height, px.
-
-        Returns
-        -------
-        float or None
-            `share`; None where flow tells nothing.
         """
-        if not self._kept:
-            return None
+        if not self.patches:
+            return self
         kept, camera, apart = self._earlier(position, patch.zoom)
         background = camera if apart >= _TELLING_PX else None
-        self._latest = self._moving(_middle(patch), kept, position, size, background)
-        if not self._usual:
-            self._usual = self._latest
-        self.tells = self._usual >= _LEAST_USUAL
-        self.share = min(self._latest / self._usual, 1.0) if self.tells else 1.0
-        return self.share if self.tells else None
+        latest = _moving_share(_middle(patch), kept, position, size, background)
+        usual = self.usual or latest
+        is_reliable = usual >= _LEAST_USUAL
+        share = min(latest / usual, 1.0) if is_reliable else 1.0
+        return SurfaceFlow(self.patches, usual, latest, share, is_reliable)
 
-    def learn_usual(self) -> None:
+    def learnt_usual(self) -> SurfaceFlow:
         """Count the present share as one of a clear frame."""
-        if len(self._kept) >= _LEAST_KEPT:
-            self._usual += USUAL_RATE * (self._latest - self._usual)
+        if len(self.patches) < _LEAST_KEPT:
+            return self
+        return self._replace(usual=self.usual + USUAL_RATE * (self.latest - self.usual))
 
     def _earlier(self, position: Array, zoom: Array) -> tuple[_Kept, CameraMotion, float]:
         """Choose a patch to compare with; the camera's motion since, and the vehicle's beyond."""
         since = CameraMotion()
-        for kept in reversed(self._kept):
+        for kept in reversed(self.patches):
             if not kept.camera.still:
                 since = since.after(kept.camera)
             apart = math.hypot(*((position - since.apply(kept.position)) * zoom).tolist())
@@ -138,29 +137,29 @@ class SurfaceFlow:
                 break
         return kept, since, apart
 
-    def _moving(
-        self, patch: Patch, kept: _Kept, position: Array, size: Array,
-        camera: CameraMotion | None,
-    ) -> float:  # fmt: skip
-        """Share of the box that has moved with the vehicle since the earlier patch.
 
-        `camera` is the motion since, if the background tells anything.
-        """
-        before, half = kept.patch, _SIDE / 2
-        # As factor and summand: of the present patch to px, and of px to the earlier patch.
-        to_px, from_px = (1 / patch.zoom, patch.centre - half / patch.zoom), before.zoom
-        factor, summand = to_px[0] / size, (to_px[1] - position) / size
-        grown = kept.size * from_px
-        places = np.array([factor, summand])
-        start = (kept.position - before.centre) * from_px + half
-        vehicle = np.array([factor * grown, summand * grown + start])
-        background = np.empty((0, 2))
-        if camera is not None:
-            back = solved(camera.turn, np.eye(2)).T * from_px
-            shift = (to_px[1] - camera.shift) @ back + half - before.centre * from_px
-            background = np.array([*(to_px[0][:, np.newaxis] * back), shift])
-        cells = _cells(patch, position, size)
-        return carried_share(_flow(patch, before), cells, places, vehicle, background)
+def _moving_share(
+    patch: Patch, kept: _Kept, position: Array, size: Array, camera: CameraMotion | None
+) -> float:
+    """Share of the box that has moved with the vehicle since the earlier patch.
+
+    `camera` is the motion since, if the background tells anything. All maps are from the present
+    patch's px: a point p is mapped to p * map[0] + map[1] where a map has two rows, and the
+    background's to p @ map[:2] + map[2], since the camera may roll.
+    """
+    before, half = kept.patch, _SIDE / 2
+    to_frame = 1 / patch.zoom, patch.centre - half / patch.zoom
+    to_box = np.array([to_frame[0] / size, (to_frame[1] - position) / size])  # (2, 2)
+    grown = kept.size * before.zoom
+    start = (kept.position - before.centre) * before.zoom + half
+    vehicle = np.array([to_box[0] * grown, to_box[1] * grown + start])  # (2, 2)
+    background = np.empty((0, 2))
+    if camera is not None:
+        back = solved(camera.turn, np.eye(2)).T * before.zoom
+        shift = (to_frame[1] - camera.shift) @ back + half - before.centre * before.zoom
+        background = np.array([*(to_frame[0][:, np.newaxis] * back), shift])  # (3, 2)
+    cells = _cells(patch, position, size)
+    return carried_share(_flow(patch, before), cells, to_box, vehicle, background)
 
 
 def _middle(patch: Patch) -> Patch:

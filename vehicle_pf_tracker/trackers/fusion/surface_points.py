@@ -22,7 +22,7 @@ on the occluder.
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -57,8 +57,7 @@ _FIRST_FEWEST = 8
 _FIRST_ALIKE_PX = 2.0
 
 
-@dataclass(slots=True, eq=False)
-class _Points:
+class _Points(NamedTuple):
     """Places in the box, positions (px), whether each lives, and their age in frames."""
 
     places: Array
@@ -67,35 +66,38 @@ class _Points:
     age: float = 0.0
 
 
-class SurfacePoints:
+class SurfacePoints(NamedTuple):
     """Points on the vehicle.
 
     Attributes
     ----------
+    previous : (Patch, (2,) array) or None
+        Patch that the next motion starts from, and the vehicle's position in it, px.
+    points : _Points or None
+        The points.
     stretch : (2,) array
         Change of the logarithm of width and height in the last frame by the points' spread.
     """
 
-    def __init__(self) -> None:
-        self._previous: tuple[Patch, Array] | None = None
-        self.restart()
+    previous: tuple[Patch, Array] | None = None
+    points: _Points | None = None
+    stretch: Array = np.zeros(2)
 
-    def restart(self) -> None:
+    def restarted(self) -> SurfacePoints:
         """Discard all points."""
-        self.points: _Points | None = None
-        self.stretch = np.zeros(2)
+        return SurfacePoints(self.previous)
 
-    def keep(self, patch: Patch, position: Array) -> None:
+    def kept(self, patch: Patch, position: Array) -> SurfacePoints:
         """Keep the patch that the next motion starts from, and the vehicle's position in it, px."""
-        self._previous = patch, position
+        return self._replace(previous=(patch, position))
 
     def first_motion(self, patch: Patch, size: Array) -> Array | None:
         """Motion in px of what moves against the background inside the first box, if anything does.
 
         `patch` shows the second frame around the first position, moved with the background.
         """
-        assert self._previous is not None, "keep the first patch before"
-        previous, _ = self._previous
+        assert self.previous is not None, "keep the first patch before"
+        previous, _ = self.previous
         places = _grid(_FIRST_GRID, 0.45)
         start = (places * size * previous.zoom + previous.side / 2 - 0.5).astype(np.float32)
         end, found = _flow(previous, patch, start, None, _FIRST_FLOW)
@@ -110,7 +112,7 @@ class SurfacePoints:
             return None
         return np.asarray(np.median(moves[largest], axis=0) / patch.zoom)
 
-    def track(self, patch: Patch, position: Array, size: Array) -> None:
+    def tracked(self, patch: Patch, position: Array, size: Array) -> SurfacePoints:
         """Track all points into the present patch, measure how they spread, and end strays.
 
         Parameters
@@ -121,30 +123,31 @@ class SurfacePoints:
             Estimated centre, and width and height, px; the search starts from the displacement
             since the patch that was kept.
         """
-        self.stretch, points = np.zeros(2), self.points
-        if self._previous is None or points is None:
-            return
-        points.age += 1
-        if not points.alive.any():
-            return
-        previous, started = self._previous
-        before = points.positions[points.alive]
+        if self.previous is None or self.points is None:
+            return self
+        places, positions, alive, age = self.points
+        if not alive.any():
+            return SurfacePoints(self.previous, self.points._replace(age=age + 1))
+        previous, started = self.previous
+        before = positions[alive]
         start = np.asarray(previous.to_patch(before) - 0.5, np.float32)
         guess = np.asarray(patch.to_patch(before + position - started) - 0.5, np.float32)
         end, found = _flow(previous, patch, start, guess, _FLOW)
         after = patch.to_frame(end.astype(np.float64) + 0.5)
-        self.stretch = shared_motion.shared_stretch(before[found], after[found], size)
-        points.positions[points.alive] = after
-        points.alive[points.alive] = found
-        present = (points.positions - position) / size
-        points.alive = shared_motion.staying(points.places, present, points.alive, _STRAYED)
+        stretch = shared_motion.shared_stretch(before[found], after[found], size)
+        positions, living = positions.copy(), alive.copy()
+        positions[alive], living[alive] = after, found
+        living = shared_motion.staying(places, (positions - position) / size, living, _STRAYED)
+        return SurfacePoints(self.previous, _Points(places, positions, living, age + 1), stretch)
 
-    def renew(self, position: Array, size: Array, *, whole: bool = True) -> None:
+    def renewed(self, position: Array, size: Array, *, whole: bool = True) -> SurfacePoints:
         """Place new points if it is time."""
         age = _OLDEST if self.points is None else self.points.age
-        if age >= (_RENEWED_AFTER if whole else _OLDEST):
-            places = _grid(_GRID, _REACH)
-            self.points = _Points(places, position + places * size, np.ones(len(places), bool))
+        if age < (_RENEWED_AFTER if whole else _OLDEST):
+            return self
+        places = _grid(_GRID, _REACH)
+        points = _Points(places, position + places * size, np.ones(len(places), bool))
+        return self._replace(points=points)
 
 
 @functools.cache

@@ -28,6 +28,8 @@ hidden; flow on the surface gives a second one for all of them. docs/fusion.md h
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
@@ -55,18 +57,29 @@ _NEW_VELOCITY = 3.0
 class FusionTracker(ParticleTracker[FusionParameters]):
     """The flagship: a belief about the vehicle, and what was learnt of it."""
 
-    _state: State
-    _memory: Memory
+    def __init__(self, parameters: FusionParameters) -> None:
+        super().__init__(parameters)
+        self._state: State | None = None
+        self._memory: Memory | None = None
 
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `BaseTracker.start`."""
         estimate = super().start(frame, box)
-        memory, state = self._memory, self._state
+        state, memory = self._track
         memory.camera.measure(small_grey(frame), box)
         patch = memory.appearance.patch(frame, state.position, state.size)
-        memory.points.keep(patch, state.position)
-        memory.surface.keep(patch, state.position, state.size)
+        self._state = state._replace(
+            points=state.points.kept(patch, state.position),
+            surface=state.surface.kept(patch, state.position, state.size),
+        )
         return estimate
+
+    @property
+    def _track(self) -> tuple[State, Memory]:
+        """State and memory of a tracker that was started."""
+        _ = self.target  # says what is wrong before the start
+        assert self._state is not None and self._memory is not None
+        return self._state, self._memory
 
     def _scatter(self, centre: Position) -> Array:
         """Draw the first hypotheses; nothing else is known."""
@@ -76,7 +89,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
         positions = np.asarray(position + spread[0] * motion.position_sigma)
         particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - DOUBT)
-        self._state, self._memory = State(particles, position, size, size), Memory()
+        self._state, self._memory = State(particles, position, size, size), None
         return positions
 
     def _learn(self) -> None:
@@ -86,21 +99,24 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         learnt = np.array([window.width or size[0], window.height or size[1]])
         appearance = Appearance(self.kernels, size, learnt, self.parameters.filter)
         appearance.learn_first(target.patch, np.array(target.centre), size)
-        self._memory.appearance = appearance
+        memory = self._memory
+        self._memory = (
+            Memory(appearance) if memory is None else replace(memory, appearance=appearance)
+        )
 
     def reconfigure(self, parameters: FusionParameters) -> None:
         """Take new parameters; see `BaseTracker.reconfigure`."""
         super().reconfigure(parameters)
         if self._target is not None:
-            self._memory.appearance.use_kernels(self.kernels)
-            particles = self._state.particles.resampled(self._rng, parameters.num_particles)
-            self._state = self._state._replace(particles=particles)
+            state, memory = self._track
+            memory.appearance.use_kernels(self.kernels)
+            particles = state.particles.resampled(self._rng, parameters.num_particles)
+            self._state = state._replace(particles=particles)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        _ = self.target  # says what is wrong before the start
-        elapsed = min(elapsed, _LONGEST_STEP)
-        step = Step(frame, elapsed, self.parameters, self._rng, self._memory)
-        state = predict(self._state, step)
+        state, memory = self._track
+        step = Step(frame, min(elapsed, _LONGEST_STEP), self.parameters, self._rng, memory)
+        state = predict(state, step)
         state, seen = observe(state, step)
         state = judge(state, seen, step)
         state = follow(state, seen, step)
@@ -119,7 +135,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             regime if departure is None else departure.reason,
             particles.probability_visible,
             {
-                "response": min(max(response, 0.0), 1.0), "points": self._memory.surface.share,
+                "response": min(max(response, 0.0), 1.0), "points": state.surface.share,
                 "whole": state.whole,
             },
             left_image=state.left_image or departure is not None,

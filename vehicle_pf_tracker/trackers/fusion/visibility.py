@@ -29,7 +29,6 @@ from vehicle_pf_tracker.trackers.fusion.departure import Departure, is_too_far
 from vehicle_pf_tracker.trackers.fusion.hypotheses import chain
 from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
-from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.turning import Turning
 
 _LARGEST_PARTIAL_LOG_RATIO = 3.0
@@ -49,7 +48,7 @@ long as a vehicle waits behind a hedge."""
 
 def judge(state: State, seen: Observation, step: Step) -> State:
     """Decide how much of the vehicle is seen."""
-    state = state._replace(work=_work(state, seen.response, step.memory.surface))
+    state = state._replace(work=_work(state, seen.response))
     if not seen.again:
         state = _witnessed(state, seen, step)
     visible = state.particles.probability_visible > 0.5
@@ -68,10 +67,10 @@ def judge(state: State, seen: Observation, step: Step) -> State:
     return state._replace(visibility=visibility, turning=Turning())
 
 
-def _work(state: State, response: float, surface: SurfaceFlow) -> Work:
+def _work(state: State, response: float) -> Work:
     """Choose the tasks of a frame: all of them, but in calm frames in turns."""
     whole = state.visibility is Visibility.VISIBLE and state.frames > _SETTLED
-    known = whole and surface.tells and surface.share > _CALM
+    known = whole and state.surface.is_reliable and state.surface.share > _CALM
     if not (known and response > _CALM):
         return Work.BOTH
     return Work.TRAINING if state.work is Work.SIZE else Work.SIZE
@@ -79,16 +78,16 @@ def _work(state: State, response: float, surface: SurfaceFlow) -> Work:
 
 def _witnessed(state: State, seen: Observation, step: Step) -> State:
     """Take the share of the surface that moves with the vehicle as evidence on visibility."""
-    evidence, surface = step.parameters.visibility, step.memory.surface
-    patch = step.memory.appearance.usual_patch(seen.view.patch)
+    patch, particles = step.memory.appearance.usual_patch(seen.view.patch), state.particles
+    points, surface = state.points, state.surface
     if Work.SIZE in state.work:
-        step.memory.points.track(patch, seen.position, state.size)
-    share: float | None = surface.share
+        points = points.tracked(patch, seen.position, state.size)
     if Work.TRAINING in state.work:
-        share = surface.judge(patch, seen.position, state.size)
-    if share is None:
-        return state
-    return state._replace(particles=state.particles.witnessed(points_evidence(share, evidence)))
+        surface = surface.judged(patch, seen.position, state.size)
+    if surface.is_reliable:
+        ratio = points_evidence(surface.share, step.parameters.visibility)
+        particles = particles.witnessed(ratio)
+    return state._replace(particles=particles, points=points, surface=surface)
 
 
 def points_evidence(share: float, parameters: VisibilityParameters) -> float:
@@ -122,7 +121,7 @@ def _judged_whole(state: State, seen: Observation, step: Step) -> State:
     """
     whole = state.whole
     if not seen.again:  # until then the share is of what was there before
-        share = step.memory.surface.share * step.share_inside(seen.position, state.size)
+        share = state.surface.share * step.share_inside(seen.position, state.size)
         whole = wholeness(whole, share, step.elapsed, step.parameters.visibility)
     if whole > 0.5:
         return state._replace(whole=whole)
