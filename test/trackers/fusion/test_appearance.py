@@ -26,6 +26,7 @@ from vehicle_pf_tracker.trackers.fusion.parameters import FilterParameters
 KERNELS = load_kernels("opencv")
 SIZE = np.array([48.0, 30.0])
 PLACE = np.array([160.0, 120.0])
+PENALTY = FilterParameters().penalty
 
 
 SMOOTH = {"blur": 2.0, "gain": 3.0}
@@ -42,7 +43,7 @@ def frame(x=PLACE[0], y=PLACE[1], vehicle=VEHICLE):
 
 
 def learnt(*, penalty=0.1):
-    appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters(penalty=penalty))
+    appearance = Appearance(KERNELS, SIZE, SIZE, penalty)
     appearance.learn_first(frame(), PLACE, SIZE)
     return appearance
 
@@ -70,7 +71,7 @@ def test_the_target_has_its_canonical_size_in_the_patch():
 @pytest.mark.parametrize("size", [(1.0, 1.0), (3.0, 2.0), (4.0, 300.0), (900.0, 600.0)])
 def test_any_size_leaves_background_in_the_patch(size):
     size = np.array(size)
-    patch = Appearance(KERNELS, size, size, FilterParameters()).patch(frame(), PLACE, size)
+    patch = Appearance(KERNELS, size, size, PENALTY).patch(frame(), PLACE, size)
     assert (size * patch.zoom).max() <= 0.6 * patch.side + 1e-9
     assert patch.zoom.max() <= 8
 
@@ -182,7 +183,7 @@ def test_the_peak_is_sought_within_reach_only_and_inside_the_patch():
 @pytest.mark.parametrize("level", [0, 119, 255])
 def test_an_image_without_any_contrast_gives_finite_responses(level):
     blank = np.full((120, 160, 3), level, np.uint8)
-    appearance = Appearance(KERNELS, SIZE, SIZE, FilterParameters())
+    appearance = Appearance(KERNELS, SIZE, SIZE, PENALTY)
     appearance.learn_first(blank, np.array([80.0, 60.0]), SIZE)
     view = view_at(appearance, blank, (80, 60))
     assert np.isfinite(view.response).all()

@@ -51,7 +51,9 @@ def coming_out(time, speed=3.0, size=(12, 14)):
 def run(others=lambda time: [], earlier=(), out=coming_out):
     """Frame in which the vehicle is proven, and what was given; None if it never is."""
     before = [(ago, sides(*boxes)) for ago, boxes in earlier]
-    emergence = Emergence.begun(Sighting(0.0, LAST, SIZE), MOTION, IMAGE, before)
+    emergence = Emergence(Sighting(0.0, LAST, SIZE), MOTION, IMAGE)
+    if not emergence.was_alone(before):
+        return None
     for time in range(1, 60):
         emergence = emergence and emergence.observed(sides(*out(time), *others(time)), 1.0)
         found = emergence and emergence.proven(1.0)

@@ -39,7 +39,7 @@ def test_visibility_passes_one_frame_by_hand():
 
 def test_two_hypotheses_are_weighed_by_hand():
     """Ratio 8 for the first: 0.5 * 8 + 0.5 = 4.5 against 0.8 * 0.25 + 0.2 = 0.4 of the second."""
-    observed = hypotheses([0.5, 0.8], [0.25, 0.75]).observed(np.log([8.0, 0.25]))
+    observed = hypotheses([0.5, 0.8], [0.25, 0.75]).weighed(np.log([8.0, 0.25]))
     assert observed.visible == pytest.approx([4 / 4.5, 0.2 / 0.4])
     first, second = 0.25 * 4.5, 0.75 * 0.4
     assert observed.weights == pytest.approx([first / (first + second), second / (first + second)])
@@ -55,16 +55,16 @@ def test_the_evidence_of_a_set_is_what_its_weights_are_normalised_by():
 
 def test_evidence_counts_only_for_hypotheses_that_say_visible():
     """A hidden vehicle predicts nothing: its hypothesis keeps its weight relative to others."""
-    observed = hypotheses([0.0, 0.0], [0.3, 0.7]).observed(np.array([5.0, -5.0]))
+    observed = hypotheses([0.0, 0.0], [0.3, 0.7]).weighed(np.array([5.0, -5.0]))
     assert observed.weights == pytest.approx([0.3, 0.7])
     assert observed.probability_visible == 0
 
 
-def test_a_witness_changes_visibility_by_hand_and_no_weight():
+def test_common_evidence_changes_visibility_by_hand_and_no_weight():
     """Even odds times 3 are 0.75; odds of 1 to 4 times 3 are 3 to 4."""
-    witnessed = hypotheses([0.5, 0.2], [0.4, 0.6]).witnessed(np.log(3.0))
-    assert witnessed.visible == pytest.approx([0.75, 3 / 7])
-    assert witnessed.weights == pytest.approx([0.4, 0.6])
+    weighed = hypotheses([0.5, 0.2], [0.4, 0.6]).weighed_alike(np.log(3.0))
+    assert weighed.visible == pytest.approx([0.75, 3 / 7])
+    assert weighed.weights == pytest.approx([0.4, 0.6])
 
 
 def test_mean_and_spread_by_hand():
@@ -80,21 +80,21 @@ def test_driving_without_noise_by_hand():
     start = Hypotheses.around(
         np.array([[10.0, 20.0]]), np.array([[3.0, -1.0]]), np.array([0.02]), 0.9
     )
-    driven = start.driven(rng, 2.0, (0.0, 0.0))
+    predicted = start.predicted(rng, 2.0, (0.0, 0.0), 1.0)
     velocity = np.exp(0.08) * np.array([3.0, -1.0])
-    assert driven.velocities[0] == pytest.approx(velocity)
-    assert driven.positions[0] == pytest.approx(np.array([10, 20]) + 2 * velocity)
-    assert driven.growths == pytest.approx([0.02 * 1.04])
-    assert driven.visible == pytest.approx([0.9])
+    assert predicted.velocities[0] == pytest.approx(velocity)
+    assert predicted.positions[0] == pytest.approx(np.array([10, 20]) + 2 * velocity)
+    assert predicted.growths == pytest.approx([0.02 * 1.04])
+    assert predicted.visible == pytest.approx([0.9])
 
 
 def test_noise_of_driving_has_the_deviations_asked_for():
     count = 20_000
     still = Hypotheses.around(np.zeros((count, 2)), np.zeros((count, 2)), np.zeros(count), 0.5)
-    driven = still.driven(np.random.default_rng(0), 4.0, (3.0, 0.5))
-    assert driven.velocities.std(axis=0) == pytest.approx([1.0, 1.0], rel=0.03)
+    predicted = still.predicted(np.random.default_rng(0), 4.0, (3.0, 0.5), 1.0)
+    assert predicted.velocities.std(axis=0) == pytest.approx([1.0, 1.0], rel=0.03)
     # Positions vary by their own noise, 3 * 2, and by the velocity's, 4 * 1.
-    assert driven.positions.std(axis=0) == pytest.approx(np.hypot([6.0, 6.0], 4.0), rel=0.03)
+    assert predicted.positions.std(axis=0) == pytest.approx(np.hypot([6.0, 6.0], 4.0), rel=0.03)
 
 
 def test_resampling_waits_until_few_carry_the_weight():
@@ -140,8 +140,8 @@ def test_weights_stay_normalised_and_probabilities_within_bounds(
         rng.normal(0, 50, (size, 2)), rng.normal(0, 5, (size, 2)), growths, visible,
         weights / weights.sum(),
     )  # fmt: skip
-    one = one.driven(rng, elapsed, (2.0, 1.0)).passed(elapsed)
-    one = one.observed(ratios).witnessed(witness).resampled(rng, count)
+    one = one.predicted(rng, elapsed, (2.0, 1.0), 1.0).passed(elapsed)
+    one = one.weighed(ratios).weighed_alike(witness).resampled(rng, count)
     assert one.weights.sum() == pytest.approx(1)
     assert (one.weights >= 0).all()
     assert ((one.visible >= 0) & (one.visible <= 1)).all()

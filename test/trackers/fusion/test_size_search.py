@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.trackers.fusion.appearance import searched_size
-from vehicle_pf_tracker.trackers.fusion.follow import told_by_points
+from vehicle_pf_tracker.trackers.fusion.follow import believed_stretch
 from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
 
 STEP = np.log(1.03)
@@ -72,7 +72,7 @@ def test_where_nothing_differs_the_size_stays():
 
 
 @pytest.mark.parametrize(
-    ("stretch", "share", "told"),
+    ("stretch", "share", "believed"),
     [
         ([0.02, 0.03], 0.9, [0.02, 0.025]),  # spread along both: nothing that hides does that
         ([-0.1, -0.06], 0.9, [-0.08, -0.06]),  # faster than 0.7 steps of 3 %
@@ -83,13 +83,13 @@ def test_where_nothing_differs_the_size_stays():
         ([0.1, 0.1], 0.4, [0.0, 0.0]),  # more is hidden than seen
     ],
 )
-def test_points_tell_wholly_what_no_occluder_does(stretch, share, told):
-    found = told_by_points(np.array(stretch), share, SIZE, parameters())
-    assert found == pytest.approx(told)
+def test_points_tell_wholly_what_no_occluder_does(stretch, share, believed):
+    found = believed_stretch(np.array(stretch), share, SIZE, parameters())
+    assert found == pytest.approx(believed)
 
 
 def test_points_on_a_vehicle_of_a_few_px_tell_half():
-    found = told_by_points(np.array([0.1, 0.1]), 0.9, SIZE / 2, parameters())
+    found = believed_stretch(np.array([0.1, 0.1]), 0.9, SIZE / 2, parameters())
     assert found == pytest.approx([0.05, 0.05])
 
 

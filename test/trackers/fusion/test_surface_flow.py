@@ -132,7 +132,7 @@ def test_a_vehicle_that_turns_keeps_its_surface(spin):
     assert Drive(spin=spin).drive(20) > 0.7
 
 
-def panned_share(textures, *, told):
+def panned_share(textures, *, known):
     """Behind a wall; the camera pans with the vehicle, which stays where it is in the image."""
     flow = SurfaceFlow()
     for time in range(12):
@@ -140,15 +140,15 @@ def panned_share(textures, *, told):
         if time > 5:
             wall(90, textures=textures)(picture, time)
         patch = cut_patch(np.roll(picture, -3 * time, axis=1), START, 40.0 / SIZE, 128)
-        if told:
+        if known:
             flow = flow.moved(CameraMotion(shift=np.array([-3.0, 0.0])))
         flow = flow.judged(patch, START, SIZE).kept(patch, START, SIZE)
     return flow.share
 
 
 def test_a_wall_stands_in_the_scene_and_not_in_the_image():
-    assert max(panned_share(textures, told=True) for textures in SEVERAL) < 0.2
-    assert np.mean([panned_share(textures, told=False) for textures in SEVERAL]) > 0.5
+    assert max(panned_share(textures, known=True) for textures in SEVERAL) < 0.2
+    assert np.mean([panned_share(textures, known=False) for textures in SEVERAL]) > 0.5
 
 
 def test_without_an_earlier_patch_flow_tells_nothing():

@@ -79,8 +79,8 @@ def test_a_vehicle_that_turns_is_followed_by_its_outline():
     first = next(i for i, turned in enumerate(given) if turned)
     assert first < 16
     for turned, centre in list(zip(given, centres, strict=True))[first : first + 10]:
-        assert turned.position == pytest.approx(centre, abs=1.5)
-        assert turned.size == pytest.approx(SIZE, abs=2.5)
+        assert turned.box[0] == pytest.approx(centre, abs=1.5)
+        assert turned.box[1] == pytest.approx(SIZE, abs=2.5)
     assert given[first + 5].velocity[1] < -0.5
 
 

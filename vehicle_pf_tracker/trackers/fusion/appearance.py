@@ -34,7 +34,7 @@ from vehicle_pf_tracker.image.correlation_filter import UPSAMPLING, CorrelationF
 from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures, Grey
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.spectra import Spectrum, shifted
-from vehicle_pf_tracker.trackers.fusion.parameters import FilterParameters, SizeParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
 
 _CELLS = 32
 """Cells along each side of a patch; a power of two for the Fourier transform."""
@@ -44,7 +44,7 @@ _TARGET_SIDE = 40.0
 """Geometric mean of the target's canonical sides, px: ten cells, and 0.3 of the patch."""
 _LARGEST_ZOOM = 8.0
 """Canonical px per px of the frame at most: below 5 px a vehicle has nothing more to magnify."""
-_LARGEST_SHARE = 0.6
+_LONGEST_IN_PATCH = 0.6
 """Longest side of the target in the patch: beyond, no background would be left to learn."""
 _STEP_PX = CELL / UPSAMPLING
 """Canonical px from one place of the response to the next."""
@@ -54,7 +54,7 @@ wrapped around was faded out."""
 _USUAL_SHARE = 0.3
 """Least usual response, of that to the first patch: the second frame of the sequences gives 0.37 to
 0.89 of it, one with the vehicle hidden 0.03. A filter may be trained anew while it is hidden."""
-_LEAST_USUAL = 1e-3
+_TINY_RESPONSE = 1e-3
 """Least usual response: where nothing was learnt, as on a flat image, no ratio may become one of
 zeros."""
 _RIM = 1
@@ -142,19 +142,17 @@ class Appearance:
         Implementation that measures gradients and multiplies spectra.
     size, learnt : (2,) arrays
         Width and height of the target in the first frame, and of the part that is learnt, px.
-    options : FilterParameters
-        The penalty.
+    penalty : float
+        See `FilterParameters`.
     """
 
-    def __init__(
-        self, kernels: Kernels, size: Array, learnt: Array, options: FilterParameters
-    ) -> None:  # fmt: skip
+    def __init__(self, kernels: Kernels, size: Array, learnt: Array, penalty: float) -> None:
         zoom = min(_TARGET_SIDE / math.sqrt(learnt.prod()), _LARGEST_ZOOM)
         self._side = _CELLS * CELL
-        target = np.minimum(learnt * zoom, _LARGEST_SHARE * self._side)
+        target = np.minimum(learnt * zoom, _LONGEST_IN_PATCH * self._side)
         self._box = target * (size / learnt)
         self._kernels, self.first_size = kernels, size
-        self._filter = CorrelationFilter(_CELLS, target / CELL, options.penalty)
+        self._filter = CorrelationFilter(_CELLS, target / CELL, penalty)
         self.usual_response = 0.0
         self._least_usual = 0.0
         self._paint = np.zeros(3)
@@ -179,7 +177,7 @@ class Appearance:
         spectrum = self._spectrum(patch)
         response = respond(spectrum)
         if not self.usual_response:
-            least = max(self._least_usual, _LEAST_USUAL)
+            least = max(self._least_usual, _TINY_RESPONSE)
             self.usual_response = max(float(response.max()), least)
         response = response / np.float32(self.usual_response)
         return View(patch, None if wide else spectrum, response)
@@ -247,14 +245,13 @@ def _paint(frame: Frame, position: Array, size: Array) -> Array:
 
 
 _DIRECTIONS = ((1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
-"""Axes that are stretched, one pair of sizes per frame in turns: vehicles mostly keep their aspect,
-so that both sides together have every second turn."""
+"""Axes that are stretched, one pair of sizes per search in turns: vehicles mostly keep their
+aspect, so that both sides together have every second turn."""
 
 
 def searched_size(
-    size: Array, turn: int, peak: Callable[[Array], float],
-    parameters: SizeParameters,
-) -> Array:  # fmt: skip
+    size: Array, turn: int, peak: Callable[[Array], float], parameters: SizeParameters
+) -> Array:
     """Move the size towards the vertex of the response over three sizes.
 
     Parameters
@@ -262,7 +259,7 @@ def searched_size(
     size : (2,) array
         Width and height, px.
     turn : int
-        Number of the frame, which decides the direction that is tried.
+        Number of the search, which decides the direction that is tried.
     peak : callable
         Response at a size.
     """

@@ -14,10 +14,10 @@
 
 """A vehicle that has left: by a border of the image, or too far away to be seen.
 
-From then on whatever looks like it may as well be a stranger, and on a road strangers come by all
-the time. It is taken to be back only where it comes back from: something enters by the same border
-and moves inwards, or goes on along the far road; and it looks more like the vehicle, in frame after
-frame, than anything else did while the vehicle was tracked.
+From then on whatever resembles it may be a stranger, and on a road strangers come by all the time.
+It is taken to be back only where it comes back from: something enters by the same border and moves
+inwards, or goes on along the far road. Its response has to be above that of anything else while the
+vehicle was tracked, frame after frame.
 """
 
 from __future__ import annotations

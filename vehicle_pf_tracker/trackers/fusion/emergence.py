@@ -12,11 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A vehicle that comes out beside its path, before a camera that stands.
+"""A vehicle that comes out beside its path, before a standing camera.
 
-One that turns while it is hidden shows a side that its filter does not know, where nobody looks for
-it. If nothing else has moved around for two seconds before, and one single thing appears away from
-the border then, of the vehicle's size and speed, where it can be, that is the vehicle.
+One that turns while it is hidden comes out where no hypothesis is, with a side that the filter does
+not know. If nothing else has moved around for two seconds before, and one single thing appears then
+away from the border, with the vehicle's size and speed and within its reach, it is the vehicle.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ from vehicle_pf_tracker.trackers.fusion.perspective import KEPT_FRAMES, Perspect
 from vehicle_pf_tracker.trackers.fusion.standing_occluder import PROOF_FRAMES
 
 _SPEEDS = 0.4, 1.6
-"""Bounds of the speed of what comes out, of the vehicle's before: it may brake for the turn or
-accelerate out of it, by a factor of 2.5 down and 1.6 up (a turn is not driven into faster)."""
+"""Bounds of the speed of what comes out, of the vehicle's before: it may brake to less than half or
+accelerate by half while hidden; a stranger of any other speed is excluded."""
 _LEAST_AREA, _LARGEST_AREA = 0.2, 2.0
 """Bounds of the area of its bounding box, of the vehicle's. End on, a car has half of the area that
 it has from aside, and twice as much the other way round; a part of it may still be hidden."""
@@ -68,18 +68,10 @@ class Emergence(NamedTuple):
     sides: tuple[Array, ...] = ()
     paint: tuple[float, ...] = ()
 
-    @classmethod
-    def begun(
-        cls, last: Sighting, motion: PerspectiveMotion, image_size: Array,
-        earlier: Iterable[tuple[float, Array]],
-    ) -> Emergence | None:  # fmt: skip
-        """Begin where nothing else has moved around; `earlier` has ages in frames, and boxes."""
-        new = cls(last, motion, image_size)
-        is_alone = all(
-            not len(new._near(boxes, last.position - motion.velocity * ago))
-            for ago, boxes in earlier
-        )
-        return new if is_alone else None
+    def was_alone(self, earlier: Iterable[tuple[float, Array]]) -> bool:
+        """Test whether nothing else moved before; `earlier` has ages in frames, and boxes."""
+        last, velocity = self.last.position, self.motion.velocity
+        return not any(len(self._near(boxes, last - velocity * ago)) for ago, boxes in earlier)
 
     @property
     def _extent(self) -> float:
@@ -143,5 +135,4 @@ class Emergence(NamedTuple):
         """Test whether the vehicle can be there already, and nothing enters by the border."""
         enters = (sides <= 0).any() or (sides >= self.image_size).any()
         far = np.hypot(*(sides.mean(axis=0) - self.last.position))
-        reached = far < _SPEEDS[1] * self._speed * self.age + self._extent
-        return bool(reached and not enters)
+        return not enters and bool(far < _SPEEDS[1] * self._speed * self.age + self._extent)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The second half of a step: follow the vehicle, and learn what it looks like."""
+"""The second half of a step: follow the vehicle, and learn its appearance."""
 
 from __future__ import annotations
 
@@ -28,19 +28,23 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, hidden_hypothes
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
 from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
-from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
+from vehicle_pf_tracker.trackers.fusion.standing_occluder import SIZE_RESPONSE
+from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 from vehicle_pf_tracker.trackers.fusion.turning import Turning
 
-_STRONG = 0.8
-"""Probability of visibility from which the size is followed."""
-_WEAK_RESPONSE = 0.6
-"""Response below which sizes are not followed: a half-hidden vehicle looks smaller."""
-_WHOLE = 0.8
-"""Share of the surface from which the spread of points tells the size: what an occluder covers,
-shrinks."""
-_LEAST_SURE = 20.0
+_SURE = 0.8
+"""Probability of being visible above which size, usual share and paint are measured: odds of 4 to
+1, since an occluder that is measured once stays in all later frames."""
+_WHOLE_SHARE = 0.8
+"""Share of the surface above which the points' spread gives both sides. A prototype with true boxes
+has .96 of a vehicle wholly visible, and .72 with a tenth to a third of it covered
+(laboratory/notes/fusion_tried.md)."""
+_POINTS_GAIN = 0.5
+"""Weight of the points' change of size against that of the response, even as neither is known to be
+better; fitted values were not (laboratory/notes/fusion.md, twelve tuned numbers)."""
+_LEAST_BELIEVED = 20.0
 """Geometric mean of the sides, px, below which points are not believed wholly: they are magnified
 twofold and more, as are their errors. Without it white_van is claimed in .67 of its hidden frames
 instead of .20; laws without a number lose more (laboratory/notes/fusion_tried.md)."""
@@ -48,38 +52,38 @@ _TURNING_STIFFNESS = 0.5
 """Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
 turn by 90 degrees nothing that was learnt before stays right (scene `turn`, seed 100)."""
 _LEAST_LEVEL, _TURNING_LEVEL_RATE = 0.3, 0.3
-"""Least response that the usual one follows in a turn, and how fast: a new level in 3 frames."""
+"""Least response that the usual one follows in a turn, below which the filter may answer to the
+road; and its rate per frame: a new level in 3 frames."""
 _TURNING_SHARE, _TURNING_RESPONSE = 0.85, 0.7
-"""Share of the surface that still moves with a vehicle that turns, and response below which it
-does: it is learnt the faster then the lower the response, as what it looked like is out of date."""
-_LEAST_PLIANT = 0.2
-"""Response below which learning becomes no faster: five times the usual speed."""
-_LEAST_LEARNT = 0.5
-"""Response below which nothing is learnt: what is there differs in more than it agrees."""
+"""Share of the surface above which, and response below which, a visible vehicle turns. The filter
+then learns faster the lower the response. From a share of .6 on, walls are learnt (57 instead of 60
+of 81 recovered); from a response of .85 on, turns gain nothing (laboratory/notes/fusion_tried.md).
+"""
+_LEAST_STIFFNESS = 0.2
+"""Least stiffness in such a turn, of the usual one, however low the response."""
 
 
 def follow(state: State, seen: Observation, step: Step) -> State:
-    """Follow a vehicle that is seen, or the prediction of one that is not."""
+    """Follow a visible vehicle, or the prediction of a hidden one."""
     if state.visibility is Visibility.TURNING:
         return _follow_outline(state, step)
-    if state.visibility.is_seen:
-        return _follow_sighting(state, seen, step)
-    if not seen.again:
-        state = _entering_occlusion(state, step)
+    if state.visibility.is_visible:
+        return _follow_peak(state, seen, step)
+    if not seen.was_hidden:
+        state = _enter_occlusion(state, step)
     elif state.visibility is Visibility.GONE:
         state = state._replace(particles=state.particles.all_visible(0.0))
     return state._replace(position=step.inside(state.particles.mean))
 
 
-def _entering_occlusion(state: State, step: Step) -> State:
+def _enter_occlusion(state: State, step: Step) -> State:
     """Predict from the last clear sightings: the occluder has dragged later ones along."""
     fitted = state.sightings.fit()
     if fitted is None:
         return state._replace(particles=state.particles.all_visible(DOUBT), measured=state.size)
     path, last = fitted
     if not last.cut:
-        turning = Turning.begun(step.memory.foreground, path, last)
-        state = state._replace(turning=turning)
+        state = state._replace(turning=Turning.begun(step.memory.foreground, path, last))
     size = last.size * path.scale_at(last.age)
     state = state._replace(size=size, measured=size)
     count, sigma = step.parameters.num_particles, step.hidden_velocity_sigma(state.sightings)
@@ -87,25 +91,24 @@ def _entering_occlusion(state: State, step: Step) -> State:
     return state._replace(particles=particles)
 
 
-def _follow_sighting(state: State, seen: Observation, step: Step) -> State:
-    """Take position, velocity and, of a vehicle seen whole, size from the peak."""
+def _follow_peak(state: State, seen: Observation, step: Step) -> State:
+    """Take position, velocity and, of a vehicle that is wholly visible, size from the peak."""
     state = _centred(state, seen, step)
-    sized = Work.SIZE in state.work and seen.response > _WEAK_RESPONSE
-    if sized and _is_sure(state):
-        state = _sized(state, step, again=seen.again)
+    if state.sizes and seen.response > SIZE_RESPONSE and _is_sure(state):
+        state = _sized(state, seen, step)
     sightings = state.sightings.added(state.position, state.size, seen.response)
     return state._replace(sightings=sightings)
 
 
 def _is_sure(state: State) -> bool:
     """Test whether a vehicle is surely visible, and as a whole."""
-    return state.is_whole and state.particles.probability_visible > _STRONG
+    return state.is_whole and state.particles.probability_visible > _SURE
 
 
 def _centred(state: State, seen: Observation, step: Step) -> State:
     """Centre the hypotheses on the sighting; their velocities take on the displacement."""
     particles, position = state.particles, seen.position
-    if seen.again:
+    if seen.was_hidden:
         visible = particles.probability_visible
         particles = gathered(state, step, position, particles.mean_velocity, visible)
     else:
@@ -117,47 +120,53 @@ def _centred(state: State, seen: Observation, step: Step) -> State:
     return state._replace(particles=particles, position=position)
 
 
-def _sized(state: State, step: Step, *, again: bool) -> State:
-    """Follow the size by the spread of points on the vehicle, and by the filter's response."""
+def _sized(state: State, seen: Observation, step: Step) -> State:
+    """Follow the size by the spread of points on the vehicle, and by the filter's response.
+
+    Each pair of frames has one direction of the search, as in undisturbed frames one of two
+    follows the size.
+    """
     options, size = step.parameters.size, state.size
     peak = partial(step.memory.appearance.response_at, step.frame, state.position)
-    if not again and options.step:
-        told = told_by_points(state.points.stretch, state.surface.share, size, options)
-        size = size * np.exp(told)
+    if options.step and not seen.was_hidden:
+        stretch = believed_stretch(state.points.stretch, state.surface.share, size, options)
+        size = size * np.exp(stretch)
     size = searched_size(size, state.frames // 2, peak, options)
     return state._replace(size=step.bounded(size))
 
 
-def told_by_points(stretch: Array, share: float, size: Array, options: SizeParameters) -> Array:
-    """Change of the logarithm of width and height that the points on the vehicle tell.
+def believed_stretch(stretch: Array, share: float, size: Array, options: SizeParameters) -> Array:
+    """Change of the log of width and height by the stretch of the points on the vehicle.
 
-    What an occluder drags along draws together, along one axis. So points that spread along both,
-    or that draw together along both faster than the response follows, are believed wholly.
+    An occluder draws points together along one axis. So the stretch that both axes have in common
+    is believed wholly if it widens the box, or narrows it faster than the response can follow. The
+    rest is believed in part, and only where the surface is wholly visible.
     """
+    common = max(stretch.min(), 0.0) + min(stretch.max(), 0.0)
     reach = options.gain * np.log1p(options.step)
-    both = stretch.min() if stretch.min() > 0 else min(stretch.max(), 0.0)
-    sure = both if (both > 0 or both < -reach) and size.prod() > _LEAST_SURE**2 else 0.0
-    if share <= _WHOLE:
-        return np.full(2, sure if share > EVEN else 0.0)
-    return np.asarray(stretch + sure) / 2
+    if -reach <= common <= 0 or size.prod() <= _LEAST_BELIEVED**2:
+        common = 0.0
+    if share > _WHOLE_SHARE:
+        return np.asarray(_POINTS_GAIN * (stretch + common))
+    return np.full(2, common if share > EVEN else 0.0)
 
 
 def _follow_outline(state: State, step: Step) -> State:
     """Take position, size and velocity from the outline of a vehicle that turns."""
-    turned = state.turned
-    position, size = step.inside(turned.position), step.bounded(turned.size)
+    centre, outer = state.turned.box
+    position, size = step.inside(centre), step.bounded(outer)
     sightings = state.sightings.added(position, size, 1.0)
     state = state._replace(position=position, size=size, sightings=sightings)
-    particles = gathered(state, step, position, turned.velocity, 1 - DOUBT)
+    particles = gathered(state, step, position, state.turned.velocity, 1 - DOUBT)
     return state._replace(particles=particles)
 
 
 def learn(state: State, seen: Observation, step: Step) -> State:
-    """Learn from a vehicle that is seen; keep what the next frame is compared with."""
+    """Learn from a visible vehicle; keep what the next frame is compared with."""
     surface, strangers, memory = state.surface, state.strangers, step.memory
     if state.visibility is Visibility.TURNING:
         _learn_turn(state, seen.view, step)
-    elif state.visibility.is_seen:
+    elif state.visibility.is_visible:
         _learn_appearance(state, seen, step)
         if _is_sure(state) and seen.response > CLEAR_RESPONSE:
             surface = surface.learnt_usual()
@@ -165,7 +174,7 @@ def learn(state: State, seen: Observation, step: Step) -> State:
                 memory.appearance.learn_paint(step.frame, state.position, state.size)
         if state.is_whole:
             strangers = strangers.measured(seen.view, state.position, state.size)
-        if seen.again:  # what was kept shows an occluder
+        if seen.was_hidden:  # what was kept shows an occluder
             surface = surface.restarted()
     patch = memory.appearance.usual_patch(seen.view.patch)
     return state._replace(
@@ -178,18 +187,17 @@ def learn(state: State, seen: Observation, step: Step) -> State:
 def _renewed_points(state: State, seen: Observation, patch: Patch) -> SurfacePoints:
     """Place new points on a vehicle that is visible, and keep the patch if points are tracked."""
     points, turns = state.points, state.visibility is Visibility.TURNING
-    visible, tracked = state.visibility.is_seen, Work.SIZE in state.work
-    if turns or (visible and seen.again):
+    if turns or (state.visibility.is_visible and seen.was_hidden):
         points = points.restarted()
-    if turns or (visible and tracked):
+    if turns or (state.visibility.is_visible and state.sizes):
         points = points.renewed(state.position, state.size, whole=turns or state.is_whole)
-    return points.kept(patch, state.position) if tracked else points
+    return points.kept(patch, state.position) if state.sizes else points
 
 
 def _learn_turn(state: State, view: View, step: Step) -> None:
-    """Learn fast what a vehicle that turns looks like now."""
+    """Train fast on a vehicle that turns."""
     appearance = step.memory.appearance
-    response = min(max(view.at(state.turned.position), _LEAST_LEVEL), 1.0)
+    response = min(max(view.at(state.turned.box[0]), _LEAST_LEVEL), 1.0)
     appearance.learn_usual(response, _TURNING_LEVEL_RATE)
     # Without a spectrum the cells are measured again, at the size of the outline.
     bare = replace(view, spectrum=None)
@@ -202,13 +210,13 @@ def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
     surface, appearance = state.surface, memory.appearance
     turns = surface.is_reliable and surface.share > _TURNING_SHARE and response < _TURNING_RESPONSE
     turns &= not memory.foreground.is_known  # outlines tell more of a turn, size included
-    if not turns and (response <= _LEAST_LEARNT or not state.is_whole):
+    if not turns and (response <= EVEN or not state.is_whole):
         return
     visible = state.particles.probability_visible
     appearance.learn_usual(response, max(USUAL_RATE, 1 / (state.frames + 1)) * visible)
-    if Work.TRAINING not in state.work:
+    if not state.trains:
         return
     stiffness = options.stiffness / visible
     if turns:
-        stiffness *= max(response, _LEAST_PLIANT)
+        stiffness *= max(response, _LEAST_STIFFNESS)
     appearance.learn(step.frame, seen.view, state.position, state.size, stiffness)

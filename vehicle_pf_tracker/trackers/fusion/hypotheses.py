@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The particles: where the vehicle may be, how it moves, and how surely it is visible there."""
+"""The particles: position, velocity, growth and visibility of the vehicle, and their weights.
+
+They are predicted, weighed and resampled by `filtering`: its motion density, its normalisation and
+its systematic resampling.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, normalise
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
@@ -38,7 +43,11 @@ fifth too low in the median when the vehicle comes out, as the wall has cut the 
 _DEGENERATE = 0.5
 """Share of the particles below which the effective sample size asks for resampling (usual)."""
 DOUBT = 0.02
-"""Probability of being visible that an occlusion begins with."""
+"""Probability of being visible that an occlusion begins with, log odds -3.9. At the usual
+response, log ratio 6, a vehicle is visible again after one frame, at .8 of it (3.6) after two."""
+_FRAMES_BEFORE = 2.0
+"""Frames over which the velocity may have changed already when an occlusion begins: the vehicle is
+judged hidden a frame or two after the last clear sighting."""
 _PREDICTION_SIGMA = 0.04, 0.01
 """Spread of the positions predicted from the last clear sighting, of the size, and per frame since:
 about the residual of the fit to sightings of real vehicles."""
@@ -93,10 +102,8 @@ class Hypotheses(NamedTuple):
         cls, positions: Array, velocities: Array, growths: Array, visible: float
     ) -> Hypotheses:
         """Make hypotheses of equal weights."""
-        count = len(positions)
-        return cls(
-            positions, velocities, growths, np.full(count, visible), np.full(count, 1 / count)
-        )
+        equal, count = np.full(len(positions), 1 / len(positions)), len(positions)
+        return cls(positions, velocities, growths, np.full(count, visible), equal)
 
     @property
     def probability_visible(self) -> float:
@@ -121,15 +128,12 @@ class Hypotheses(NamedTuple):
 
     def moved(self, camera: CameraMotion) -> Hypotheses:
         """Move positions and velocities with the background."""
-        return self._replace(
-            positions=camera.apply(self.positions),
-            velocities=camera.apply_to_velocities(self.velocities),
-        )
+        velocities = camera.apply_to_velocities(self.velocities)
+        return self._replace(positions=camera.apply(self.positions), velocities=velocities)
 
-    def driven(
-        self, rng: np.random.Generator, elapsed: float, sigmas: tuple[float, float],
-        *, across: float = 1.0,
-    ) -> Hypotheses:  # fmt: skip
+    def predicted(
+        self, rng: np.random.Generator, elapsed: float, sigmas: tuple[float, float], across: float
+    ) -> Hypotheses:
         """Move on for `elapsed` frames at constant velocity on the road.
 
         In the image the velocity of a vehicle whose size grows at rate r grows at 2 r, and r at r
@@ -142,12 +146,12 @@ class Hypotheses(NamedTuple):
         across : float
             Share of the velocity's noise across the heading.
         """
-        root, shape = np.sqrt(elapsed), self.positions.shape
+        root, count = np.sqrt(elapsed), len(self.positions)
         faster = np.exp(2 * self.growths * elapsed)[:, np.newaxis]
-        noise = along_heading(rng.normal(size=shape), self.mean_velocity, across)
+        noise = along_heading(sample_normal(rng, count, 1.0), self.mean_velocity, across)
         velocities = self.velocities * faster + noise * (sigmas[1] * root)
         positions = self.positions + velocities * elapsed
-        positions += rng.normal(size=shape) * (sigmas[0] * root)
+        positions += sample_normal(rng, count, sigmas[0] * root)
         growths = self.growths * (1 + self.growths * elapsed)
         growths = np.minimum(np.maximum(growths, -FASTEST_GROWTH), FASTEST_GROWTH)
         return self._replace(positions=positions, velocities=velocities, growths=growths)
@@ -165,15 +169,15 @@ class Hypotheses(NamedTuple):
         """Likelihood ratio, of this set against a hidden vehicle, of what gave these log ratios."""
         return float(self.weights @ (self.visible * np.expm1(log_ratios))) + 1
 
-    def observed(self, log_ratios: Array) -> Hypotheses:
+    def weighed(self, log_ratios: Array) -> Hypotheses:
         """Weigh by log-likelihood ratios (N,) of visible against hidden (Bayes' rule)."""
         seen = self.visible * np.exp(log_ratios)
         total = seen + (1 - self.visible)  # in this order never below `seen`
         weights, _ = normalise(self.weights * total)
         return self._replace(visible=seen / total, weights=weights)
 
-    def witnessed(self, log_ratio: float) -> Hypotheses:
-        """Take evidence on visibility that is the same for all hypotheses."""
+    def weighed_alike(self, log_ratio: float) -> Hypotheses:
+        """Take evidence on visibility that is the same for all hypotheses; weights stay."""
         seen = self.visible * np.exp(log_ratio)
         return self._replace(visible=seen / (seen + (1 - self.visible)))
 
@@ -183,10 +187,8 @@ class Hypotheses(NamedTuple):
         if enough and count == len(self.weights):
             return self
         chosen = systematic(self.weights, count, rng)
-        return Hypotheses(
-            self.positions[chosen], self.velocities[chosen], self.growths[chosen],
-            self.visible[chosen], np.full(count, 1 / count),
-        )  # fmt: skip
+        drawn = Hypotheses(*(values[chosen] for values in self))
+        return drawn._replace(weights=np.full(count, 1 / count))
 
 
 def along_heading(noise: Array, heading: Array, across: float) -> Array:
@@ -222,12 +224,11 @@ def hidden_hypotheses(
     draws = rng.normal(size=(2, count, 2))
     spread = (_PREDICTION_SIGMA[0] + _PREDICTION_SIGMA[1] * age) * extent
     positions = motion.position_at(age) + draws[0] * spread
-    speed_sigma = 2 * velocity_sigma * extent + _SPEED_SIGMA * float(np.hypot(*velocity))
+    speed_sigma = _FRAMES_BEFORE * velocity_sigma * extent
+    speed_sigma += _SPEED_SIGMA * float(np.hypot(*velocity))
     growths = np.zeros(count)
     if motion.rate:
         growths = motion.growth_at(age) + rng.normal(size=count) * _GROWTH_SIGMA
-    changes = along_heading(draws[1], velocity, ACROSS_LANES)
-    return Hypotheses.around(
-        positions, velocity + changes * speed_sigma,
-        np.clip(growths, -FASTEST_GROWTH, FASTEST_GROWTH), DOUBT,
-    )  # fmt: skip
+    growths = np.clip(growths, -FASTEST_GROWTH, FASTEST_GROWTH)
+    velocities = velocity + along_heading(draws[1], velocity, ACROSS_LANES) * speed_sigma
+    return Hypotheses.around(positions, velocities, growths, DOUBT)

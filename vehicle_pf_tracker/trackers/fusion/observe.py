@@ -39,7 +39,8 @@ from vehicle_pf_tracker.trackers.fusion.turning import Turning
 _LARGEST_LOG_RATIO = 6.0
 """Bound of one observation's log ratio: no single frame is believed beyond 400 to 1."""
 _HIGHEST_RESPONSE = 1.2
-"""Response above which more of it tells nothing more."""
+"""Response above which more of it is no more evidence: by then the log ratio is 8.4, beyond the
+bound of one observation, and only the costs of moves still decide."""
 _PEAK_REACH = 6
 """Places of the response around the mean within which its peak is the estimate: a third of the
 target's side."""
@@ -47,15 +48,17 @@ _MEASURED_SPREAD = 0.3
 """Spread of the hypotheses after a first motion was measured, of the one before: about a px.
 Without that motion drift-chicane is lost in 6 of 6 runs, and no other of 27 sequences changes."""
 _WIDE_FROM = 0.5
-"""Spread of the hypotheses, of the size, from which a wide patch is searched."""
+"""Spread of the hypotheses, of the size, from which a wide patch is searched. The usual patch
+reaches 1.6 sizes to each side, three standard deviations of this spread."""
 _SAME_VEHICLE = 0.5
-"""Distance from the best hypothesis, of the size, within which others mean the same vehicle."""
+"""Distance from the best hypothesis, of the size, within which others are of the same vehicle:
+centres of two vehicles are farther apart than half of one."""
 
 
 def predict(state: State, step: Step) -> State:
-    """Move with the camera, and drive all hypotheses on."""
-    state = _moved_with_camera(state, step)
-    return _driven(_set_off(state, step) if state.frames == 0 else state, step)
+    """Move with the camera, and predict all hypotheses."""
+    state = _moved_with_camera(state, step)._replace(sets_off=False)
+    return _predicted(_set_off(state, step) if state.frames == 0 else state, step)
 
 
 def _moved_with_camera(state: State, step: Step) -> State:
@@ -72,8 +75,8 @@ def _moved_with_camera(state: State, step: Step) -> State:
     )
     if camera.still:
         return state
-    position, particles = camera.apply(state.position), state.particles.moved(camera)
-    return state._replace(position=position, particles=particles)
+    position = camera.apply(state.position)
+    return state._replace(position=position, particles=state.particles.moved(camera))
 
 
 def _set_off(state: State, step: Step) -> State:
@@ -89,26 +92,23 @@ def _set_off(state: State, step: Step) -> State:
     return state._replace(particles=particles, sets_off=True)
 
 
-def _driven(state: State, step: Step) -> State:
-    """Drive all hypotheses on; a hidden vehicle grows as they do."""
+def _predicted(state: State, step: Step) -> State:
+    """Predict all hypotheses; a hidden vehicle grows as they do."""
     motion, elapsed = step.parameters.motion, step.elapsed
     particles, size, extent = state.particles, state.size, state.extent
-    seen = state.visibility.is_seen
+    visible = state.visibility.is_visible
     sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
-    if not seen:
+    if not visible:
         sigmas = 0.0, step.hidden_velocity_sigma(state.sightings) * extent
-        growth = float(particles.weights @ particles.growths)
-        size = step.bounded(
-            np.minimum(size * np.exp(growth * elapsed), LARGEST_GROWTH * state.measured)
-        )
-    across = 1.0 if seen else ACROSS_LANES
-    driven = particles.driven(step.rng, elapsed, sigmas, across=across)
-    driven = driven.passed(elapsed)
+        grown = size * np.exp(float(particles.weights @ particles.growths) * elapsed)
+        size = step.bounded(np.minimum(grown, LARGEST_GROWTH * state.measured))
+    across = 1.0 if visible else ACROSS_LANES
+    predicted = particles.predicted(step.rng, elapsed, sigmas, across).passed(elapsed)
     return state._replace(
-        particles=driven._replace(positions=step.inside(driven.positions)),
+        particles=predicted._replace(positions=step.inside(predicted.positions)),
         size=size,
         frames=state.frames + 1,
-        left_image=is_outside(step.frame, *driven.mean.tolist()),
+        left_image=is_outside(step.frame, *predicted.mean.tolist()),
     )
 
 
@@ -117,12 +117,13 @@ def observe(state: State, step: Step) -> tuple[State, Observation]:
     if state.visibility is Visibility.GONE:
         return _observe_return(state, step)
     state, view = _weighed(state, step)
-    again = not state.visibility.is_seen
     if state.sets_off:
         position = step.inside(state.particles.positions.mean(axis=0))
-        return state._replace(sets_off=False), Observation(view, position, view.at(position), again)
-    position, response = likeliest_peak(view, state.particles, state.extent)
-    return state, Observation(view, step.inside(position), response, again)
+        response = view.at(position)
+    else:
+        position, response = likeliest_peak(view, state.particles, state.extent)
+    was_hidden = not state.visibility.is_visible
+    return state, Observation(view, step.inside(position), response, was_hidden)
 
 
 def _weighed(state: State, step: Step) -> tuple[State, View]:
@@ -131,17 +132,17 @@ def _weighed(state: State, step: Step) -> tuple[State, View]:
     A hidden vehicle is looked for at other sizes too; the likeliest of them is taken over once it
     is visible.
     """
-    scales = (1.0,) if state.visibility.is_seen else HIDDEN_SCALES
-    looks = [(*_look(state, step, scale), scale) for scale in scales]
-    view, positions, ratios, scale = max(looks, key=lambda it: state.particles.evidence(it[2]))
-    particles = state.particles._replace(positions=positions).observed(ratios)
+    scales = (1.0,) if state.visibility.is_visible else HIDDEN_SCALES
+    results = [(*_searched(state, step, scale), scale) for scale in scales]
+    view, positions, ratios, scale = max(results, key=lambda it: state.particles.evidence(it[2]))
+    particles = state.particles._replace(positions=positions).weighed(ratios)
     size = step.bounded(scale * state.size) if particles.probability_visible > 0.5 else state.size
     return state._replace(particles=particles, size=size), view
 
 
-def _look(state: State, step: Step, scale: float) -> tuple[View, Array, Array]:
+def _searched(state: State, step: Step, scale: float) -> tuple[View, Array, Array]:
     """Judge the hypotheses by the response to a vehicle `scale` times as large as believed."""
-    particles, hidden = state.particles, not state.visibility.is_seen
+    particles, hidden = state.particles, not state.visibility.is_visible
     appearance, options = step.memory.appearance, step.parameters
     wide = hidden and particles.spread > _WIDE_FROM * state.extent
     patch = appearance.patch(step.frame, particles.mean, scale * state.size, wide=wide)
@@ -157,13 +158,13 @@ def _observe_return(state: State, step: Step) -> tuple[State, Observation]:
     patch = appearance.patch(step.frame, departure.position, departure.size, wide=True)
     view = appearance.view(patch)
     departure = departure.observed(view, step.elapsed)
-    state = state._replace(departure=departure)
-    if departure.returned is None:
-        return state, Observation(view, departure.position, 0.0, again=True)
-    position, velocity = departure.returned
-    particles = gathered(state, step, position, velocity, 1 - DOUBT)
-    seen = Observation(view, position, view.at(position), again=True)
-    return state._replace(particles=particles), seen
+    particles, position, response = state.particles, departure.position, 0.0
+    if departure.returned is not None:
+        position, velocity = departure.returned
+        particles = gathered(state, step, position, velocity, 1 - DOUBT)
+        response = view.at(position)
+    state = state._replace(particles=particles, departure=departure)
+    return state, Observation(view, position, response, was_hidden=True)
 
 
 def gathered(

@@ -31,7 +31,7 @@ second. At a hundredth of the size per frame, the least speed of a side that dri
 twice the size's error of 4 %."""
 SIZE_RESPONSE = 0.6
 """Response, of the usual one, above which a size is measured: it is over the even odds of one half
-(`parameters.EVEN`) by a tenth, since a half-hidden vehicle looks smaller."""
+(`parameters.EVEN`) by a tenth, since a half-hidden vehicle is measured smaller."""
 _WHOLE_QUANTILE = 0.9
 """Quantile of the ratio of the sides that is the whole vehicle's: two seconds may mostly be cut."""
 _CUT = 0.9

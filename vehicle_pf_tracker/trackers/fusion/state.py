@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from enum import Enum, Flag
+from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
@@ -36,14 +36,18 @@ from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
-from vehicle_pf_tracker.trackers.fusion.turning import Turned, Turning
+from vehicle_pf_tracker.trackers.fusion.turning import Branch, Turning
 
-_LEAST_SIDE, _LARGEST_SHARE = 3.0, 1.5
-"""Bounds of the sides: px, and share of the image."""
+_LEAST_SIDE, _LARGEST_SIDE = 3.0, 1.5
+"""Bounds of the sides: px, as less has no gradient inside; and of the image's longer side, as a
+vehicle that passes the camera is partly outside before it fills the image."""
+_WHOLE_AT_FIRST = 0.99
+"""Probability of `State.whole` in the first frame, whose box is given: 2 frames of no share at all,
+at a log ratio of -3 each, make it partly hidden, and not a single one."""
 
 
 class Visibility(Enum):
-    """How much of the vehicle is seen."""
+    """Visibility of the vehicle, which decides what a step does."""
 
     VISIBLE = "visible"
     PARTLY_HIDDEN = "partly hidden"
@@ -52,17 +56,9 @@ class Visibility(Enum):
     GONE = "gone"
 
     @property
-    def is_seen(self) -> bool:
-        """True where the vehicle itself tells where it is."""
+    def is_visible(self) -> bool:
+        """True where the position is measured on the vehicle, and not predicted."""
         return self not in (Visibility.HIDDEN, Visibility.GONE)
-
-
-class Work(Flag):
-    """Costly tasks of a step: to follow the size; to judge the surface's flow and train."""
-
-    SIZE = 1
-    TRAINING = 2
-    BOTH = SIZE | TRAINING
 
 
 class State(NamedTuple):
@@ -75,13 +71,14 @@ class State(NamedTuple):
     position, size : (2,) arrays
         Centre, and width and height, px.
     visibility : Visibility
-        How much of it is seen.
+        Visible, turning, hidden, or gone.
     whole : float
-        Probability that it is seen as a whole, given that it is visible.
+        Probability that all of it is visible, given that a part of it is.
     frames : int
         Frames since the first one.
-    work : Work
-        Tasks of this frame.
+    sizes, trains : bool
+        Costly tasks of this frame: to track points and follow the size; to judge the surface's
+        flow and train the filter. Both, but undisturbed frames do them in turns.
     measured : (2,) array
         Size when it was measured last, before the vehicle was partly or wholly hidden, px.
     growth : float
@@ -89,11 +86,11 @@ class State(NamedTuple):
     turning : Turning
         Outlines that may be those of a vehicle that turns.
     departure : Departure or None
-        How one that is gone has left.
+        Where and how a vehicle that is `GONE` has left; None for others.
     left_image : bool
         True where the prediction's mean is outside the image.
     sets_off : bool
-        True in a first step that has measured what moves in the first box.
+        True in the first step if it has measured what moves in the first box.
     sightings : Sightings
         Earlier positions and sizes.
     points : SurfacePoints
@@ -109,9 +106,10 @@ class State(NamedTuple):
     size: Array
     measured: Array
     visibility: Visibility = Visibility.VISIBLE
-    whole: float = 0.99
+    whole: float = _WHOLE_AT_FIRST
     frames: int = 0
-    work: Work = Work.BOTH
+    sizes: bool = True
+    trains: bool = True
     growth: float = 0.0
     turning: Turning = Turning()
     departure: Departure | None = None
@@ -133,7 +131,7 @@ class State(NamedTuple):
         return float(np.sqrt(self.size.prod()))
 
     @property
-    def turned(self) -> Turned:
+    def turned(self) -> Branch:
         """Outline of a vehicle that is `TURNING`."""
         vehicle = self.turning.vehicle
         assert vehicle is not None, "only a proven turn makes a vehicle `TURNING`"
@@ -141,16 +139,17 @@ class State(NamedTuple):
 
     @property
     def is_whole(self) -> bool:
-        """True where it is likelier that all of the vehicle is seen than a part of it."""
+        """True where all of the vehicle is likelier to be visible than a part of it."""
         return self.whole > 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Memory:
-    """Appearance of the vehicle, and earlier frames; each changes in place.
+    """Appearance of the vehicle, and earlier frames: all that changes in place.
 
-    `predict` adds the present frame to those of `camera` and `foreground`. `learn` trains
-    `appearance`; its usual response is set by the first view, which everything is relative to.
+    `learn` alone trains `appearance`, but the first view after a start sets the usual response,
+    as the response is relative to it. `predict` adds each frame to `camera` and `foreground`,
+    which compare it with earlier ones, and an occlusion lets the latter learn its background.
     """
 
     appearance: Appearance
@@ -174,7 +173,7 @@ class Step:
 
     def bounded(self, size: Array) -> Array:
         """Bound width and height."""
-        largest = _LARGEST_SHARE * max(frame_size(self.frame))
+        largest = _LARGEST_SIDE * max(frame_size(self.frame))
         return np.minimum(np.maximum(size, _LEAST_SIDE), largest)
 
     def share_inside(self, position: Array, size: Array) -> float:
@@ -189,9 +188,8 @@ class Step:
         is not quite that of the road under the vehicle.
         """
         motion = self.parameters.motion
-        if sightings.are_steady:
-            return motion.hidden_velocity_sigma
-        return math.hypot(motion.hidden_velocity_sigma, motion.camera_velocity_sigma)
+        camera = 0.0 if sightings.are_steady else motion.camera_velocity_sigma
+        return math.hypot(motion.hidden_velocity_sigma, camera)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -206,11 +204,12 @@ class Observation:
         Centre, px.
     response : float
         Height of the peak there, relative to the usual one.
-    again : bool
-        True for a vehicle that was hidden before.
+    was_hidden : bool
+        True if the vehicle was hidden or gone in the frame before, so that what was kept of that
+        frame shows an occluder, and no displacement since then is known.
     """
 
     view: View
     position: Array
     response: float
-    again: bool
+    was_hidden: bool

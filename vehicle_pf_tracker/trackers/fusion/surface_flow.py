@@ -15,8 +15,8 @@
 """Optical flow on the vehicle: the share of its surface that still moves with it.
 
 Where an occluder covers the vehicle the image moves with the occluder: with the background where a
-wall stands, and its own way where a lorry drives by. What turns changes its looks, and with them
-the filter's response, but still moves with the vehicle.
+wall stands, and its own way where a lorry drives by. A turn changes the vehicle's appearance, and
+with it the filter's response, but its surface still moves with it.
 """
 
 from __future__ import annotations
@@ -38,20 +38,23 @@ _APART_PX = 4.0
 """Canonical px that vehicle and background should have moved apart since the patch that the present
 one is compared with: the youngest such patch is taken. Flow is good to about one."""
 _TELLING_PX = 2.0
-"""The same below which the background's flow cannot be told from the vehicle's."""
+"""The same below which the background's flow is too close to the vehicle's: twice the error."""
 _SIDE = 96
 """Side in canonical px of the middle of a patch that flow is measured in: a target has 77 px at
 most, and flow of all 128 takes 1.7 times as long."""
-_REACH = 0.45
-"""Outermost points from the centre, of the size: the box's rim is background."""
+BOX_REACH = 0.45
+"""Outermost points from the centre, of the size: half a cell, a twentieth of the canonical size,
+inside the box."""
 _REFINED = 5
 """Iterations of the flow's smoothing (Brox et al. 2004): plain surfaces move with their edges."""
 USUAL_RATE = 0.05
 """Rate per frame at which the usual share follows the present one in clear frames."""
-_LEAST_USUAL = 0.3
-"""Usual share below which flow tells nothing: a vehicle of a few px, or motion blur."""
+_LEAST_USUAL_SHARE = 0.3
+"""Usual share below which flow is not reliable: a vehicle of a few px, or motion blur. That of a
+vehicle of which .3 to .5 is visible is .33 (laboratory/notes/fusion_tried.md)."""
 _LEAST_KEPT = 3
-"""Patches from which a share counts as usual."""
+"""Patches from which a share counts as usual: the first two have hardly moved apart, so that all of
+the image moves with the vehicle."""
 
 
 class _Kept(NamedTuple):
@@ -116,7 +119,7 @@ class SurfaceFlow(NamedTuple):
         background = camera if apart >= _TELLING_PX else None
         latest = _moving_share(_middle(patch), kept, position, size, background)
         usual = self.usual or latest
-        is_reliable = usual >= _LEAST_USUAL
+        is_reliable = usual >= _LEAST_USUAL_SHARE
         share = min(latest / usual, 1.0) if is_reliable else 1.0
         return SurfaceFlow(self.patches, usual, latest, share, is_reliable)
 
@@ -182,7 +185,7 @@ def _flow(present: Patch, before: Patch) -> Flow:
 
 def _cells(patch: Patch, position: Array, size: Array) -> CellBlock:
     """Cells of the patch that lie in the box, at least one."""
-    middle, half = patch.to_patch(position), _REACH * size * patch.zoom
+    middle, half = patch.to_patch(position), BOX_REACH * size * patch.zoom
     last = patch.side // CELL - 1
     low = np.minimum(np.maximum(np.ceil((middle - half) / CELL - 0.5), 0), last)
     high = np.minimum(np.maximum(np.floor((middle + half) / CELL - 0.5), low), last)

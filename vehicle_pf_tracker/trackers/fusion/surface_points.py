@@ -31,12 +31,14 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.shared_motion import Found, PointFlow, Points
+from vehicle_pf_tracker.trackers.fusion.surface_flow import BOX_REACH
 
 _GRID = 8
 """Points along each axis: four fifths of 64 may be lost until they tell no more of the size
 (`shared_motion.FEWEST_POINTS`)."""
-_REACH = 0.4
-"""Outermost points from the centre, of the size: the box's rim is background."""
+_GRID_REACH = 0.4
+"""Outermost points from the centre, of the size, whose windows end at the box: half of one is a
+tenth of the canonical size, and the background is beyond."""
 _RENEWED_AFTER, _OLDEST = 5, 10
 """Age in frames of points that are replaced, and the same where a part of the vehicle is hidden."""
 _STRAYED = 0.2
@@ -45,7 +47,7 @@ left the vehicle; the prediction turns with the other points."""
 _ROUND_TRIP_PX = 1.0
 """Largest error in canonical px of a point tracked forth and back (Kalal et al. 2010)."""
 _FLOW = PointFlow(window=9, levels=0, steps=8, precision=0.05)
-"""No pyramid: the response's peak has told the motion to within a few canonical px."""
+"""No pyramid: the response's peak gives the motion to within a few canonical px."""
 _FIRST_GRID = 10
 _FIRST_FLOW = PointFlow(window=13, levels=3)
 """The first step knows no velocity, hence larger windows and more pyramid levels."""
@@ -54,7 +56,9 @@ _FIRST_MOVED_PX = 1.5
 background: less is the error of the camera's motion, or noise that was magnified."""
 _FIRST_FEWEST = 8
 """Fewest points that move alike for a first velocity: a twelfth of the box."""
-_FIRST_ALIKE_PX = 2.0
+_FIRST_ALIKE_PX = 2 * _ROUND_TRIP_PX
+"""Difference in canonical px below which two points move alike: each may be off by the error of a
+round trip."""
 
 
 class _Points(NamedTuple):
@@ -98,7 +102,7 @@ class SurfacePoints(NamedTuple):
         """
         assert self.previous is not None, "keep the first patch before"
         previous, _ = self.previous
-        places = _grid(_FIRST_GRID, 0.45)
+        places = _grid(_FIRST_GRID, BOX_REACH)
         start = (places * size * previous.zoom + previous.side / 2 - 0.5).astype(np.float32)
         end, found = _flow(previous, patch, start, None, _FIRST_FLOW)
         moves = (end - start)[found].astype(np.float64)
@@ -145,7 +149,7 @@ class SurfacePoints(NamedTuple):
         age = _OLDEST if self.points is None else self.points.age
         if age < (_RENEWED_AFTER if whole else _OLDEST):
             return self
-        places = _grid(_GRID, _REACH)
+        places = _grid(_GRID, _GRID_REACH)
         points = _Points(places, position + places * size, np.ones(len(places), bool))
         return self._replace(points=points)
 

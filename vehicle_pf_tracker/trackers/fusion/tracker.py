@@ -49,18 +49,18 @@ from vehicle_pf_tracker.trackers.fusion.visibility import judge
 __all__ = ["FusionParameters", "FusionTracker"]
 
 _LONGEST_STEP = 30.0
-"""Frame periods that motion is extrapolated over in one step."""
+"""Frame periods that motion is extrapolated over in one step at most: by then a prediction is off
+by half the size (laboratory/notes/fusion_tried.md, error after 20 to 40 occluded frames)."""
 _NEW_VELOCITY = 3.0
-"""Spread of the first velocities in units of the change per frame: none is known yet."""
+"""Spread of the first velocities in units of the change per frame: none is known yet. That is .09
+of the size per frame; faster starts are measured by `SurfacePoints.first_motion`."""
 
 
 class FusionTracker(ParticleTracker[FusionParameters]):
     """The flagship: a belief about the vehicle, and what was learnt of it."""
 
-    def __init__(self, parameters: FusionParameters) -> None:
-        super().__init__(parameters)
-        self._state: State | None = None
-        self._memory: Memory | None = None
+    _state: State | None = None
+    _memory: Memory | None = None
 
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `BaseTracker.start`."""
@@ -97,12 +97,9 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         target, window = self.target, self.parameters.window
         size = np.array([target.box.width, target.box.height])
         learnt = np.array([window.width or size[0], window.height or size[1]])
-        appearance = Appearance(self.kernels, size, learnt, self.parameters.filter)
+        appearance = Appearance(self.kernels, size, learnt, self.parameters.filter.penalty)
         appearance.learn_first(target.patch, np.array(target.centre), size)
-        memory = self._memory
-        self._memory = (
-            Memory(appearance) if memory is None else replace(memory, appearance=appearance)
-        )
+        self._memory = replace(self._memory or Memory(appearance), appearance=appearance)
 
     def reconfigure(self, parameters: FusionParameters) -> None:
         """Take new parameters; see `BaseTracker.reconfigure`."""
@@ -129,15 +126,12 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         particles, departure = state.particles, state.departure
         (x, y), (vx, vy) = state.position.tolist(), particles.mean_velocity.tolist()
         width, height = state.size.tolist()
-        regime = "visible" if state.visibility.is_seen else "occluded"
+        response = min(max(response, 0.0), 1.0)
+        regime = "visible" if state.visibility.is_visible else "occluded"
         return Outcome(
             Cloud(step.inside(particles.positions), particles.weights), (x, y), (vx, vy),
             regime if departure is None else departure.reason,
             particles.probability_visible,
-            {
-                "response": min(max(response, 0.0), 1.0), "points": state.surface.share,
-                "whole": state.whole,
-            },
-            left_image=state.left_image or departure is not None,
-            size=(width, height),
+            {"response": response, "points": state.surface.share, "whole": state.whole},
+            left_image=state.left_image or departure is not None, size=(width, height),
         )  # fmt: skip

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The turning branch: in doubt, a vehicle that leaves its path is followed by its outline.
+"""The turning branch: a vehicle in doubt that leaves its path is followed by its outline.
 
 In a fast turn response and points end as they do behind an occluder, and the track is frozen and
 predicted straight on. Beside it the outline of what moves is followed. Where an occluder stands the
@@ -61,23 +61,7 @@ _VELOCITY_GAIN = 0.3
 """Share of an outline's displacement that its velocity takes on, as `motion.gain` of the peak's."""
 
 
-class Turned(NamedTuple):
-    """The vehicle in a turn.
-
-    Attributes
-    ----------
-    position, size : (2,) arrays
-        Centre, and width and height, px.
-    velocity : (2,) array
-        px per frame.
-    """
-
-    position: Array
-    size: Array
-    velocity: Array
-
-
-class _Branch(NamedTuple):
+class Branch(NamedTuple):
     """An outline, followed since the doubt began.
 
     Attributes
@@ -115,7 +99,7 @@ class _Branch(NamedTuple):
     @classmethod
     def begun(
         cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting
-    ) -> _Branch | None:  # fmt: skip
+    ) -> Branch | None:  # fmt: skip
         """Begin `last.age` frames ago, and follow the outline to the frame before this one."""
         ago = round(last.age)
         first = foreground.outline(last.position, last.size, ago)
@@ -128,12 +112,12 @@ class _Branch(NamedTuple):
             (first.low - (last.position - half)) / last.size,
             (first.high - (last.position + half)) / last.size,
         )
-        branch: _Branch | None = cls(motion, last.size, margins, first, motion.velocity)
+        branch: Branch | None = cls(motion, last.size, margins, first, motion.velocity)
         for back in range(ago - 1, -1, -1):
             branch = branch and branch.moved(foreground, 1.0, back)
         return branch
 
-    def moved(self, foreground: Foreground, elapsed: float, ago: int = 0) -> _Branch | None:
+    def moved(self, foreground: Foreground, elapsed: float, ago: int = 0) -> Branch | None:
         """Follow the outline for `elapsed` frames, into the frame some `ago`; None: it is lost."""
         before, velocity = self.outline, self.velocity
         after = foreground.outline(before.centre + velocity * elapsed, before.size, ago)
@@ -144,7 +128,7 @@ class _Branch(NamedTuple):
             velocity = velocity + _VELOCITY_GAIN * (moved - velocity)
         return self._replace(outline=after, velocity=velocity, age=self.age + elapsed)
 
-    def judged(self, view: View) -> _Branch:
+    def judged(self, view: View) -> Branch:
         """Judge whether the outline has left the path, and the filter recognises the vehicle."""
         position, size = self.box
         aside = self.aside + 1 if _leaves(self, position, size) else 0
@@ -171,7 +155,7 @@ PaintDifference = Callable[[Array, Array], float]
 class Turning(NamedTuple):
     """Outlines of a vehicle in doubt: beside its path, or coming out there."""
 
-    branch: _Branch | None = None
+    branch: Branch | None = None
     emergence: Emergence | None = None
 
     @classmethod
@@ -179,9 +163,9 @@ class Turning(NamedTuple):
         """Begin where the vehicle was last seen clearly, of which `last.age` frames passed."""
         if not foreground.is_known:
             return cls()
-        earlier, image_size = foreground.history(), foreground.extent
-        emergence = Emergence.begun(last, motion, image_size, earlier)
-        return cls(_Branch.begun(foreground, motion, last), emergence)
+        emergence = Emergence(last, motion, foreground.extent)
+        was_alone = emergence.was_alone(foreground.history())
+        return cls(Branch.begun(foreground, motion, last), emergence if was_alone else None)
 
     def followed(
         self, foreground: Foreground, elapsed: float, view: View, difference: PaintDifference
@@ -204,16 +188,13 @@ class Turning(NamedTuple):
         return Turning(None if branch.is_over else branch, None if branch.is_proven else emergence)
 
     @property
-    def vehicle(self) -> Turned | None:
+    def vehicle(self) -> Branch | None:
         """The vehicle, once it is proven to turn."""
-        branch = self.branch
-        if branch is None or not branch.is_proven:
-            return None
-        return Turned(*branch.box, branch.velocity)
+        return self.branch if self.branch is not None and self.branch.is_proven else None
 
     def _emerged(
         self, foreground: Foreground, elapsed: float, difference: PaintDifference
-    ) -> tuple[Emergence | None, _Branch | None]:
+    ) -> tuple[Emergence | None, Branch | None]:
         """Find a vehicle that has come out beside its path."""
         emergence = self.emergence and self.emergence.observed(foreground.boxes(), elapsed)
         found = emergence and emergence.proven(elapsed)
@@ -224,11 +205,11 @@ class Turning(NamedTuple):
         emergence = emergence._replace(paint=(*emergence.paint, paint))
         if not emergence.has_paint:
             return emergence, None
-        branch = _Branch(emergence.motion, outline.size, margins, outline, velocity, is_proven=True)
+        branch = Branch(emergence.motion, outline.size, margins, outline, velocity, is_proven=True)
         return emergence, branch
 
 
-def _leaves(branch: _Branch, position: Array, size: Array) -> bool:
+def _leaves(branch: Branch, position: Array, size: Array) -> bool:
     """Test whether a box is, and moves, to one side of the predicted one."""
     velocity = branch.motion.velocity_at(branch.age)
     speed = float(np.hypot(*velocity))

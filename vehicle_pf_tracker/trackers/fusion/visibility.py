@@ -12,10 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The judgement of a step: how much of the vehicle is seen.
+"""The judgement of a step: visible as a whole or in part, turning, hidden, or gone.
 
-Each hypothesis says for itself whether it is hidden (`Hypotheses`). Evidence that is common to all
-of them is weighed here, and whether all of a visible vehicle is seen.
+Each hypothesis has its own probability of being visible (`Hypotheses`). Evidence that is common to
+all of them is weighed here.
 """
 
 from __future__ import annotations
@@ -28,18 +28,19 @@ import numpy as np
 from vehicle_pf_tracker.trackers.fusion.departure import Departure, is_too_far
 from vehicle_pf_tracker.trackers.fusion.hypotheses import chain
 from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, VisibilityParameters
-from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility, Work
+from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility
 from vehicle_pf_tracker.trackers.fusion.turning import Turning
 
 _LARGEST_PARTIAL_LOG_RATIO = 3.0
 """Bound of a frame's log ratio of whole against partial, 20 to 1: errors of flow last over
 frames."""
-_CALM = 0.9
-"""Response, and share of the surface, above which a frame is calm: the size is followed in one,
-flow judged and appearance learnt in the next. That saves a quarter of the time and, over 633 runs,
-costs nothing else that could be seen (laboratory/notes/fusion_tried.md)."""
+_UNDISTURBED = 0.9
+"""Response, and share of the surface, above which a frame is undisturbed: the size is followed in
+one, flow judged and appearance learnt in the next. That saves a quarter of the time and, over 633
+runs, costs nothing that could be seen; from .8 on it does (laboratory/notes/fusion_tried.md)."""
 _SETTLED = 10
-"""Frames before which none is calm: the usual response and share are not known yet."""
+"""Frames before which none is undisturbed: the usual response follows the first ones as their mean,
+and is not known yet."""
 _LARGEST_PARTIAL = 1.5
 """Bound of the growth, and of the shrinking, of a partly hidden vehicle, since it became that or
 came back as that. It is a tenth on the real sequences; an error of the rate must not go on for as
@@ -47,17 +48,16 @@ long as a vehicle waits behind a hedge."""
 
 
 def judge(state: State, seen: Observation, step: Step) -> State:
-    """Decide how much of the vehicle is seen."""
-    state = state._replace(work=_work(state, seen.response))
-    if not seen.again:
-        state = _witnessed(state, seen, step)
+    """Decide on the vehicle's visibility."""
+    state = _scheduled(state, seen.response)
+    if not seen.was_hidden:
+        state = _weighed_by_flow(state, seen, step)
     visible = state.particles.probability_visible > 0.5
     state = state._replace(departure=_departure(state, step, visible=visible))
     if state.departure is not None:
         return state._replace(visibility=Visibility.GONE, turning=Turning())
     difference = functools.partial(step.memory.appearance.paint_difference, step.frame)
-    foreground = step.memory.foreground
-    turning = state.turning.followed(foreground, step.elapsed, seen.view, difference)
+    turning = state.turning.followed(step.memory.foreground, step.elapsed, seen.view, difference)
     if turning.vehicle is not None:
         return state._replace(visibility=Visibility.TURNING, turning=turning)
     if not visible:
@@ -67,26 +67,30 @@ def judge(state: State, seen: Observation, step: Step) -> State:
     return state._replace(visibility=visibility, turning=Turning())
 
 
-def _work(state: State, response: float) -> Work:
-    """Choose the tasks of a frame: all of them, but in calm frames in turns."""
-    whole = state.visibility is Visibility.VISIBLE and state.frames > _SETTLED
-    known = whole and state.surface.is_reliable and state.surface.share > _CALM
-    if not (known and response > _CALM):
-        return Work.BOTH
-    return Work.TRAINING if state.work is Work.SIZE else Work.SIZE
+def _scheduled(state: State, response: float) -> State:
+    """Choose the costly tasks of a frame: both, but in undisturbed frames in turns."""
+    settled = state.visibility is Visibility.VISIBLE and state.frames > _SETTLED
+    share = state.surface.share if state.surface.is_reliable else 0.0
+    if settled and share > _UNDISTURBED and response > _UNDISTURBED:
+        return state._replace(sizes=state.trains, trains=not state.trains)
+    return state._replace(sizes=True, trains=True)
 
 
-def _witnessed(state: State, seen: Observation, step: Step) -> State:
-    """Take the share of the surface that moves with the vehicle as evidence on visibility."""
+def _weighed_by_flow(state: State, seen: Observation, step: Step) -> State:
+    """Take the share of the surface that moves with the vehicle as evidence on visibility.
+
+    In a frame that does not judge it, the share of the frame before counts again: both are
+    undisturbed, and the evidence of every frame has the same strength.
+    """
     patch, particles = step.memory.appearance.usual_patch(seen.view.patch), state.particles
     points, surface = state.points, state.surface
-    if Work.SIZE in state.work:
+    if state.sizes:
         points = points.tracked(patch, seen.position, state.size)
-    if Work.TRAINING in state.work:
+    if state.trains:
         surface = surface.judged(patch, seen.position, state.size)
     if surface.is_reliable:
         ratio = points_evidence(surface.share, step.parameters.visibility)
-        particles = particles.witnessed(ratio)
+        particles = particles.weighed_alike(ratio)
     return state._replace(particles=particles, points=points, surface=surface)
 
 
@@ -96,7 +100,7 @@ def points_evidence(share: float, parameters: VisibilityParameters) -> float:
 
 
 def _departure(state: State, step: Step, *, visible: bool) -> Departure | None:
-    """Tell how a hidden vehicle has left: by a border, or too far to be seen; None: it has not.
+    """Decide whether a hidden vehicle has left, by a border or by becoming too small.
 
     One that has left stays so until it is visible.
     """
@@ -108,19 +112,18 @@ def _departure(state: State, step: Step, *, visible: bool) -> Departure | None:
     if state.left_image and not visible:
         return Departure.by_border(step.frame, position, state.size, strangers)
     if is_too_far(state.size, step.memory.appearance.first_size):
-        heading = state.particles.mean_velocity
-        return Departure.far_away(position, state.size, heading, strangers)
+        return Departure.far_away(position, state.size, state.particles.mean_velocity, strangers)
     return None
 
 
 def _judged_whole(state: State, seen: Observation, step: Step) -> State:
-    """Judge whether all of the vehicle is seen; predict the size of one that is partly hidden.
+    """Judge whether all of the vehicle is visible; predict the size of one that is partly hidden.
 
-    It grows as it did in the sightings before: what shows of it tells no size. What is outside the
-    image is hidden like what is behind an occluder.
+    It grows as it did in the sightings before, since its visible part has another size. What is
+    outside the image is hidden like what is behind an occluder.
     """
     whole = state.whole
-    if not seen.again:  # until then the share is of what was there before
+    if not seen.was_hidden:  # until then the share is of what was there before
         share = state.surface.share * step.share_inside(seen.position, state.size)
         whole = wholeness(whole, share, step.elapsed, step.parameters.visibility)
     if whole > 0.5:
@@ -129,16 +132,14 @@ def _judged_whole(state: State, seen: Observation, step: Step) -> State:
     if state.is_whole:
         fitted = state.sightings.fit()
         growth = 0.0 if fitted is None else fitted[0].rate
-    if state.is_whole or seen.again:
+    if state.is_whole or seen.was_hidden:
         measured = state.size
     grown = state.size * math.exp(growth * step.elapsed)
     grown = np.clip(grown, measured / _LARGEST_PARTIAL, measured * _LARGEST_PARTIAL)
     return state._replace(whole=whole, growth=growth, measured=measured, size=step.bounded(grown))
 
 
-def wholeness(
-    before: float, share: float, elapsed: float, parameters: VisibilityParameters
-) -> float:  # fmt: skip
+def wholeness(before: float, share: float, elapsed: float, options: VisibilityParameters) -> float:
     """Probability that a visible vehicle is whole, `elapsed` frames later, by its surface's share.
 
     *Whole* and *partial* are a Markov chain. Covering begins and ends as often as occlusions do; an
@@ -146,7 +147,7 @@ def wholeness(
     """
     stays, returns = chain(elapsed)
     before = before * stays + (1 - before) * returns
-    ratio = parameters.partial_slope * (share - parameters.partial_middle)
+    ratio = options.partial_slope * (share - options.partial_middle)
     bound = _LARGEST_PARTIAL_LOG_RATIO
     whole = before * math.exp(min(max(ratio, -bound), bound))
     return whole / (whole + (1 - before))
