@@ -60,18 +60,24 @@ zeros."""
 _RIM = 1
 """Cells around the target that are measured with it: their gradients normalise its outermost."""
 _COLOURS = 3
+"""Channels of colour of a cell: its mean L, a and b (Lab)."""
 _HUE_GAIN = 4.0
 """Weight of Lab's a and b. Paint spans some 20 of their 100 units: unweighted, a grey car answers
 to the filter of a beige one of the same shape (scenes `bus` and `braking`, seeds 100 to 104)."""
 _COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32)[:, np.newaxis, np.newaxis] / 100
+"""Factors of L, a and b, which span 100 units."""
 _COLOUR_MIDDLE = np.array([0.5, 0, 0], np.float32)[:, np.newaxis, np.newaxis]
+"""Subtracted from them: middle grey is 0, as what a patch fades to at its rim."""
 _PAINTED = 0.6
-"""Middle of a box that paint is measured in, of each side."""
+"""Middle of a box that paint is measured in, of each side: around it are road and shadow."""
 _PAINT_SIDE = 8
-"""Side in px that it is resampled to."""
+"""Side in px that it is resampled to: the median of 64 px tolerates 31 of windows and lamps."""
 _OTHER_CHROMA, _OTHER_LIGHTNESS = 9.0, 18.0
 """Differences of paint, in units of Lab, above which two vehicles are not the same. Over each of 25
 sequences a tenth of the differences is larger; of those between sequences two thirds are."""
+_DIRECTIONS = ((1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
+"""Axes that are stretched, one pair of sizes per search in turns: vehicles mostly keep their
+aspect, so that both sides together have every second turn."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -242,11 +248,6 @@ def _paint(frame: Frame, position: Array, size: Array) -> Array:
     middle = _PAINT_SIDE**2 // 2
     ordered = np.sort(lab.reshape(-1, 3), axis=0)
     return np.asarray(ordered[middle - 1 : middle + 1].mean(axis=0), float)
-
-
-_DIRECTIONS = ((1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
-"""Axes that are stretched, one pair of sizes per search in turns: vehicles mostly keep their
-aspect, so that both sides together have every second turn."""
 
 
 def searched_size(

@@ -33,6 +33,7 @@ from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, KEPT_
 from vehicle_pf_tracker.trackers.fusion.standing_occluder import PROOF_FRAMES
 
 TOO_FAR = "too far to see"
+"""Reason of a departure that is by no border."""
 _SMALLEST = 8.0
 """Geometric mean of the sides, px, below which a vehicle that is hidden is too far to see: smaller
 ones are dots, and what is taken for their return is a pattern of the background in most cases."""

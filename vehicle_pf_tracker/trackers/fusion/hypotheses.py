@@ -59,8 +59,6 @@ _SPEED_SIGMA = 0.05
 """Spread of the predicted velocities, of the speed; about the error of the fit."""
 _GROWTH_SIGMA = 0.004
 """Spread of the predicted rates of growth per frame; a step of the fit's grid is 0.0025."""
-
-
 HIDING, RETURN = 0.02, 0.05
 """Probabilities per frame that a visible vehicle is hidden, and that a hidden one is visible: an
 occlusion lasts 20 frames in the mean (13 of the ten total ones in 27 sequences)."""

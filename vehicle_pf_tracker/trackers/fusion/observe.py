@@ -53,10 +53,16 @@ reaches 1.6 sizes to each side, three standard deviations of this spread."""
 _SAME_VEHICLE = 0.5
 """Distance from the best hypothesis, of the size, within which others are of the same vehicle:
 centres of two vehicles are farther apart than half of one."""
+CLIMB_FREELY, CLIMB_ON_PATH, STAY = (5, 3.0), (3, 1.0), (0, 1.0)
+"""Places of the response to each side within which a hypothesis is moved to a better one, and
+standard deviation that a move is paid for with. Where the path is known better than the place it
+has to keep to it: while hidden, else all would gather at clutter. A measured first motion is kept
+to exactly: a standing part of the first box answers better than the vehicle, and the filter cannot
+tell which of them it was shown."""
 
 
 def predict(state: State, step: Step) -> State:
-    """Move with the camera, and predict all hypotheses."""
+    """Move with the camera, and predict all hypotheses; the first step measures a first motion."""
     state = _moved_with_camera(state, step)._replace(sets_off=False)
     return _predicted(_set_off(state, step) if state.frames == 0 else state, step)
 
@@ -175,14 +181,6 @@ def gathered(
     spread = step.rng.normal(size=(count, 2)) * motion.position_sigma * state.extent
     velocities = np.repeat(velocity[np.newaxis], count, axis=0)
     return Hypotheses.around(step.inside(position + spread), velocities, np.zeros(count), visible)
-
-
-CLIMB_FREELY, CLIMB_ON_PATH, STAY = (5, 3.0), (3, 1.0), (0, 1.0)
-"""Places of the response to each side within which a hypothesis is moved to a better one, and
-standard deviation that a move is paid for with. Where the path is known better than the place it
-has to keep to it: while hidden, else all would gather at clutter. A measured first motion is kept
-to exactly: a standing part of the first box answers better than the vehicle, and the filter cannot
-tell which of them it was shown."""
 
 
 @functools.cache

@@ -49,6 +49,7 @@ _ROUND_TRIP_PX = 1.0
 _FLOW = PointFlow(window=9, levels=0, steps=8, precision=0.05)
 """No pyramid: the response's peak gives the motion to within a few canonical px."""
 _FIRST_GRID = 10
+"""Points along each axis: finer than later, as most of a loose first box may be road."""
 _FIRST_FLOW = PointFlow(window=13, levels=3)
 """The first step knows no velocity, hence larger windows and more pyramid levels."""
 _FIRST_MOVED_PX = 1.5

@@ -14,8 +14,8 @@
 
 """`fusion`: a correlation particle filter with a posterior over visibility.
 
-Per frame: predict and observe (`observe.py`), judge how much of the vehicle is seen
-(`visibility.py`), follow and learn (`follow.py`). `state.py` has what they pass on.
+Per frame: predict and observe (`observe.py`), judge visibility (`visibility.py`), follow and learn
+(`follow.py`). `state.py` has the frozen state that they pass on, and the memory that they share.
 
 - Visible or partly hidden: climb to the peak, follow the size, learn.
 - Turning: follow the outline of what moves, learn fast.
