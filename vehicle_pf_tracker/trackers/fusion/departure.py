@@ -46,10 +46,10 @@ PROOF_DISTANCE = 0.5
 """Distance moved within `PROOF_FRAMES` that proves a vehicle, of the size: the background stands,
 and the noise of peaks is a tenth of that."""
 _FARTHEST_STEP = 1.0
-"""Distance from one frame to the next within which peaks are of the same vehicle, of the size: no
-vehicle that drives in a lane follows another one more closely than by its own length."""
+"""Distance from one frame to the next within which peaks are of the same vehicle, of the size:
+centres of two vehicles in a lane are at least a length apart."""
 _STRANGERS_RATE = 0.005
-"""Rate per frame at which the strangers' response is forgotten: the road behind is another one."""
+"""Rate per frame at which the strangers' response fades: the road behind is another one."""
 
 
 class _Candidate(NamedTuple):
@@ -136,7 +136,7 @@ class Departure(NamedTuple):
     def observed(self, view: View, elapsed: float = 1.0) -> Departure:
         """Look for a return in the next frame.
 
-        Of one too far to see the heading tells for as long as sightings tell of a motion.
+        The heading of one too far to see is valid for as long as sightings are kept.
         """
         waited = self.waited + elapsed
         is_old = self.reason == TOO_FAR and waited > KEPT_FRAMES

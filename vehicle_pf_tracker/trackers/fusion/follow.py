@@ -36,14 +36,14 @@ from vehicle_pf_tracker.trackers.fusion.turning import Turning
 
 _SURE = 0.8
 """Probability of being visible above which size, usual share and paint are measured: odds of 4 to
-1, since an occluder that is measured once stays in all later frames."""
+1, since an occluder that is measured once stays in the size of all later frames."""
 _WHOLE_SHARE = 0.8
 """Share of the surface above which the points' spread gives both sides. A prototype with true boxes
 has .96 of a vehicle wholly visible, and .72 with a tenth to a third of it covered
 (laboratory/notes/fusion_tried.md)."""
 _POINTS_GAIN = 0.5
-"""Weight of the points' change of size against that of the response, even as neither is known to be
-better; fitted values were not (laboratory/notes/fusion.md, twelve tuned numbers)."""
+"""Weight of a stretch along one axis, as an occluder makes it too. A fitted weight was set to one
+half together with others, at no cost (laboratory/notes/fusion.md, twelve tuned numbers)."""
 _LEAST_BELIEVED = 20.0
 """Geometric mean of the sides, px, below which points are not believed wholly: they are magnified
 twofold and more, as are their errors. Without it white_van is claimed in .67 of its hidden frames
@@ -56,9 +56,9 @@ _LEAST_LEVEL, _TURNING_LEVEL_RATE = 0.3, 0.3
 road; and its rate per frame: a new level in 3 frames."""
 _TURNING_SHARE, _TURNING_RESPONSE = 0.85, 0.7
 """Share of the surface above which, and response below which, a visible vehicle turns. The filter
-then learns faster the lower the response. From a share of .6 on, walls are learnt (57 instead of 60
-of 81 recovered); from a response of .85 on, turns gain nothing (laboratory/notes/fusion_tried.md).
-"""
+then learns faster the lower the response. While .6 of the points survive instead of .85, 57 of 81
+occlusions are recovered instead of 60; from a response of .85 down, turns gain nothing
+(laboratory/notes/fusion_tried.md)."""
 _LEAST_STIFFNESS = 0.2
 """Least stiffness in such a turn, of the usual one, however low the response."""
 
@@ -94,7 +94,7 @@ def _enter_occlusion(state: State, step: Step) -> State:
 def _follow_peak(state: State, seen: Observation, step: Step) -> State:
     """Take position, velocity and, of a vehicle that is wholly visible, size from the peak."""
     state = _centred(state, seen, step)
-    if state.sizes and seen.response > SIZE_RESPONSE and _is_sure(state):
+    if state.follows_size and seen.response > SIZE_RESPONSE and _is_sure(state):
         state = _sized(state, seen, step)
     sightings = state.sightings.added(state.position, state.size, seen.response)
     return state._replace(sightings=sightings)
@@ -189,9 +189,9 @@ def _renewed_points(state: State, seen: Observation, patch: Patch) -> SurfacePoi
     points, turns = state.points, state.visibility is Visibility.TURNING
     if turns or (state.visibility.is_visible and seen.was_hidden):
         points = points.restarted()
-    if turns or (state.visibility.is_visible and state.sizes):
+    if turns or (state.visibility.is_visible and state.follows_size):
         points = points.renewed(state.position, state.size, whole=turns or state.is_whole)
-    return points.kept(patch, state.position) if state.sizes else points
+    return points.kept(patch, state.position) if state.follows_size else points
 
 
 def _learn_turn(state: State, view: View, step: Step) -> None:
@@ -214,7 +214,7 @@ def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
         return
     visible = state.particles.probability_visible
     appearance.learn_usual(response, max(USUAL_RATE, 1 / (state.frames + 1)) * visible)
-    if not state.trains:
+    if not state.trains_filter:
         return
     stiffness = options.stiffness / visible
     if turns:

@@ -30,7 +30,8 @@ from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.standing_occluder import PROOF_FRAMES, restored_sightings
 
 KEPT_FRAMES = 60.0
-"""Age in frames from which a sighting tells nothing about the present motion."""
+"""Age in frames from which a sighting is discarded: two seconds, of which positions count for some
+20 frames, and sizes all (errors by age: laboratory/notes/fusion_tried.md, Rate of approach)."""
 CLEAR_RESPONSE = 0.75
 """Least response, of the usual one, of a sighting that the fit believes. While an occluder moves in
 it drags positions along and shrinks the box; 5 % of visible frames have less than 0.8."""

@@ -76,7 +76,7 @@ class State(NamedTuple):
         Probability that all of it is visible, given that a part of it is.
     frames : int
         Frames since the first one.
-    sizes, trains : bool
+    follows_size, trains_filter : bool
         Costly tasks of this frame: to track points and follow the size; to judge the surface's
         flow and train the filter. Both, but undisturbed frames do them in turns.
     measured : (2,) array
@@ -108,8 +108,8 @@ class State(NamedTuple):
     visibility: Visibility = Visibility.VISIBLE
     whole: float = _WHOLE_AT_FIRST
     frames: int = 0
-    sizes: bool = True
-    trains: bool = True
+    follows_size: bool = True
+    trains_filter: bool = True
     growth: float = 0.0
     turning: Turning = Turning()
     departure: Departure | None = None

@@ -36,8 +36,8 @@ _LARGEST_PARTIAL_LOG_RATIO = 3.0
 frames."""
 _UNDISTURBED = 0.9
 """Response, and share of the surface, above which a frame is undisturbed: the size is followed in
-one, flow judged and appearance learnt in the next. That saves a quarter of the time and, over 633
-runs, costs nothing that could be seen; from .8 on it does (laboratory/notes/fusion_tried.md)."""
+one, flow judged and appearance learnt in the next. That saves a quarter of the time and costs
+nothing over 633 runs; from .8 up it costs .01 on target (laboratory/notes/fusion_tried.md)."""
 _SETTLED = 10
 """Frames before which none is undisturbed: the usual response follows the first ones as their mean,
 and is not known yet."""
@@ -70,10 +70,10 @@ def judge(state: State, seen: Observation, step: Step) -> State:
 def _scheduled(state: State, response: float) -> State:
     """Choose the costly tasks of a frame: both, but in undisturbed frames in turns."""
     settled = state.visibility is Visibility.VISIBLE and state.frames > _SETTLED
-    share = state.surface.share if state.surface.is_reliable else 0.0
-    if settled and share > _UNDISTURBED and response > _UNDISTURBED:
-        return state._replace(sizes=state.trains, trains=not state.trains)
-    return state._replace(sizes=True, trains=True)
+    level = min(state.surface.share, response) if state.surface.is_reliable else 0.0
+    alternates = settled and level > _UNDISTURBED
+    trains = not alternates or not state.trains_filter
+    return state._replace(follows_size=not alternates or not trains, trains_filter=trains)
 
 
 def _weighed_by_flow(state: State, seen: Observation, step: Step) -> State:
@@ -84,9 +84,9 @@ def _weighed_by_flow(state: State, seen: Observation, step: Step) -> State:
     """
     patch, particles = step.memory.appearance.usual_patch(seen.view.patch), state.particles
     points, surface = state.points, state.surface
-    if state.sizes:
+    if state.follows_size:
         points = points.tracked(patch, seen.position, state.size)
-    if state.trains:
+    if state.trains_filter:
         surface = surface.judged(patch, seen.position, state.size)
     if surface.is_reliable:
         ratio = points_evidence(surface.share, step.parameters.visibility)
