@@ -16,11 +16,12 @@
 
     python -m laboratory.fusion_clips CLIP... --model yolox_nano.onnx -o OUT
 
-`traffic` with the network says where vehicles are (kept in ``OUT``). `fusion` starts on up to eight
-of each clip that drive out of the image, and runs on after that. ``clips.md`` has, by clip, the
-frames on target while `traffic` saw them, and the share with `TRACKING` after they left. Vehicles
-that only become too small for the network, or that wait at the border, are not judged: looked at,
-many of them were still there, and followed.
+A clip is a video or a folder of images. `traffic` with the network says where vehicles are (kept in
+``OUT``). `fusion` starts on up to eight of each clip that drive out of the image, and runs on after
+that. A synthetic scene with twenty look-alikes each way comes last. ``clips.md`` has, by clip, the
+frames on target while the vehicles were seen, and the share with `TRACKING` after they left.
+Vehicles that only become too small for the network, or that wait at the border, are not judged:
+looked at, many of them were still there, and followed.
 """
 
 from __future__ import annotations
@@ -30,30 +31,34 @@ import csv
 import math
 import sys
 from collections import defaultdict
-from collections.abc import Sequence
-from dataclasses import dataclass, field
-from itertools import islice
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
+from laboratory.scenes import make_traffic_scene
+from laboratory.scenes.traffic_scene import SCALE, WIDTH
 from laboratory.stress import variant_system
+from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.cli.main import main as run_command
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import frame_size
+from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.offline.output_files import write_text
 from vehicle_pf_tracker.offline.traffic_results import TRACKS
-from vehicle_pf_tracker.recordings.video import VideoFile
+from vehicle_pf_tracker.recordings.video import open_footage
+from vehicle_pf_tracker.scenes.roads import PAINTS, Lane, convoy
+from vehicle_pf_tracker.scenes.vehicles import saloon
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 MOST = 8
 """Vehicles of a clip."""
 SURE, FEWEST = 0.55, 30
 """Score of the box that a vehicle is followed from, and fewest frames from there to its last."""
-AFTER = 250
+AFTER = 300
 """Frames that are judged after a vehicle has left."""
 GRACE = 25
 """Frames after it was last seen in which a vehicle leaves, by its motion in as many before."""
@@ -67,7 +72,16 @@ FEW_CLAIMS = 0.02
 HEAD = ("clip", "runs", "on target", "TRACKING after leaving", "of these on others", "above .02")
 
 Boxes = dict[int, dict[int, Box]]
-"""Boxes of what `traffic` sees, by identity and by frame."""
+"""Boxes of vehicles, by identity and by frame."""
+
+
+class Clip(NamedTuple):
+    """A clip: its images, its vehicles, and the frames in which these are sure, by identity."""
+
+    name: str
+    frames: Callable[[], Iterable[Frame | None]]
+    boxes: Boxes
+    sure: dict[int, set[int]]
 
 
 @dataclass(eq=False)
@@ -78,9 +92,9 @@ class Run:
     first: int
     last: int
     seed: int = 0
-    seen: list[bool] = field(default_factory=list)
-    claims: list[bool] = field(default_factory=list)
-    others: int = 0
+    seen: list[bool] = field(default_factory=list, init=False)
+    claims: list[bool] = field(default_factory=list, init=False)
+    others: int = field(default=0, init=False)
 
     @property
     def judged_from(self) -> int:
@@ -103,12 +117,13 @@ class Run:
             )
 
 
-def seen_by_traffic(clip: Path, model: str, folder: Path) -> tuple[Boxes, dict[int, set[int]]]:
-    """Boxes that `traffic` sees in a clip, and the frames in which they are sure, by identity."""
+def filmed(path: Path, model: str, output: Path) -> Clip:
+    """Read a clip, and let `traffic` say where vehicles are, or read what it said before."""
+    footage, folder = open_footage(path), output / path.stem
     if not (folder / TRACKS).exists():
-        status = run_command(["traffic", str(clip), "--model", model, "-o", str(folder)])
+        status = run_command(["traffic", str(path), "--model", model, "-o", str(folder)])
         if status:
-            raise InputError(f"traffic on {clip} ended with status {status}")
+            raise SystemExit(status)  # it has said why
     boxes: Boxes = defaultdict(dict)
     sure: dict[int, set[int]] = defaultdict(set)
     with (folder / TRACKS).open(newline="") as stream:
@@ -121,7 +136,21 @@ def seen_by_traffic(clip: Path, model: str, folder: Path) -> tuple[Boxes, dict[i
             boxes[identity][frame] = Box.around((x, y), width, height)
             if score >= SURE:
                 sure[identity].add(frame)
-    return boxes, sure
+    return Clip(path.stem, lambda: (each.frame for each in footage.frames()), boxes, sure)
+
+
+def look_alikes(frames: int = 600) -> Clip:
+    """Make a road with cars of one kind and paint, of which some twenty drive each way."""
+    rng, actors = np.random.default_rng(0), []
+    for lane in (Lane(100.0, SCALE, rightward=True), Lane(175.0, SCALE, rightward=False)):
+        actors += convoy(lane, 4.0, frames, WIDTH, rng, (60, 160), (lambda _: saloon(PAINTS[4]),))
+    scene = make_traffic_scene("traffic-pair", settings={"frames": frames})
+    scene = replace(scene, vehicles=tuple(zip(actors[::2], actors[1::2], strict=True)))
+    boxes: Boxes = defaultdict(dict)
+    for frame in range(frames):
+        for one in scene.truth(frame):
+            boxes[one.identity][frame] = one.box
+    return Clip("look-alikes", scene.images, boxes, {one: set(own) for one, own in boxes.items()})
 
 
 def leaving(
@@ -162,16 +191,22 @@ def is_at_border(box: Box, size: tuple[int, int]) -> bool:
     )  # fmt: skip
 
 
-def followed(clip: Path, boxes: Boxes, runs: Sequence[Run]) -> None:
-    """Follow the vehicles of all runs through a clip, side by side."""
+def followed(clip: Clip, seeds: int) -> list[Run]:
+    """Follow vehicles of a clip that leave it, side by side."""
+    sizes = [frame_size(frame) for frame in clip.frames() if frame is not None]
+    chosen = leaving(clip.boxes, clip.sure, sizes[0], len(sizes))
+    runs = [replace(run, seed=seed) for run in chosen for seed in range(seeds)]
     trackers = {}
-    for number, picture in enumerate(VideoFile(clip).frames()):
+    for number, frame in enumerate(clip.frames()):
+        if frame is None:
+            continue
         for run in runs:
             if number == run.first:
                 trackers[run] = variant_system("fusion").make(run.seed)
-                trackers[run].start(picture.frame, boxes[run.identity][number])
+                trackers[run].start(frame, clip.boxes[run.identity][number])
             elif run.first < number <= run.judged_from + AFTER:
-                run.take(number, trackers[run].step(picture.frame, 1.0), boxes)
+                run.take(number, trackers[run].step(frame, 1.0), clip.boxes)
+    return runs
 
 
 def row(name: str, runs: Sequence[Run]) -> list[str]:
@@ -192,29 +227,14 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("-o", "--output", type=Path, required=True)
     options = parser.parse_args()
-    table: list[list[str]] = []
-    all_runs: list[Run] = []
-    for clip in options.clips:
-        boxes, sure = seen_by_traffic(clip, options.model, options.output / clip.stem)
-        pictures = list(islice(VideoFile(clip).frames(), 1))
-        frames = sum(1 for _ in VideoFile(clip).frames())
-        chosen = leaving(boxes, sure, frame_size(pictures[0].frame), frames)
-        runs = [
-            Run(run.identity, run.first, run.last, seed)
-            for run in chosen
-            for seed in range(options.seeds)
-        ]
-        followed(clip, boxes, runs)
-        if runs:
-            table.append(row(clip.stem, runs))
-        all_runs += runs
-    if not all_runs:
-        raise InputError("no vehicle leaves these clips early enough; give others")
-    table.append(row("all", all_runs))
+    clips = [filmed(path, options.model, options.output) for path in options.clips]
+    runs = [(clip.name, followed(clip, options.seeds)) for clip in (*clips, look_alikes())]
+    table = [row(name, own) for name, own in runs if own]
+    table.append(row("all", [run for _, own in runs for run in own]))
     write_text(options.output / "clips.md", markdown(HEAD, table))
     print(markdown(HEAD, table))
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(exit_status(main, "python -m laboratory.fusion_clips"))
