@@ -240,9 +240,9 @@ def report_progress(done: int, total: int | None) -> None:
         print(f"{done} of {total} runs", file=sys.stderr, flush=True)
 
 
-def main() -> int:
-    """Fit, judge, write both."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+def arguments(purpose: str | None) -> argparse.Namespace:
+    """Parse the command line of a program that fits."""
+    parser = argparse.ArgumentParser(description=(purpose or "").partition("\n")[0])
     parser.add_argument(
         "sequences", type=Path, nargs="+", help="folders of recordings or frame folders"
     )
@@ -256,6 +256,12 @@ def main() -> int:
     parser.add_argument("-o", "--output", type=Path, required=True)
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
+    return options
+
+
+def main() -> int:
+    """Fit, judge, write both."""
+    options = arguments(__doc__)
     try:
         results = judge(options, fit(options))
     except InputError as error:
