@@ -64,7 +64,8 @@ PROGRAMS = {
         "| no camera motion |",
     ),
     "laboratory.fusion_clips": Program(
-        "{toy}/clip.mp4 --model none -o {toy}/seen", printed="| clip | 1 |"
+        "{toy}/clip.mp4 {toy}/clip --model none -o {toy}/seen",
+        printed="| all | 10 |",  # one of each clip, and eight look-alikes
     ),
     "benchmarks.fusion_cost": Program(
         "{toy}/sequences --frames 12 --resampled one -o {out}",
@@ -79,6 +80,9 @@ PROGRAMS = {
     ),
     "laboratory.fusion_scene_pictures": Program(f"{{out}} --only {PICTURE}", (f"{PICTURE}.webp",)),
     "laboratory.fusion_scenes": Program("--scenes bridge --seeds 1 -o {out}/a.md", ("a.md",)),
+    "laboratory.readme_table": Program(
+        f"{BATTERY} {ONE_CASE} --budget 2 --cases 1", ("readme.md",), "| `fusion` as it ships | "
+    ),
     "laboratory.road_speed": Program(
         "--seeds 1 --speeds 130 --variant apf -o {out}/a.md", ("a.md",), "| all | pairs |"
     ),
