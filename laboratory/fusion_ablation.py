@@ -19,7 +19,7 @@ The intervals are over cameras.
     python -m laboratory.fusion_ablation SEQUENCES -o results/fusion_ablation
 
 Every system is the default with one parameter changed. The table has its means and, as differences
-to the default, 95 % bootstrap intervals over cameras (`evaluation.stress.difference`).
+to the default, 95 % bootstrap intervals over cameras (`laboratory.stress.difference`).
 """
 
 from __future__ import annotations

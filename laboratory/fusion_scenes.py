@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`fusion` on synthetic scenes: the table of docs/fusion_scenes.md.
+"""`fusion` on synthetic scenes: the table of laboratory/notes/fusion_scenes.md.
 
     python -m laboratory.fusion_scenes --seeds 10 -o scenes.md
 
