@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Tables of fusion's ablation and reliability, from scores counted by hand."""
+"""Tables of fusion's results, from scores counted by hand."""
 
 from collections import namedtuple
 from dataclasses import replace
@@ -20,7 +20,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from laboratory import fusion_ablation, fusion_clips, fusion_reliability
+from laboratory import fusion_ablation, fusion_clips, fusion_reliability, readme_table
 from laboratory.fusion_fit import fitted, objective
 from laboratory.stress import Reliability, Result, Score
 from vehicle_pf_tracker.core.box import Box
@@ -60,6 +60,18 @@ def test_a_change_is_compared_with_the_default_camera_by_camera():
 def test_every_change_of_the_ablation_is_a_parameter():
     for change in fusion_ablation.CHANGES.values():
         fusion_ablation.variant_system("fusion", change).make(0)
+
+
+def test_the_table_of_the_readme_has_means_and_sums(tmp_path):
+    table = tmp_path / "baselines.csv"
+    table.write_text(
+        "baseline,on_target,mean_iou,recovered,judged\n"
+        "csrt,1.000,0.400,0,1\ncsrt,0.500,0.300,2,2\nnanotrack_v2,1.000,1.000,1,1\n"
+    )
+    rows = readme_table.of_baselines(table)
+    assert readme_table.cells("CSRT", rows["csrt"]) == ["CSRT", ".750", ".350", "2 of 3"]
+    assert readme_table.cells("Nano", rows["nanotrack_v2"]) == ["Nano", "1.000", "1.000", "1 of 1"]
+    assert not any(readme_table.of_baselines(tmp_path / "none.csv").values())
 
 
 def test_the_calibration_error_is_pooled_over_frames_and_names_the_worst_sequence():
@@ -108,6 +120,17 @@ def test_a_start_is_free_of_others():
     boxes[2] = {time: boxes[2][time] for time in range(5)}
     runs = fusion_clips.leaving(boxes, {1: set(boxes[1]), 2: set()}, (200, 100), 180)
     assert [(run.identity, run.first) for run in runs] == [(1, 5)]
+
+
+def test_look_alikes_leave_on_both_sides():
+    clip = fusion_clips.look_alikes(200)
+    runs = fusion_clips.leaving(clip.boxes, clip.sure, (640, 360), 200)
+    assert {clip.boxes[run.identity][run.last].x < 320 for run in runs} == {False, True}
+
+
+def test_seeds_are_judged_apart():
+    one = fusion_clips.Run(1, 0, 2)
+    assert replace(one, seed=1).claims is not one.claims
 
 
 def test_tracking_counts_once_the_vehicle_has_left():
