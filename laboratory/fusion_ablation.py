@@ -28,12 +28,11 @@ import argparse
 import statistics
 import sys
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
-from laboratory.fusion_fit import listed_cases, report_progress
+from laboratory.fusion_fit import listed_cases, make_parser, parsed, report_progress
 from laboratory.stress import Case, Result, difference, run_battery
 from laboratory.stress.systems import variant_system
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.statistics import Summary
 from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.offline.output_files import write_text
@@ -99,27 +98,15 @@ def table(results: Sequence[Result]) -> str:
 
 def main() -> int:
     """Run all systems over all cases."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument(
-        "sequences", type=Path, nargs="+", help="folders of recordings or frame folders"
-    )
-    parser.add_argument("--cameras", type=Path, default=Path("benchmarks/cameras.csv"))
+    parser = make_parser(__doc__)
     parser.add_argument("--changes", nargs="+", default=list(CHANGES), choices=list(CHANGES))
-    parser.add_argument("--seed", type=int, default=0, help="seed of cases and trackers")
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("-o", "--output", type=Path, required=True)
-    options = parser.parse_args()
-    options.output.mkdir(parents=True, exist_ok=True)
+    options = parsed(parser)
     names = dict.fromkeys([DEFAULT, *options.changes])
     systems = [variant_system("fusion", CHANGES[name], name) for name in names]
-    try:
-        results = run_battery(
-            ablation_cases(options), systems, seeds=(options.seed,), workers=options.workers,
-            store=options.output / "ablation.jsonl", on_progress=report_progress,
-        )  # fmt: skip
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 1
+    results = run_battery(
+        ablation_cases(options), systems, seeds=(options.seed,), workers=options.workers,
+        store=options.output / "ablation.jsonl", on_progress=report_progress,
+    )  # fmt: skip
     text = table(results)
     write_text(options.output / "ablation.md", text)
     print(text, end="")
@@ -127,4 +114,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(exit_status(main, "python -m laboratory.fusion_ablation"))

@@ -44,7 +44,7 @@ from laboratory.stress import (
     run_battery,
     variant_system,
 )
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.parameters.table import ParameterSpec, specs
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 
@@ -240,20 +240,33 @@ def report_progress(done: int, total: int | None) -> None:
         print(f"{done} of {total} runs", file=sys.stderr, flush=True)
 
 
-def arguments(purpose: str | None) -> argparse.Namespace:
-    """Parse the command line of a program that fits."""
+NUMBERS = {
+    "budget": (48, "settings that are tried"),
+    "cases": (3, "cases of each sequence to fit to"),
+    "seeds": (5, "seeds of the plain sequences"),
+    "hard": (6, "hard cases of each sequence to judge"),
+}
+"""Options of the programs that fit or judge: default and help."""
+
+
+def make_parser(purpose: str | None, *numbers: str) -> argparse.ArgumentParser:
+    """Make the parser of a program over sequences with some of `NUMBERS` as options."""
     parser = argparse.ArgumentParser(description=(purpose or "").partition("\n")[0])
     parser.add_argument(
         "sequences", type=Path, nargs="+", help="folders of recordings or frame folders"
     )
     parser.add_argument("--cameras", type=Path, default=Path("benchmarks/cameras.csv"))
-    parser.add_argument("--budget", type=int, default=48, help="settings that are tried")
-    parser.add_argument("--cases", type=int, default=3, help="cases of each sequence to fit to")
-    parser.add_argument("--seeds", type=int, default=5, help="seeds of the plain sequences")
-    parser.add_argument("--hard", type=int, default=6, help="hard cases of each sequence to judge")
-    parser.add_argument("--seed", type=int, default=0, help="seed of the draws and of the cases")
+    for name in numbers:
+        default, text = NUMBERS[name]
+        parser.add_argument(f"--{name}", type=int, default=default, help=text)
+    parser.add_argument("--seed", type=int, default=0, help="seed of all that is drawn")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("-o", "--output", type=Path, required=True)
+    return parser
+
+
+def parsed(parser: argparse.ArgumentParser) -> argparse.Namespace:
+    """Read the command line, and make the folder of the results."""
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
     return options
@@ -261,17 +274,12 @@ def arguments(purpose: str | None) -> argparse.Namespace:
 
 def main() -> int:
     """Fit, judge, write both."""
-    options = arguments(__doc__)
-    try:
-        results = judge(options, fit(options))
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 1
-    text = page(results)
+    options = parsed(make_parser(__doc__, *NUMBERS))
+    text = page(judge(options, fit(options)))
     (options.output / "leave_one_camera_out.md").write_text(text, encoding="utf-8")
     print(text)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(exit_status(main, "python -m laboratory.fusion_fit"))

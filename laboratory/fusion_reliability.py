@@ -26,14 +26,20 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from matplotlib.figure import Figure
 
 from laboratory.figure_files import save
-from laboratory.fusion_fit import JUDGED_KINDS, listed_cases, page, report_progress
+from laboratory.fusion_fit import (
+    JUDGED_KINDS,
+    listed_cases,
+    make_parser,
+    page,
+    parsed,
+    report_progress,
+)
 from laboratory.stress import Reliability, Result, run_battery, variant_system
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.offline.output_files import write_text
@@ -105,30 +111,15 @@ def reliability_figure(results: Sequence[Result]) -> Figure:
 
 def main() -> int:
     """Run, and write tables and figure."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument(
-        "sequences", type=Path, nargs="+", help="folders of recordings or frame folders"
-    )
-    parser.add_argument("--cameras", type=Path, default=Path("benchmarks/cameras.csv"))
-    parser.add_argument("--seeds", type=int, default=5, help="seeds of the plain sequences")
-    parser.add_argument("--hard", type=int, default=6, help="hard cases of each sequence")
-    parser.add_argument("--seed", type=int, default=0, help="seed of the cases")
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("-o", "--output", type=Path, required=True)
-    options = parser.parse_args()
-    options.output.mkdir(parents=True, exist_ok=True)
-    try:
-        results = shipped_results(options)
-        tables = {"shipped.md": page(results), "reliability.md": reliability_table(results)}
-        for name, text in tables.items():
-            write_text(options.output / name, text)
-            print(text)
-        save(reliability_figure(results), options.output / "reliability.png")
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 1
+    options = parsed(make_parser(__doc__, "seeds", "hard"))
+    results = shipped_results(options)
+    tables = {"shipped.md": page(results), "reliability.md": reliability_table(results)}
+    for name, text in tables.items():
+        write_text(options.output / name, text)
+        print(text)
+    save(reliability_figure(results), options.output / "reliability.png")
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(exit_status(main, "python -m laboratory.fusion_reliability"))

@@ -12,9 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Pictures of what `fusion` does on synthetic scenes, for docs/fusion_scenes.md.
+"""Pictures of what `fusion` does on synthetic scenes, for laboratory/notes/fusion_scenes.md.
 
-python -m laboratory.fusion_scene_pictures docs/images
+python -m laboratory.fusion_scene_pictures laboratory/notes/images
 """
 
 from __future__ import annotations

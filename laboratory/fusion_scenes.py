@@ -31,7 +31,7 @@ import cv2
 
 from laboratory.scenes import make_scene
 from laboratory.stress.scoring import Score, score_estimates
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
 from vehicle_pf_tracker.offline.driver import OfflineTracker
 from vehicle_pf_tracker.offline.estimates import EstimateRow
@@ -51,44 +51,25 @@ HEADER = (
 
 
 def main() -> int:
-    """Measure; 1 where a scene is unknown, or a file cannot be read or written."""
-    args = _arguments()
-    cv2.setNumThreads(1)
-    try:
-        _measure(args)
-    except InputError as error:
-        print(f"fusion_scenes: {error}", file=sys.stderr)
-        return 1
-    return 0
-
-
-def _arguments() -> argparse.Namespace:
+    """Measure."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--scenes", nargs="+", default=SCENES, metavar="SCENE")
     parser.add_argument("--seeds", type=int, default=10, help="number of seeds (default: 10)")
-    parser.add_argument("--first-seed", type=int, default=0)
-    parser.add_argument(
-        "--before", type=Path, metavar="FILE.md", help="earlier table to put beside"
-    )
     parser.add_argument("-o", "--output", type=Path, metavar="FILE.md")
-    return parser.parse_args()
-
-
-def _measure(args: argparse.Namespace) -> None:
-    before = _earlier_rows(args.before) if args.before else {}
+    args = parser.parse_args()
+    cv2.setNumThreads(1)
     rows: list[Sequence[str]] = []
     for name in args.scenes:
         scores = []
-        for seed in range(args.first_seed, args.first_seed + args.seeds):
+        for seed in range(args.seeds):
             scores.append(score_scene(name, seed))
             print(f"{name}, seed {seed}: {_summary(scores[-1])}", file=sys.stderr, flush=True)
         rows.append(_row(name, scores))
-        if name in before:
-            rows.append(["*before*", *before[name]])
     table = markdown(HEADER, rows)
     print(table, end="")
     if args.output:
         write_text(args.output, table)
+    return 0
 
 
 def score_scene(name: str, seed: int) -> Score:
@@ -144,16 +125,5 @@ def _summary(score: Score) -> str:
     return ", ".join(f"{k} {v}" for k, v in zip(HEADER[1:], _row("", [score])[1:], strict=True))
 
 
-def _earlier_rows(page: Path) -> dict[str, list[str]]:
-    """Read the rows of an earlier table of these columns from a page, by scene."""
-    try:
-        lines = page.read_text(encoding="utf-8").splitlines()
-    except OSError as error:
-        raise InputError(f"cannot read {page}: {error.strerror}") from error
-    rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
-    wide = (row for row in rows if len(row) == len(HEADER))
-    return {name: cells for name, *cells in wide if name in SCENES}
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(exit_status(main, "python -m laboratory.fusion_scenes"))

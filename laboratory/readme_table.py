@@ -31,7 +31,15 @@ import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from laboratory.fusion_fit import arguments, fit, judge, listed_cases, report_progress
+from laboratory.fusion_fit import (
+    NUMBERS,
+    fit,
+    judge,
+    listed_cases,
+    make_parser,
+    parsed,
+    report_progress,
+)
 from laboratory.stress import Case, Result, run_battery, variant_system
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.tables import markdown
@@ -83,7 +91,7 @@ def _on_target(row: list[str]) -> float:
 
 def main() -> int:
     """Run what is missing, and print the table."""
-    options = arguments(__doc__)
+    options = parsed(make_parser(__doc__, *NUMBERS))
     folder = options.sequences[0].resolve()
     cases = [
         case
