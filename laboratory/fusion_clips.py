@@ -69,7 +69,10 @@ SAME = 0.3
 """Overlap with a box of `traffic` from which that vehicle is claimed."""
 FEW_CLAIMS = 0.02
 """Share with `TRACKING` that is wanted at most."""
-HEAD = ("clip", "runs", "on target", "TRACKING after leaving", "of these on others", "above .02")
+HEAD = (
+    "clip", "runs", "on target", "frames after leaving", "TRACKING there", "of these on others",
+    "runs above .02",
+)  # fmt: skip
 
 Boxes = dict[int, dict[int, Box]]
 """Boxes of vehicles, by identity and by frame."""
@@ -214,9 +217,10 @@ def row(name: str, runs: Sequence[Run]) -> list[str]:
     seen = [on for run in runs for on in run.seen]
     claims = [claim for run in runs for claim in run.claims]
     others = sum(run.others for run in runs)
-    shares = np.mean(seen), np.mean(claims), others / len(claims)
+    shares = (f"{share:.3f}" for share in (np.mean(claims), others / len(claims)))
     worst = sum(bool(np.mean(run.claims) > FEW_CLAIMS) for run in runs)
-    return [name, f"{len(runs)}", *(f"{share:.3f}" for share in shares), f"{worst}"]
+    first = [name, f"{len(runs)}", f"{np.mean(seen):.3f}", f"{len(claims)}"]
+    return [*first, *shares, f"{worst}"]
 
 
 def main() -> int:

@@ -143,7 +143,7 @@ def test_tracking_counts_once_the_vehicle_has_left():
     for frame in range(1, gone + 5):
         box, mode = shown.get(frame, (other, Mode.LOST))
         run.take(frame, SimpleNamespace(box=box, mode=mode), boxes)
-    assert fusion_clips.row("clip", [run]) == ["clip", "1", "0.500", "0.250", "0.250", "1"]
+    assert fusion_clips.row("clip", [run]) == ["clip", "1", "0.500", "4", "0.250", "0.250", "1"]
 
 
 def test_a_camera_has_no_part_in_the_fit_that_is_judged_on_it():
