@@ -122,7 +122,7 @@ def test_a_network_that_never_returns_is_left_with_what_was_tracked(tmp_path, cl
 
 
 STALLED = """
-import ctypes, itertools
+import ctypes, itertools, time
 import cv2, numpy
 class Stalled:
     counts = itertools.count(1)
@@ -135,6 +135,7 @@ class Stalled:
         if count == 41:
             open("stuck", "w").close()
             ctypes.CDLL(None).sleep(10_000)
+        time.sleep(0.04)  # a vehicle is one after half a second
         image = numpy.random.default_rng(0).integers(90, 130, (120, 160, 3), numpy.uint8)
         image[40:60, 2 * count : 2 * count + 30] = (30, 60, 210)
         return True, image
