@@ -43,7 +43,7 @@ A vehicle of 30 px has pieces of 27 px then."""
 
 
 class Emergence(NamedTuple):
-    """What moves around a hidden vehicle, as long as that is one thing at most.
+    """Moving outlines around a hidden vehicle, while there is at most one per frame.
 
     Attributes
     ----------

@@ -228,16 +228,9 @@ def pair_costs(
 
 
 def cut_edges(edges: Array, size: tuple[int, int], noise: float) -> npt.NDArray[np.bool_]:
-    """Find the edges of boxes (..., 4) that lie beyond the borders of the image, or may do.
+    """Find the edges of boxes (..., 4) that lie beyond the borders of an image, or may do.
 
-    Parameters
-    ----------
-    edges : (..., 4) array
-        Boxes in px.
-    size : (int, int)
-        Width and height of the image.
-    noise : float
-        Standard deviation of an edge, fraction of the size.
+    They may where they are nearer than their own deviation; `noise` is that of `deviations`.
     """
     margin = deviations(edges, noise)[..., :2]
     return np.concatenate([edges[..., :2] <= margin, edges[..., 2:] >= size - margin], axis=-1)

@@ -53,7 +53,7 @@ _FROM_THE_SIDE, _ACROSS = 0.5, 6
 """Usual height over width, to start from, of vehicles that drive across the image; and power of the
 share of their motion across by which they are: of 76 clips, only a steep one fits."""
 _SPREAD = 0.2
-"""That of the second, and of the logarithm of a car's size."""
+"""Standard deviation of the logarithms of this share, and of a car's size."""
 _PIECE = 0.8
 """Share of a blob inside a prediction above which it is a piece of that vehicle."""
 _ASPECT_SIDE = 10
