@@ -29,8 +29,8 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.trackers.fusion.appearance import View
+from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, KEPT_FRAMES
-from vehicle_pf_tracker.trackers.fusion.standing_occluder import PROOF_FRAMES
 
 TOO_FAR = "too far to see"
 """Reason of a departure that is by no border."""

@@ -28,8 +28,8 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.fusion.departure import PROOF_DISTANCE
+from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import KEPT_FRAMES, PerspectiveMotion, Sighting
-from vehicle_pf_tracker.trackers.fusion.standing_occluder import PROOF_FRAMES
 
 _SPEEDS = 0.4, 1.6
 """Bounds of the speed of what comes out, of the vehicle's before: it may brake to less than half or

@@ -26,9 +26,8 @@ from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.trackers.fusion.appearance import View, searched_size
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, hidden_hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
-from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, SizeParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, SIZE_RESPONSE, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
-from vehicle_pf_tracker.trackers.fusion.standing_occluder import SIZE_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints

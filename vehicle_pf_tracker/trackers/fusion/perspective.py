@@ -27,7 +27,8 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.trackers.fusion.standing_occluder import PROOF_FRAMES, restored_sightings
+from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
+from vehicle_pf_tracker.trackers.fusion.standing_occluder import restored_sightings
 
 KEPT_FRAMES = 60.0
 """Age in frames from which a sighting is discarded: two seconds, of which positions count for some

@@ -24,14 +24,8 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES, SIZE_RESPONSE
 
-PROOF_FRAMES = 8
-"""Frames in a row that prove a motion or a recognition: a quarter of a second at 30 frames per
-second. At a hundredth of the size per frame, the least speed of a side that drives on, that is
-twice the size's error of 4 %."""
-SIZE_RESPONSE = 0.6
-"""Response, of the usual one, above which a size is measured: it is over the even odds of one half
-(`parameters.EVEN`) by a tenth, since a half-hidden vehicle is measured smaller."""
 _WHOLE_QUANTILE = 0.9
 """Quantile of the ratio of the sides that is the whole vehicle's: two seconds may mostly be cut."""
 _CUT = 0.9

@@ -34,12 +34,12 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
+from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import (
     CLEAR_RESPONSE,
     PerspectiveMotion,
     Sighting,
 )
-from vehicle_pf_tracker.trackers.fusion.standing_occluder import PROOF_FRAMES
 
 _ASIDE = 0.15
 """Least distance of both sides from the predicted path, of the size, in a turn: an outline is good
