@@ -71,7 +71,7 @@ class Branch(NamedTuple):
     size : (2,) array
         Width and height of the box when it was seen last, px.
     margins : pair of (2,) arrays
-        From the box's low and high sides to the outline's, of the size.
+        From the box's low and high sides to the outline's, px: a shadow keeps its extent in a turn.
     outline : Outline
         In the present frame.
     velocity : (2,) array
@@ -108,10 +108,7 @@ class Branch(NamedTuple):
         if not _LEAST_COVERED < float(first.size.prod() / last.size.prod()) < _MOST_COVERED:
             return None
         half = last.size / 2
-        margins = (
-            (first.low - (last.position - half)) / last.size,
-            (first.high - (last.position + half)) / last.size,
-        )
+        margins = first.low - (last.position - half), first.high - (last.position + half)
         branch: Branch | None = cls(motion, last.size, margins, first, motion.velocity)
         for back in range(ago - 1, -1, -1):
             branch = branch and branch.moved(foreground, 1.0, back)
@@ -126,16 +123,14 @@ class Branch(NamedTuple):
         if elapsed:
             moved = (after.centre - before.centre) / elapsed
             velocity = velocity + _VELOCITY_GAIN * (moved - velocity)
-        return self._replace(outline=after, velocity=velocity, age=self.age + elapsed)
+        new = self._replace(outline=after, velocity=velocity, age=self.age + elapsed)
+        aside = self.aside + 1 if _leaves(new, *new.box) else 0
+        return new._replace(aside=aside, is_proven=self.is_proven or aside >= _CONFIRMED)
 
     def judged(self, view: View) -> Branch:
-        """Judge whether the outline has left the path, and the filter recognises the vehicle."""
-        position, size = self.box
-        aside = self.aside + 1 if _leaves(self, position, size) else 0
-        is_proven = self.is_proven or aside >= _CONFIRMED
-        is_clear = is_proven and view.at(position) > CLEAR_RESPONSE
-        clear = self.clear + 1 if is_clear else 0
-        return self._replace(aside=aside, is_proven=is_proven, clear=clear)
+        """Judge whether the filter recognises the vehicle again."""
+        is_clear = self.is_proven and view.at(self.box[0]) > CLEAR_RESPONSE
+        return self._replace(clear=self.clear + 1 if is_clear else 0)
 
     @property
     def is_over(self) -> bool:
@@ -145,8 +140,8 @@ class Branch(NamedTuple):
     @property
     def box(self) -> tuple[Array, Array]:
         """Centre and size, px, of the box that the outline belongs to."""
-        size = self.outline.size / (1 + self.margins[1] - self.margins[0])
-        return self.outline.low - self.margins[0] * size + size / 2, size
+        low, high = self.outline.low - self.margins[0], self.outline.high - self.margins[1]
+        return (low + high) / 2, np.maximum(high - low, 1.0)
 
 
 PaintDifference = Callable[[Array, Array], float]
