@@ -22,10 +22,10 @@ from fusion_samples import grey_road
 
 from vehicle_pf_tracker.image.camera_motion import SmallGrey
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.foreground import Foreground
+from vehicle_pf_tracker.image.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion, Sighting
-from vehicle_pf_tracker.trackers.fusion.turning import Turning
+from vehicle_pf_tracker.trackers.fusion.turning import Branch, Turning
 
 SIZE = np.array([26.0, 16.0])
 SPEED = 2.0
@@ -54,8 +54,11 @@ def path(turns):
     return centres
 
 
-def drive(turns, paint=lambda picture, time: None, response=0.1, still=lambda time: True):
-    """Run the branch from the doubt on; what it gives, frame by frame, and the true centres."""
+def drive(turns, paint=lambda picture, time: None, response=0.1, still=lambda time: True, late=0):
+    """Run the branch from the doubt on; what it gives, frame by frame, and the true centres.
+
+    The doubt begins `late` frames after the turn, with the last clear sighting before it.
+    """
     turning, foreground, centres, given = Turning(), Foreground(), path(turns), []
     for time, centre in enumerate(centres):
         picture = ROAD.copy()
@@ -65,13 +68,13 @@ def drive(turns, paint=lambda picture, time: None, response=0.1, still=lambda ti
         foreground.keep(SmallGrey(picture, 1.0), still=still(time))
         if not foreground.is_known:
             turning = Turning()
-        if time > DOUBT:
+        if time > DOUBT + late:
             turning = turning.followed(foreground, 1.0, view(response), lambda *_: 1.0)
             given.append(turning.vehicle)
-        elif time == DOUBT:
-            motion = PerspectiveMotion(centre, np.array([SPEED, 0.0]), 0.0)
-            turning = Turning.begun(foreground, motion, Sighting(0.0, centre, SIZE))
-    return given, centres[DOUBT + 1 :]
+        elif time == DOUBT + late:
+            motion = PerspectiveMotion(centres[DOUBT], np.array([SPEED, 0.0]), 0.0)
+            turning = Turning.begun(foreground, motion, Sighting(late, centres[DOUBT], SIZE))
+    return given, centres[DOUBT + late + 1 :]
 
 
 def test_a_vehicle_that_turns_is_followed_by_its_outline():
@@ -82,6 +85,22 @@ def test_a_vehicle_that_turns_is_followed_by_its_outline():
         assert turned.box[0] == pytest.approx(centre, abs=1.5)
         assert turned.box[1] == pytest.approx(SIZE, abs=2.5)
     assert given[first + 5].velocity[1] < -0.5
+
+
+def test_a_turn_that_the_doubt_comes_late_for_is_proven_at_once():
+    assert drive(turns=0.08, late=11)[0][0] is not None
+
+
+def test_a_shadow_keeps_its_extent_while_the_vehicle_turns():
+    """The outline has 6 px of shadow on the right and 4 px below, lying and upright."""
+    lying, upright = np.array([26.0, 16.0]), np.array([16.0, 26.0])
+    shadow, low = np.array([6.0, 4.0]), np.array([50.0, 40.0])
+    motion = PerspectiveMotion(low, np.zeros(2), 0.0)
+    outline = Outline(low, low + upright + shadow)
+    branch = Branch(motion, lying, (np.zeros(2), shadow), outline, np.zeros(2))
+    centre, size = branch.box
+    assert size == pytest.approx(upright)
+    assert centre == pytest.approx(low + upright / 2)
 
 
 def wall(picture, _time):
