@@ -74,7 +74,7 @@ PICTURES = (
     Picture("fusion_occlusion", "bus", 2, (36, 42, 50, 58, 62, 75)),
     Picture("fusion_neighbour", "bridge", 0, (36, 47, 58, 66, 69, 80)),
     Picture("fusion_turn", "turn", 0, (46, 53, 56, 60, 65, 80)),
-    Picture("fusion_turn_hidden", "turn_occluded", 0, (36, 41, 48, 58, 66, 76)),
+    Picture("fusion_turn_hidden", "turn_occluded", 0, (36, 48, 58, 70, 79, 92)),
 )
 
 
