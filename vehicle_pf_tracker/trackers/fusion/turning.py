@@ -115,7 +115,10 @@ class Branch(NamedTuple):
         return branch
 
     def moved(self, foreground: Foreground, elapsed: float, ago: int = 0) -> Branch | None:
-        """Follow the outline for `elapsed` frames, into the frame some `ago`; None: it is lost."""
+        """Follow the outline for `elapsed` frames, into the frame some `ago`; None: it is lost.
+
+        Whether it has left the path is judged in each frame, also before the doubt.
+        """
         before, velocity = self.outline, self.velocity
         after = foreground.outline(before.centre + velocity * elapsed, before.size, ago)
         if after is None or np.abs(np.log(after.size / before.size)).max() > _LARGEST_LOG_CHANGE:
@@ -141,6 +144,7 @@ class Branch(NamedTuple):
     def box(self) -> tuple[Array, Array]:
         """Centre and size, px, of the box that the outline belongs to."""
         low, high = self.outline.low - self.margins[0], self.outline.high - self.margins[1]
+        # An outline may have become smaller than its margins were.
         return (low + high) / 2, np.maximum(high - low, 1.0)
 
 
