@@ -17,7 +17,7 @@ VERSIONED := $(addprefix test/,filtering image trackers recordings scenes/test_f
 # Lifecycle, parameters, targets, processes and a replay: what a release of rclpy may change.
 KILTED := $(addprefix test/ros/,test_rclpy_internals.py test_transport.py node/test_node_lifecycle.py \
 	node/test_several_nodes.py node/test_node_requests.py replay/test_replay_lockstep.py)
-# What each part of the tests but test-offline runs, which has the rest.
+# What each part of the tests but test-rest runs, which has the rest.
 test-ros := ros
 test-footage := scenes recordings reproduction
 test-programs := test_programs.py
@@ -28,7 +28,7 @@ COVERED := 92
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
 # Each target that says of itself what it does, with two hashes, is listed by `make help`.
-.PHONY: help demo test test-all test-offline test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs dist clean
+.PHONY: help demo test test-all test-rest test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs dist clean
 
 demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
@@ -38,7 +38,7 @@ help:  ## list the targets
 		while IFS='|' read -r target words; do printf '%-12s %s\n' "$$target" "$$words"; done
 
 # Three parts side by side on two cores: the tests through ROS mostly wait, and the others compute.
-PARTS := test-ros test-offline test-footage
+PARTS := test-ros test-rest test-footage
 RUN := $(BIN)/python -m pytest -m "not slow"
 
 ifdef PYTEST_ARGS
@@ -61,7 +61,7 @@ test-all: .venv/installed .venv/colcon kernels  ## every test, with branch cover
 kernels: .venv/installed
 	$(BIN)/python -c "from vehicle_pf_tracker.image.kernels.interface import load_kernels; load_kernels('auto')"
 
-test-offline: .venv/installed
+test-rest: .venv/installed
 	$(RUN) $(addprefix --ignore test/,$(test-ros) $(test-footage) $(test-programs))
 
 # Shown when they have ended, so that the parts do not mix.

@@ -95,7 +95,7 @@ setup(
     package_data={
         NAME: ["py.typed"],
         f"{NAME}.cli": ["pick.html", "pick.js"],
-        f"{NAME}.offline": ["live.html"],
+        f"{NAME}.showing": ["live.html"],
         f"{NAME}.recordings": ["ImageAnnotations.msg"],
         f"{NAME}.ros": ["transport.xml"],
         f"{NAME}.evaluation": ["baselines.txt"],

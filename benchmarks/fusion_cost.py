@@ -46,7 +46,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.baselines import Baseline
 from vehicle_pf_tracker.evaluation.tables import markdown
-from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.results.output_files import write_text
 
 SIZES: Mapping[str, tuple[int, int]] = {
     "VGA": (640, 480), "1080p": (1920, 1080), "4K": (3840, 2160)

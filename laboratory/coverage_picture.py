@@ -29,7 +29,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from laboratory.covariance_coverage import INSIDE, Runs
-from vehicle_pf_tracker.offline.output_files import replacing
+from vehicle_pf_tracker.results.output_files import replacing
 from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 
 _SHOWN = {"fusion": "tab:blue", "apf": "tab:orange"}

@@ -21,7 +21,7 @@ from pathlib import Path
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from vehicle_pf_tracker.offline.output_files import replacing
+from vehicle_pf_tracker.results.output_files import replacing
 
 _DPI = 150
 

@@ -35,8 +35,8 @@ from laboratory.stress.systems import variant_system
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.statistics import Summary
 from vehicle_pf_tracker.evaluation.tables import markdown
-from vehicle_pf_tracker.offline.output_files import write_text
 from vehicle_pf_tracker.parameters.table import Value
+from vehicle_pf_tracker.results.output_files import write_text
 
 DEFAULT = "default"
 CHANGES: Mapping[str, Mapping[str, Value]] = {

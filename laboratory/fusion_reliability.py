@@ -42,7 +42,7 @@ from laboratory.stress import Reliability, Result, run_battery, variant_system
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.plots import STYLES
 from vehicle_pf_tracker.evaluation.tables import markdown
-from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.results.output_files import write_text
 
 
 def shipped_results(options: argparse.Namespace) -> list[Result]:

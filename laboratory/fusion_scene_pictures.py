@@ -38,8 +38,8 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.evaluation.plots import STYLES
-from vehicle_pf_tracker.offline.estimates import EstimateRow
-from vehicle_pf_tracker.offline.output_files import make_folder, replacing
+from vehicle_pf_tracker.results.estimates import EstimateRow
+from vehicle_pf_tracker.results.output_files import make_folder, replacing
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.estimate import Mode
 

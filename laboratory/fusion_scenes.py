@@ -33,10 +33,10 @@ from laboratory.scenes import make_scene
 from laboratory.stress.scoring import Score, score_estimates
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
-from vehicle_pf_tracker.offline.driver import OfflineTracker
-from vehicle_pf_tracker.offline.estimates import EstimateRow
-from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.following.driver import OfflineTracker
 from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.results.estimates import EstimateRow
+from vehicle_pf_tracker.results.output_files import write_text
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.registry import find_variant
 

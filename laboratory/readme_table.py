@@ -43,7 +43,7 @@ from laboratory.fusion_fit import (
 from laboratory.stress import Case, Result, run_battery, variant_system
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.tables import markdown
-from vehicle_pf_tracker.offline.output_files import write_text
+from vehicle_pf_tracker.results.output_files import write_text
 
 HEAD = ("tracker", "visible frames on target", "mean IoU", "total occlusions recovered from")
 VARIANTS = {

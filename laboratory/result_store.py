@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from vehicle_pf_tracker.core.outputs import output_errors
-from vehicle_pf_tracker.offline.output_files import make_folder
+from vehicle_pf_tracker.results.output_files import make_folder
 
 Result: TypeAlias = dict[str, Any]
 """Plain values that JSON knows."""

@@ -40,10 +40,10 @@ from laboratory.scenes.road import RoadSceneParameters, camera_of, road
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
-from vehicle_pf_tracker.offline.output_files import write_text
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters, format_pairs
 from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.results.output_files import write_text
 from vehicle_pf_tracker.road.plane import Pair
 from vehicle_pf_tracker.trackers.localisation import Localisation
 from vehicle_pf_tracker.trackers.registry import find_variant

@@ -39,9 +39,9 @@ from laboratory.covariance_coverage import fitted_table, report, runs_of
 from laboratory.coverage_picture import draw
 from laboratory.scenes import SCENES, make_scene
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.output_files import write_text
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, specs
+from vehicle_pf_tracker.results.output_files import write_text
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant

@@ -29,10 +29,10 @@ from reproduction.paper_scenes import FIXED_SCENES, SCENES, make_scene
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
-from vehicle_pf_tracker.offline.driver import with_target
-from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.following.driver import with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs, to_mapping
+from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.scenes.scene import Scene, SceneFrame
 from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session

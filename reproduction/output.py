@@ -20,8 +20,8 @@ from pathlib import Path
 
 from laboratory.figure_files import save
 from reproduction import experiment as ex
-from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
-from vehicle_pf_tracker.offline.run_folder import versions
+from vehicle_pf_tracker.results.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.results.run_folder import versions
 
 DATA, FIGURE, VERDICT = "data.csv", "figure", "verdict"
 

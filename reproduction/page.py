@@ -26,7 +26,7 @@ from reproduction.catalogue import Paper
 from reproduction.experiment import OURS, PAPER, PRINTED, Experiment
 from reproduction.output import FIGURE, VERDICT
 from vehicle_pf_tracker.core.outputs import output_errors
-from vehicle_pf_tracker.offline.output_files import make_folder, write_text
+from vehicle_pf_tracker.results.output_files import make_folder, write_text
 
 PAGE = "reproduction.md"
 _PICTURES = "images/reproduction"

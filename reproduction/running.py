@@ -22,7 +22,7 @@ from typing import TypeAlias
 from laboratory.result_store import ResultStore
 from reproduction.cells import Cell, Result
 from vehicle_pf_tracker.evaluation.cache_key import result_key, variant_modules
-from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
+from vehicle_pf_tracker.following.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 

@@ -34,7 +34,8 @@ MAX_FILE_LINES = 350
 MAX_FUNCTION_LINES = 60
 
 GROUND = {"core", "road", "parameters", "filtering", "image"}
-OFFLINE = {*GROUND, "trackers", "recordings", "scenes"}
+BELOW = {*GROUND, "trackers", "recordings", "scenes", "counting"}
+FOLLOWING = {*BELOW, "results", "showing"}
 MAY_IMPORT = {
     "core": set[str](),
     "road": {"core"},
@@ -44,10 +45,13 @@ MAY_IMPORT = {
     "trackers": GROUND,
     "recordings": GROUND,
     "scenes": GROUND,
-    "offline": OFFLINE,
-    "ros": {*OFFLINE, "offline"} - {"scenes"},
-    "evaluation": {*OFFLINE, "offline"},
-    "cli": {*OFFLINE, "offline", "ros", "evaluation"},
+    "counting": {*GROUND, "trackers"},
+    "results": BELOW,
+    "showing": {*BELOW, "results"},
+    "following": FOLLOWING,
+    "ros": {*FOLLOWING, "following"} - {"scenes"},
+    "evaluation": {*FOLLOWING, "following"},
+    "cli": {*FOLLOWING, "following", "ros", "evaluation"},
 }
 """The rooms below each room, from the ground up."""
 BESIDE = {"reproduction", "benchmarks", "laboratory", "tools"}
@@ -381,7 +385,7 @@ def made_up(folder: Path, **files: str) -> dict[str, Module]:
         ("evaluation__tables", "from vehicle_pf_tracker.ros.node.tracker_node import Node"),
         ("evaluation__tables", "from vehicle_pf_tracker.cli.main import main"),
         ("ros__node", "from vehicle_pf_tracker.evaluation.scores import Scores"),
-        ("offline__driver", "from vehicle_pf_tracker.evaluation.scores import Scores"),
+        ("following__driver", "from vehicle_pf_tracker.evaluation.scores import Scores"),
         ("ros__node", "from vehicle_pf_tracker.cli.main import main"),
         ("evaluation__tables", "from reproduction.experiment import Verdict"),
         ("cli__replay", "from vehicle_pf_tracker.ros.replay.player import play"),

@@ -26,12 +26,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:  # `as` makes them names of this package for type checkers
     from vehicle_pf_tracker.core.box import Box as Box
     from vehicle_pf_tracker.core.errors import InputError as InputError
-    from vehicle_pf_tracker.offline.library import Estimates as Estimates
-    from vehicle_pf_tracker.offline.library import track as track
-    from vehicle_pf_tracker.offline.traffic_library import TrafficTracker as TrafficTracker
-    from vehicle_pf_tracker.offline.traffic_results import read_counts as read_counts
-    from vehicle_pf_tracker.offline.traffic_results import read_tracks as read_tracks
+    from vehicle_pf_tracker.following.library import Estimates as Estimates
+    from vehicle_pf_tracker.following.library import track as track
+    from vehicle_pf_tracker.following.traffic_library import TrafficTracker as TrafficTracker
     from vehicle_pf_tracker.recordings.source import open_source as open_source
+    from vehicle_pf_tracker.results.traffic_results import read_counts as read_counts
+    from vehicle_pf_tracker.results.traffic_results import read_tracks as read_tracks
     from vehicle_pf_tracker.trackers.estimate import Estimate as Estimate
     from vehicle_pf_tracker.trackers.estimate import Mode as Mode
     from vehicle_pf_tracker.trackers.registry import make_tracker as make_tracker
@@ -40,15 +40,15 @@ __version__: str
 _HOMES = {
     "Box": "core.box",
     "Estimate": "trackers.estimate",
-    "Estimates": "offline.library",
+    "Estimates": "following.library",
     "InputError": "core.errors",
     "Mode": "trackers.estimate",
-    "TrafficTracker": "offline.traffic_library",
+    "TrafficTracker": "following.traffic_library",
     "make_tracker": "trackers.registry",
     "open_source": "recordings.source",
-    "read_counts": "offline.traffic_results",
-    "read_tracks": "offline.traffic_results",
-    "track": "offline.library",
+    "read_counts": "results.traffic_results",
+    "read_tracks": "results.traffic_results",
+    "track": "following.library",
 }
 """Module of each public name."""
 __all__ = list(_HOMES)

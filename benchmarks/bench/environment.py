@@ -22,7 +22,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.offline.run_folder import versions
+from vehicle_pf_tracker.results.run_folder import versions
 
 _ROS = "ros-jazzy-rclpy"
 

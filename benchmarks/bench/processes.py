@@ -31,7 +31,7 @@ from benchmarks.bench.metered_node import METER
 from benchmarks.bench.resident import resident_mb
 from benchmarks.bench.root import ROOT
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.processes import wait_or_kill
+from vehicle_pf_tracker.following.processes import wait_or_kill
 
 _READY = "ready:"
 _SIDES = ("x", "y", "width", "height")

@@ -27,8 +27,8 @@ from laboratory.stress.running import Result
 from laboratory.stress.summary import ALL, MEASURES, Group, faults, groups
 from vehicle_pf_tracker.evaluation.statistics import Summary
 from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
-from vehicle_pf_tracker.offline.output_files import make_folder, write_json, write_text
-from vehicle_pf_tracker.offline.run_folder import versions
+from vehicle_pf_tracker.results.output_files import make_folder, write_json, write_text
+from vehicle_pf_tracker.results.run_folder import versions
 
 CSV, JSON, MARKDOWN = "stress.csv", "stress.json", "stress.md"
 _TITLES = {

@@ -29,8 +29,8 @@ from laboratory.stress.scoring import Score, score_case
 from laboratory.stress.systems import Follower, StressSystem
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.cache_key import result_key
-from vehicle_pf_tracker.offline.estimates import EstimateRow
-from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
+from vehicle_pf_tracker.following.processes import OnProgress, run_in_processes
+from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.trackers.estimate import Estimate
 
 WORKERS = 2

@@ -29,8 +29,8 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_row
 from vehicle_pf_tracker.evaluation.cache_key import variant_modules
 from vehicle_pf_tracker.evaluation.systems import BASELINE, System
-from vehicle_pf_tracker.offline.estimates import EstimateRow
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, to_mapping
+from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import find_variant
 

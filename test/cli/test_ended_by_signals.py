@@ -104,7 +104,7 @@ class Stuck:
             open("stuck", "w").close()
             ctypes.CDLL(None).sleep(10_000)
         return Detections.make([[100, 3.0 * call, 40, 30]], [0.9])
-from vehicle_pf_tracker.offline import counted_vehicles
+from vehicle_pf_tracker.following import counted_vehicles
 counted_vehicles.detector_maker = lambda *_: Stuck
 """
 

@@ -25,7 +25,7 @@ from small_recordings import COUNT, TARGET, frame_folder, frame_of, record, writ
 
 from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.offline import pictures
+from vehicle_pf_tracker.showing import pictures
 
 HOLD = """
 import sys

@@ -20,7 +20,7 @@ from mcap.writer import CompressionType
 from small_recordings import COUNT, TARGET, box_of, record, record_two_cameras
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, read_estimates
+from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, read_estimates
 from vehicle_pf_tracker.trackers.papers.apf import ApfTracker
 
 

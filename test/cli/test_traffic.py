@@ -33,7 +33,7 @@ from small_recordings import write_video
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.offline import counted_vehicles
+from vehicle_pf_tracker.following import counted_vehicles
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 

@@ -17,7 +17,7 @@
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
-from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.results.estimates import EstimateRow
 
 NONE, PARTIAL, TOTAL = Occlusion.NONE, Occlusion.PARTIAL, Occlusion.TOTAL
 SIDES = (24.0, 32.0)  # diagonal 40: on target below 20 px

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.evaluation.metrics import (
     measure,
 )
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
-from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.results.estimates import EstimateRow
 
 
 def test_precision_by_hand():

@@ -21,7 +21,7 @@ from scoring_samples import NONE, PARTIAL, PERIOD_NS, TOTAL, row, run_of, scored
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
-from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow
 
 
 def metrics_of(*frames):

@@ -21,7 +21,7 @@ from scoring_samples import PERIOD_NS, row, truth
 
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow
 
 
 def silent(frame, mode=REJECTED):

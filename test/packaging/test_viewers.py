@@ -38,7 +38,7 @@ TYPES = {
     f"{NODE}/velocity": "geometry_msgs/msg/Vector3Stamped",
     "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
 }
-"""Types by topic, as docs/ros_interface.md and offline/estimates_recording.py have them."""
+"""Types by topic, as docs/ros_interface.md and showing/estimates_recording.py have them."""
 
 
 def topics_and_fields(path: str) -> tuple[str, list[str]]:

@@ -65,7 +65,7 @@ def test_the_package_has_a_ground_and_a_roof():
     assert graph["core"] == set()
     assert "cli" not in set().union(*graph.values())
     assert "evaluation" in graph["cli"]
-    assert reduced(graph)["ros"] == {"offline"}
+    assert reduced(graph)["ros"] == {"following"}
 
 
 @pytest.mark.parametrize("page", ["", BEGIN, END + BEGIN])

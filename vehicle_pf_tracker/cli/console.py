@@ -23,7 +23,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.offline.processes import OnProgress
+    from vehicle_pf_tracker.following.processes import OnProgress
 
 PROGRAM = "vehicle-pf-tracker"
 FAILED, USAGE, INTERRUPTED, PIPE_CLOSED = 1, 2, 130, 141

@@ -29,8 +29,8 @@ from vehicle_pf_tracker.cli.console import PROGRAM, tell_notice
 from vehicle_pf_tracker.cli.main import EVALUATION_MODULES
 from vehicle_pf_tracker.cli.requests import OverwriteOption, option
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
-from vehicle_pf_tracker.offline.run_folder import ESTIMATES
+from vehicle_pf_tracker.results.estimates import EstimateRow, read_estimates
+from vehicle_pf_tracker.results.run_folder import ESTIMATES
 
 _VERB = "from vehicle_pf_tracker.cli.main import main; raise SystemExit(main())"
 _NODE = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('fusion'))"

@@ -37,16 +37,16 @@ from vehicle_pf_tracker.cli.tracking_options import TARGET_FORM, list_in, target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.image.compressed_image import jpeg
-from vehicle_pf_tracker.offline.drawing import draw_pixel_grid
-from vehicle_pf_tracker.offline.output_files import write_picture, write_text
-from vehicle_pf_tracker.offline.page_server import Content, PageHandler, PageServer
-from vehicle_pf_tracker.offline.pictures import has_display
 from vehicle_pf_tracker.parameters.counting_plan import parse_counting_plan
 from vehicle_pf_tracker.parameters.files import read_yaml_file
 from vehicle_pf_tracker.parameters.road import format_pairs
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import Source, frame_at
+from vehicle_pf_tracker.results.output_files import write_picture, write_text
 from vehicle_pf_tracker.road.plane import Pair
+from vehicle_pf_tracker.showing.drawing import draw_pixel_grid
+from vehicle_pf_tracker.showing.page_server import Content, PageHandler, PageServer
+from vehicle_pf_tracker.showing.pictures import has_display
 
 Document: TypeAlias = dict[str, Any]
 """Drawn shapes by section, as in a file of `pick`."""

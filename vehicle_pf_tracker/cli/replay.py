@@ -37,9 +37,9 @@ from vehicle_pf_tracker.cli.tracking_options import parse_box
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.offline.estimates import write_estimates
-from vehicle_pf_tracker.offline.output_files import make_folder
 from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.results.estimates import write_estimates
+from vehicle_pf_tracker.results.output_files import make_folder
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions, ReplayReport

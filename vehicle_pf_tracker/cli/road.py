@@ -34,15 +34,15 @@ from vehicle_pf_tracker.cli.requests import (
 )
 from vehicle_pf_tracker.cli.tracking_options import read_list
 from vehicle_pf_tracker.core.outputs import claimed
-from vehicle_pf_tracker.offline.drawing import draw_road_grid
-from vehicle_pf_tracker.offline.output_files import write_picture, write_text
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.road import format_pairs, parse_pairs
 from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
 from vehicle_pf_tracker.recordings.source import Source, frame_at
+from vehicle_pf_tracker.results.output_files import write_picture, write_text
 from vehicle_pf_tracker.road.camera import MODELS
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
+from vehicle_pf_tracker.showing.drawing import draw_road_grid
 
 _TITLE = "Road. Written by `vehicle-pf-tracker road calibrate`."
 

@@ -30,13 +30,13 @@ from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.columns import COLUMNS, number_text
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.offline.driver import OfflineTracker, follow
-from vehicle_pf_tracker.offline.estimates import EstimateRow, summary, write_tracks
-from vehicle_pf_tracker.offline.estimates_recording import run_recording
-from vehicle_pf_tracker.offline.output_files import write_json
-from vehicle_pf_tracker.offline.pictures import Pictures
-from vehicle_pf_tracker.offline.run_folder import ESTIMATES, METRICS, RUN, describe_run, write_run
+from vehicle_pf_tracker.following.driver import OfflineTracker, follow
 from vehicle_pf_tracker.recordings.source import Source
+from vehicle_pf_tracker.results.estimates import EstimateRow, summary, write_tracks
+from vehicle_pf_tracker.results.output_files import write_json
+from vehicle_pf_tracker.results.run_folder import ESTIMATES, METRICS, RUN, describe_run, write_run
+from vehicle_pf_tracker.showing.estimates_recording import run_recording
+from vehicle_pf_tracker.showing.pictures import Pictures
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 SHEET = "summary.png"

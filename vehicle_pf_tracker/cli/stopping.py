@@ -36,10 +36,10 @@ from vehicle_pf_tracker.core.signals import ending_signals, handled
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.cli.tracking_options import Moment
-    from vehicle_pf_tracker.offline.pictures import Numbered
-    from vehicle_pf_tracker.offline.processes import OnProgress
+    from vehicle_pf_tracker.following.processes import OnProgress
     from vehicle_pf_tracker.recordings.reader import StampedFrame
     from vehicle_pf_tracker.recordings.source import Source
+    from vehicle_pf_tracker.showing.pictures import Numbered
 
 T = TypeVar("T")
 

@@ -24,12 +24,12 @@ from vehicle_pf_tracker.cli.console import UsageError, counting
 from vehicle_pf_tracker.cli.requests import Names, OverwriteOption, option, positional, switch
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
-from vehicle_pf_tracker.offline.output_files import write_csv
-from vehicle_pf_tracker.offline.pictures import SUFFIX, video_writer
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.results.output_files import write_csv
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.scenes.scene import Scene
+from vehicle_pf_tracker.showing.pictures import SUFFIX, video_writer
 
 
 @dataclass(frozen=True, kw_only=True)

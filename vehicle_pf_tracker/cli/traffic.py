@@ -29,18 +29,18 @@ from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, cut_short, number
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.offline.counted_vehicles import session_and_counter
-from vehicle_pf_tracker.offline.detectors import DetectionFile, call
-from vehicle_pf_tracker.offline.model_files import model_file
-from vehicle_pf_tracker.offline.output_files import make_folder, write_json
-from vehicle_pf_tracker.offline.page_server import LivePage
-from vehicle_pf_tracker.offline.pictures import Pictures
-from vehicle_pf_tracker.offline.run_folder import RUN, describe
-from vehicle_pf_tracker.offline.traffic_following import TrafficRun
-from vehicle_pf_tracker.offline.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
+from vehicle_pf_tracker.following.counted_vehicles import session_and_counter
+from vehicle_pf_tracker.following.detectors import DetectionFile, call
+from vehicle_pf_tracker.following.model_files import model_file
+from vehicle_pf_tracker.following.traffic_following import TrafficRun
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.recordings.source import Source
+from vehicle_pf_tracker.results.output_files import make_folder, write_json
+from vehicle_pf_tracker.results.run_folder import RUN, describe
+from vehicle_pf_tracker.results.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
+from vehicle_pf_tracker.showing.page_server import LivePage
+from vehicle_pf_tracker.showing.pictures import Pictures
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, NONE, TOPIC
 

@@ -42,10 +42,10 @@ from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.report.writing import write_report
 from vehicle_pf_tracker.evaluation.tables import markdown
-from vehicle_pf_tracker.offline.output_files import make_folder, write_csv, write_text
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.table import Value, parse_assignments
+from vehicle_pf_tracker.results.output_files import make_folder, write_csv, write_text
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 TRIALS, SEEDS, SEARCH_SEED = 60, 3, 100

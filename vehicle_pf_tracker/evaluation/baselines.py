@@ -34,8 +34,8 @@ from vehicle_pf_tracker.core.clock import MAX_DIFF, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
-from vehicle_pf_tracker.offline.processes import wait_or_kill
+from vehicle_pf_tracker.following.processes import wait_or_kill
+from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow
 
 VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 """Environment variable that names the interpreter."""

@@ -25,7 +25,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.offline.run_folder import versions
+from vehicle_pf_tracker.results.run_folder import versions
 from vehicle_pf_tracker.trackers.registry import Variant
 
 
@@ -45,7 +45,7 @@ def variant_modules(variant: Variant) -> set[str]:
 _PACKAGE = Path(__file__).parents[1]
 _SHARED = (
     "core", "road", "parameters", "filtering", "image", "image/kernels", "trackers", "recordings",
-    "scenes", "offline", "evaluation", "evaluation/grid",
+    "scenes", "following", "results", "evaluation", "evaluation/grid",
 )  # fmt: skip
 """Folders whose code counts for every result."""
 

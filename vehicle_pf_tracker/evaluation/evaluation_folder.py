@@ -34,10 +34,10 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.systems import System
-from vehicle_pf_tracker.offline.estimates import EstimateRow, read_estimates
-from vehicle_pf_tracker.offline.output_files import read_csv, write_csv
-from vehicle_pf_tracker.offline.run_folder import ESTIMATES, RUN
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
+from vehicle_pf_tracker.results.estimates import EstimateRow, read_estimates
+from vehicle_pf_tracker.results.output_files import read_csv, write_csv
+from vehicle_pf_tracker.results.run_folder import ESTIMATES, RUN
 
 
 @dataclass(frozen=True, slots=True)

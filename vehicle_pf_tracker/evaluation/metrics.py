@@ -40,7 +40,7 @@ from vehicle_pf_tracker.evaluation.scores import (
     errors_of,
     score_occlusions,
 )
-from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING
+from vehicle_pf_tracker.results.estimates import REJECTED, WAITING
 from vehicle_pf_tracker.trackers.estimate import Mode
 
 PRECISION_PX = 20.0

@@ -35,7 +35,7 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.core.clock import MAX_DIFF, associate
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.offline.estimates import WAITING, EstimateRow
+from vehicle_pf_tracker.results.estimates import WAITING, EstimateRow
 
 SETTLING_FRAMES = 15
 """Frames after the last hidden one before a track is judged: half a second at 30 Hz, in which a

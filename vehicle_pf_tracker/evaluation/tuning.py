@@ -50,7 +50,7 @@ from vehicle_pf_tracker.evaluation.grid.running import Runner
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means, summarise
 from vehicle_pf_tracker.evaluation.systems import System
-from vehicle_pf_tracker.offline.processes import OnProgress
+from vehicle_pf_tracker.following.processes import OnProgress
 from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import Variant
 

@@ -23,8 +23,8 @@ from rosbags.rosbag2 import Reader
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
-from vehicle_pf_tracker.offline.estimates_recording import run_recording
 from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.showing.estimates_recording import run_recording
 
 
 @pytest.fixture(scope="module")

@@ -33,7 +33,7 @@ from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
 from vehicle_pf_tracker.evaluation.statistics import summarise
 from vehicle_pf_tracker.evaluation.tables import behind_table, overall_table
-from vehicle_pf_tracker.offline.output_files import write_json
+from vehicle_pf_tracker.results.output_files import write_json
 
 
 @pytest.fixture(scope="module")

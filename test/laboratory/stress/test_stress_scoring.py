@@ -24,7 +24,7 @@ from laboratory.stress.running import Result
 from laboratory.stress.summary import difference, groups
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.results.estimates import EstimateRow
 
 STAMP = 10**8
 BOX = Box(10.0, 10.0, 30.0, 40.0)

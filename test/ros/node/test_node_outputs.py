@@ -26,8 +26,8 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Image, PointCloud2
 from tracker_rig import HEIGHT, PERIOD_NS, SPEED, WIDTH, Rig, on_target, road, values_of
 
-from vehicle_pf_tracker.offline.drawing import Annotator
 from vehicle_pf_tracker.ros import messages
+from vehicle_pf_tracker.showing.drawing import Annotator
 
 pytestmark = pytest.mark.ros
 

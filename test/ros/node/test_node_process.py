@@ -230,7 +230,7 @@ def test_the_node_loads_neither_recordings_nor_evaluation():
     ).stdout
     rooms = {name.split(".")[1] for name in loaded.split()}
     assert rooms == {
-        "ros", "offline", "road", "trackers", "image", "filtering", "parameters", "core",
+        "ros", "showing", "results", "road", "trackers", "image", "filtering", "parameters", "core",
     }  # fmt: skip
     assert "player" not in loaded
 

@@ -41,13 +41,13 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.detectors import detector_maker
+from vehicle_pf_tracker.counting.counter import Counter
+from vehicle_pf_tracker.following.detectors import detector_maker
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.traffic.messages import CODES
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.counting import Counter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker

@@ -35,8 +35,8 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     write_truth,
 )
 from vehicle_pf_tracker.evaluation.systems import System
-from vehicle_pf_tracker.offline.output_files import make_folder, write_json
-from vehicle_pf_tracker.offline.run_folder import versions
+from vehicle_pf_tracker.results.output_files import make_folder, write_json
+from vehicle_pf_tracker.results.run_folder import versions
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 

@@ -32,11 +32,11 @@ from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.systems import BASELINE
-from vehicle_pf_tracker.offline import run_folder
-from vehicle_pf_tracker.offline.driver import OfflineTracker
-from vehicle_pf_tracker.offline.estimates import REJECTED, WAITING, EstimateRow
-from vehicle_pf_tracker.offline.output_files import flush, make_folder, write_json
-from vehicle_pf_tracker.offline.processes import OnProgress, run_in_processes
+from vehicle_pf_tracker.following.driver import OfflineTracker
+from vehicle_pf_tracker.following.processes import OnProgress, run_in_processes
+from vehicle_pf_tracker.results import run_folder
+from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.results.output_files import flush, make_folder, write_json
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 

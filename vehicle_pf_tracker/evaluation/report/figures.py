@@ -36,7 +36,7 @@ from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
-from vehicle_pf_tracker.offline.output_files import make_folder, replacing
+from vehicle_pf_tracker.results.output_files import make_folder, replacing
 
 COLOURS: Mapping[str, str] = {
     "ink": "#010101",

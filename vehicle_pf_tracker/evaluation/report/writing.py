@@ -28,7 +28,7 @@ from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, aggregat
 from vehicle_pf_tracker.evaluation.report.figures import write_figures
 from vehicle_pf_tracker.evaluation.report.page import make_page, title
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, score_folder
-from vehicle_pf_tracker.offline.output_files import csv_text, write_json, write_text
+from vehicle_pf_tracker.results.output_files import csv_text, write_json, write_text
 
 ALL_RECORDINGS = "(all)"
 """Stands for the name of a recording where values are means over all of them."""

@@ -38,9 +38,9 @@ from vehicle_pf_tracker.evaluation.traffic.scoring import (
     kept_identities,
 )
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
-from vehicle_pf_tracker.offline.output_files import make_folder, write_csv, write_json, write_text
-from vehicle_pf_tracker.offline.run_folder import versions
-from vehicle_pf_tracker.offline.traffic_results import IN_TRACKS, Backdating, Frames
+from vehicle_pf_tracker.results.output_files import make_folder, write_csv, write_json, write_text
+from vehicle_pf_tracker.results.run_folder import versions
+from vehicle_pf_tracker.results.traffic_results import IN_TRACKS, Backdating, Frames
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector

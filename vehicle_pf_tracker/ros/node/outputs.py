@@ -35,9 +35,9 @@ from sensor_msgs.msg import Image, PointCloud2
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.offline.drawing import COLOURS, NEUTRAL, Annotator, line_width, write_words
 from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.ros import messages
+from vehicle_pf_tracker.showing.drawing import COLOURS, NEUTRAL, Annotator, line_width, write_words
 from vehicle_pf_tracker.trackers.estimate import START, Estimate
 from vehicle_pf_tracker.trackers.localisation import Localisation
 

@@ -23,7 +23,7 @@ from dataclasses import dataclass, field
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.results.estimates import EstimateRow
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,9 +30,9 @@ from std_srvs.srv import Trigger
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import MAX_DIFF, is_nearest, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.driver import with_next
-from vehicle_pf_tracker.offline.estimates import EstimateRow
+from vehicle_pf_tracker.following.driver import with_next
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
+from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.ros.messages import NOT_READY, stamp_ns
 from vehicle_pf_tracker.ros.replay.discovery import DISCOVERY, Spinner
 from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions

@@ -32,13 +32,13 @@ from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.drawing import NEUTRAL
-from vehicle_pf_tracker.offline.traffic_drawing import identity_colour
+from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
+from vehicle_pf_tracker.counting.plausibility import Crossing
 from vehicle_pf_tracker.ros import messages
-from vehicle_pf_tracker.trackers.traffic.counting import CONFIRMED, Counter
+from vehicle_pf_tracker.showing.drawing import NEUTRAL
+from vehicle_pf_tracker.showing.traffic_drawing import identity_colour
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 CODES: Mapping[TrackMode, int] = MappingProxyType(
     {mode: code for code, mode in enumerate(TrackMode)}

@@ -32,10 +32,8 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import header_stamp_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.following.detectors import PacedDetector
 from vehicle_pf_tracker.image.compressed_image import CodedImage
-from vehicle_pf_tracker.offline.detectors import PacedDetector
-from vehicle_pf_tracker.offline.drawing import Colour, draw_box, line_width
-from vehicle_pf_tracker.offline.page_server import LivePage
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import WAITING, detections_type, image_message, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
@@ -44,6 +42,8 @@ from vehicle_pf_tracker.ros.node.outputs import RELIABLE, Outputs, in_pixels
 from vehicle_pf_tracker.ros.traffic import messages
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
+from vehicle_pf_tracker.showing.drawing import Colour, draw_box, line_width
+from vehicle_pf_tracker.showing.page_server import LivePage
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode

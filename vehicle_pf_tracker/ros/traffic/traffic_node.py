@@ -24,7 +24,7 @@ from sensor_msgs.msg import RegionOfInterest
 from std_msgs.msg import Int64
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.offline.model_files import is_url
+from vehicle_pf_tracker.following.model_files import is_url
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import box_of_region, detections_type, finite
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe

@@ -26,13 +26,13 @@ from collections.abc import Sequence
 from vehicle_pf_tracker.core.box import Box, Position, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
-from vehicle_pf_tracker.offline.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.plausibility import Crossing
 
 NONE = 0
 """Number that ends a selection; vehicles have numbers from 1."""

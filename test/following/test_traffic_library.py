@@ -1,0 +1,268 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Many vehicles from Python, and the programs of docs/examples.md."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from vehicle_pf_tracker import TrafficTracker, read_counts, read_tracks
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.evaluation.baselines import DEFAULT, VARIABLE
+from vehicle_pf_tracker.showing.pictures import video_writer
+from vehicle_pf_tracker.showing.traffic_drawing import identity_colour
+
+ROOT = Path(__file__).parents[2]
+PROGRAMS = dict(
+    re.findall(
+        r"^## (.*?)\n```py\n(.*?)```", (ROOT / "docs" / "examples.md").read_text(), re.S | re.M
+    )
+)
+GROUND = np.random.default_rng(0).integers(90, 130, (240, 320, 3)).astype(np.uint8)
+
+
+def drive(frames=60, first=0):
+    """Images of two vehicles that drive to the right, with their boxes, scores and classes."""
+    for index in range(first, first + frames):
+        boxes = [(10 + 4 * index, 60, 40, 30), (30 + 3 * index, 150, 50, 36)]
+        frame = GROUND.copy()
+        for shade, (x, y, w, h) in zip((20, 230), boxes, strict=True):
+            frame[y : y + h, x : x + w] = shade
+        yield frame, boxes, [0.9, 0.8], ["car", "bus"]
+
+
+def test_without_boxes_what_moves_is_followed():
+    tracker = TrafficTracker(frame_rate=25)
+    for frame in [GROUND] * 25:
+        assert tracker.update(frame) == ()
+    for frame, *_ in drive(40):
+        tracks = tracker.update(frame)
+    assert sorted(track.id for track in tracks) == [1, 2]
+    upper = min(tracks, key=lambda one: one.box.y)
+    assert upper.box.centre == pytest.approx((10 + 4 * 39 + 20, 75), abs=4)
+
+
+def test_stamps_tell_a_dropped_frame_and_mistakes_are_said():
+    tracker = TrafficTracker(frame_rate=25)
+    for index, (frame, *found) in enumerate(drive(50)):
+        if index != 45:
+            tracks = tracker.update(frame, *found, stamp_ns=index * 40_000_000)
+    assert tracks[0].velocity == pytest.approx((4, 0), abs=0.3)
+    with pytest.raises(ValueError, match="as many"):
+        tracker.update(frame, [(1, 1, 5, 5)], [0.1, 0.2])
+    with pytest.raises(ValueError, match="left, top, width and height"):
+        tracker.update(frame, np.ones((4, 5)))  # corners and a score, for instance
+    for image in (np.zeros((4, 4), np.uint8), None):  # None: the video has ended
+        with pytest.raises(InputError, match="a frame must be"):
+            tracker.update(image)
+
+
+def test_what_cannot_be_meant_is_refused_at_the_start():
+    with pytest.raises(InputError, match=r"'lost_aftr'.*did you mean 'lost_after'"):
+        TrafficTracker(25, {"lost_aftr": 1.0})
+    with pytest.raises(InputError, match="frame rate"):
+        TrafficTracker(0)  # as OpenCV states for many a camera
+
+
+def test_rows_may_lack_the_score():
+    assert TrafficTracker(25).update_with_rows(GROUND, [[1, -1, 5, 5, 20, 20]]).shape == (0, 10)
+
+
+def truth(index):
+    """Boxes of the clip's image of this number: none before the vehicles come."""
+    return np.array([(10 + 4 * index, 60, 40, 30), (30 + 3 * index, 150, 50, 36)], float)
+
+
+@pytest.fixture(scope="module")
+def clips(tmp_path_factory):
+    """A folder with what the programs read: a clip of two vehicles, their boxes, and a line."""
+    folder = tmp_path_factory.mktemp("clips")
+    (folder / "clips").mkdir()
+    with video_writer(folder / "traffic.mp4", (320, 240), 25) as write:
+        for index, frame in enumerate([GROUND] * 25 + [frame for frame, *_ in drive(40)]):
+            write(frame, index / 25)
+    for name in ("north.mp4", "south.mp4", "clips/a.mp4", "clips/b.mp4"):
+        shutil.copy(folder / "traffic.mp4", folder / name)
+    rows = [[26 + k, -1, *box, 0.9] for k in range(40) for box in truth(k)]
+    np.savetxt(folder / "det.txt", rows, fmt="%g", delimiter=",")
+    (folder / "lines.yaml").write_text("lines: {gate: {from: [120, 240], to: [120, 0]}}")
+    return folder
+
+
+class Values(np.ndarray):
+    """An array that looks like a tensor."""
+
+    def cpu(self):
+        return self
+
+    def numpy(self):
+        return np.array(self)
+
+
+class FakeYolo:
+    """Stand-in of a detector of Ultralytics, which finds the vehicles of the clip."""
+
+    def __init__(self, name):
+        self.names, self.index = {2: "car", 5: "bus"}, -25
+
+    def __call__(self, frame, conf, verbose):
+        boxes = truth(self.index) if self.index >= 0 else np.zeros((0, 4))
+        boxes[:, 2:] += boxes[:, :2]
+        self.index += 1
+        names = ("xyxy", boxes), ("conf", [0.9, 0.8][: len(boxes)]), ("cls", [2, 5][: len(boxes)])
+        found = SimpleNamespace(**{name: np.array(v, float).view(Values) for name, v in names})
+        return [SimpleNamespace(boxes=found)]
+
+
+def bag(tasks):
+    """Stand-in of `dask.bag.from_sequence`."""
+    return SimpleNamespace(
+        map=lambda work: SimpleNamespace(compute=lambda: [work(task) for task in tasks])
+    )
+
+
+def output(python, *words):
+    """Run Python in the folder of its program; return the lines that it prints."""
+    env, folder = {**os.environ, "PYTHONPATH": str(ROOT)}, Path(words[0]).parent
+    done = subprocess.run(
+        [python, *words], cwd=folder, env=env, capture_output=True, text=True, check=False
+    )
+    return done.stdout.splitlines() or [done.stderr]
+
+
+@pytest.fixture
+def program(clips, monkeypatch, capsys):
+    """Run a program of the page in the folder of clips; return what it prints."""
+    monkeypatch.chdir(clips)
+    dask = SimpleNamespace(bag=SimpleNamespace(from_sequence=bag))
+    for name, module in (
+        ("ultralytics", SimpleNamespace(YOLO=FakeYolo)), ("dask", dask), ("dask.bag", dask.bag),
+    ):  # fmt: skip
+        monkeypatch.setitem(sys.modules, name, module)
+
+    def call(name):
+        exec(compile(PROGRAMS[name], name, "exec"), {"__name__": "__main__"})
+        return capsys.readouterr().out
+
+    return call
+
+
+def test_there_are_eight_programs():
+    assert len(PROGRAMS) == 8
+
+
+def test_the_program_for_ultralytics_names_each_vehicle(program):
+    words = [line.split() for line in program("With the detections of Ultralytics").splitlines()]
+    assert {tuple(line[:3]) for line in words} == {
+        ("1", "car", "TRACKING"), ("2", "bus", "TRACKING"),
+    }  # fmt: skip
+
+
+def test_the_program_for_rows_writes_tracks(program, clips):
+    program("Rows of MOTChallenge")
+    rows = np.loadtxt(clips / "tracks.txt", delimiter=",")
+    assert set(rows[:, 1]) == {1, 2}
+    last = rows[rows[:, 0] == 65]
+    assert last[:, 2:6] == pytest.approx(truth(39), abs=2)
+    assert (last[:, 7:] == -1).all()
+
+
+def test_the_program_that_counts_says_who_crossed(program):
+    lines = program("Count").splitlines()
+    assert sorted(line.split()[2] for line in lines[:-1]) == ["1", "2"]
+    assert "'gate: in': 2" in lines[-1]
+
+
+def test_the_notebook_shows_pictures_with_boxes(program, monkeypatch):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    shown = []
+    monkeypatch.setattr(pyplot, "imshow", shown.append)
+    monkeypatch.setattr(pyplot, "show", lambda: None)
+    program("Pictures in a notebook")
+    assert len(shown) == 2
+    assert (shown[1] == identity_colour(1)).all(axis=2).sum() > 100
+
+
+def test_the_cameras_are_followed_in_processes(clips):
+    path = clips / "cameras.py"
+    path.write_text(PROGRAMS["Several cameras in processes"])
+    assert output(sys.executable, path) == ["[2, 2]"]
+
+
+def test_a_folder_of_clips_gives_tables(program, clips):
+    assert program("A folder of clips with Dask").splitlines()[-1] == "[0, 0]"
+    shutil.copytree(clips / "results" / "a", clips / "results" / "north")
+    pytest.importorskip("pandas")
+    said = program("The tables of a run").splitlines()
+    assert said[0].startswith("2 vehicles, the widest of ")
+    assert said[1].split() == ["min", "max"]
+    rows = read_tracks(clips / "results" / "a")
+    assert rows.dtype["stamp_ns"] == rows.dtype["id"] == np.int64
+    assert np.isnan(rows.score[rows.mode == "OCCLUDED"]).all()
+    with pytest.raises(InputError, match=r"cannot read the table .*counts\.csv"):
+        read_counts(clips / "results" / "a")
+
+
+DETECT = """
+import numpy as np
+import supervision as sv
+
+index = -26
+
+
+def detect(frame):
+    global index
+    index += 1
+    if index < 0:
+        return sv.Detections.empty()
+    left = np.array([[10 + 4 * index, 60], [30 + 3 * index, 150]], float)
+    corners = np.hstack([left, left + [[40, 30], [50, 36]]])
+    named = {"class_name": np.array(["car", "bus"])}
+    score, number = np.array([0.9, 0.8]), np.array([2, 5])
+    return sv.Detections(xyxy=corners, confidence=score, class_id=number, data=named)
+
+
+"""
+CHECK = """
+numbers, classes = tracked.tracker_id.tolist(), tracked.class_id.tolist()
+print(numbers, sorted(classes), sorted(tracked.data["class_name"].tolist()))
+print(type(tracked) is sv.Detections, len(tracked[tracked.data["mode"] == "TRACKING"]))
+print(tracked.xyxy.round().astype(int).tolist())
+empty = tracker.update_with_detections(frame[:, :, ::-1], sv.Detections.empty())
+print(len(empty), sv.VideoInfo.from_video_path("seen.mp4").total_frames)
+"""
+
+
+def test_supervision_s_own_detections_come_in_and_go_out(clips):
+    python = Path(os.environ.get(VARIABLE) or DEFAULT).absolute()
+    if not python.is_file() or output(python, "-c", "import supervision; print(1)") != ["1"]:
+        pytest.skip("needs the package supervision: `make baselines`")
+    path = clips / "seen.py"
+    path.write_text(DETECT + PROGRAMS["With supervision"] + CHECK)
+    numbers, kind, corners, rest = output(python, path)
+    assert numbers == "[1, 2] [2, 5] ['bus', 'car']"
+    assert kind == "True 2"
+    boxes = np.array(json.loads(corners), float)
+    boxes[:, 2:] -= boxes[:, :2]
+    assert boxes == pytest.approx(truth(39), abs=2)
+    assert rest == "2 65"  # a detector that saw nothing leaves both for a while

@@ -1,0 +1,147 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Summary and picture of a run over many vehicles."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.counting.counter import Counter
+from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
+from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
+from vehicle_pf_tracker.showing import drawing
+from vehicle_pf_tracker.showing.traffic_drawing import HeatPicture, PathPicture, identity_colour
+from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate, TrackMode
+
+MODES = {
+    "t": TrackMode.TENTATIVE,
+    "T": TrackMode.TRACKING,
+    "O": TrackMode.OCCLUDED,
+    "L": TrackMode.LOST,
+    "B": TrackMode.LOST,
+}
+"""B: beyond the border."""
+
+NOWHERE = Counter(CountingPlan())
+
+
+def estimate(identity, mode, box=None, label=""):
+    hider = BORDER if mode == "B" else None
+    return TrackEstimate(
+        identity, box or Box(0, 0, 9, 9), (0, 0), MODES[mode], 0.9, label, 0.5, 1.0, hider
+    )
+
+
+def summed(*lives):
+    """Add the lives of vehicles 1, 2, ...: a letter per frame, - where it is not followed."""
+    summary = TrafficSummary()
+    for modes in zip(*lives, strict=True):
+        found = [estimate(k, mode) for k, mode in enumerate(modes, start=1) if mode != "-"]
+        summary.add(found)
+    return summary
+
+
+def test_occlusions_survived_are_counted():
+    summary = summed("TTOOTTOLTT", "TTTTTOOOLL", "--tttTTTTT")
+    assert summary.survived == 2
+    assert summary.ended_hidden == 1
+    assert len(summary.vehicles) == 3
+    assert summary.most_at_once == 3
+
+
+def test_leaving_is_no_occlusion_and_ends_none():
+    summary = summed("TTTTTTBB", "TTTOOOBB", "TTTTBBTT")
+    assert summary.survived == 0
+    assert summary.ended_hidden == 1
+
+
+def test_a_vehicle_that_is_never_confirmed_is_none():
+    summary = summed("ttttt-----")
+    assert summary.vehicles == {}
+    assert summary.to_json(NOWHERE)["vehicles"] == 0
+
+
+def test_a_late_class_counts():
+    summary = TrafficSummary()
+    summary.add([estimate(1, "T")])
+    summary.add([estimate(1, "T", label="bus")])
+    assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences(NOWHERE)
+
+
+def test_a_lorry_that_is_a_car_from_far_away_is_a_lorry():
+    summary = TrafficSummary()
+    for label in ("car", "truck", "", "truck", "truck", "car"):
+        summary.add([estimate(1, "T", label=label)])
+    assert "(1 truck)" in summary.sentences(NOWHERE)[0]
+
+
+def drive(picture, count=30, width=320):
+    frame = np.zeros((240, width, 3), np.uint8)
+    for index in range(count):
+        boxes = [Box(20 + 8 * index, 60 * k, 20, 20) for k in range(1, 4)]
+        modes = "T" * 2 + ("O" if 10 <= index < 20 else "T")
+        picture.add(frame, [estimate(k + 1, mode, boxes[k]) for k, mode in enumerate(modes)])
+
+
+def test_the_picture_has_every_path_in_its_colour(tmp_path):
+    picture = PathPicture()
+    drive(picture)
+    picture.write(tmp_path / "paths.png", NOWHERE)
+    image = cv2.imread(str(tmp_path / "paths.png"))[:, :, ::-1]
+    assert image.shape == (480, 640, 3)
+    for k in range(3):
+        row = image[2 * (60 * (k + 1) + 10)]
+        colour = np.array(identity_colour(k + 1))
+        share = (row[70:500] == colour).all(axis=1).mean()
+        assert share > (0.9 if k < 2 else 0.5)
+    hidden = image[2 * 190, 2 * (20 + 8 * 15 + 10)]
+    assert 0 < hidden.max() < 150  # the path under the occluder is darker
+
+
+def test_no_frame_no_picture(tmp_path):
+    PathPicture().write(tmp_path / "paths.png", NOWHERE)
+    assert not (tmp_path / "paths.png").exists()
+
+
+def test_frames_of_another_size_begin_the_picture_anew(tmp_path):
+    picture = PathPicture()
+    drive(picture, width=160)
+    drive(picture, width=320)
+    picture.write(tmp_path / "paths.png", NOWHERE)
+    assert cv2.imread(str(tmp_path / "paths.png")).shape == (480, 640, 3)
+
+
+def test_the_road_is_blue_where_vehicles_drove_and_red_where_they_stood(tmp_path, monkeypatch):
+    written = []
+    say = lambda _, words, *rest: written.append(words)  # noqa: E731
+    monkeypatch.setattr(drawing, "write_words", say)
+    heat, ground = HeatPicture(), np.full((240, 320, 3), 90, np.uint8)
+    heat.add(ground[:120], [estimate(9, "T", Box(0, 0, 300, 100))], 0, 0.04)
+    for index in range(50):
+        drives = replace(estimate(1, "T", Box(20 + 4 * index, 60, 20, 20)), velocity=(4.0, 0.0))
+        stands = replace(estimate(2, "O", Box(100, 150, 40, 40)), velocity=(0.1, 0.0))
+        away = [estimate(3, mode, Box(200, 200, 40, 30)) for mode in "tL"]
+        heat.add(ground, [drives, stands, *away], 10**12 + index * 80_000_000, 0.04)
+    heat.write(tmp_path / "heat.png", ground)
+    assert written[1] == "stood (red): at most 4.0 s"  # by the stamps
+    image = cv2.imread(str(tmp_path / "heat.png"))[:, :, ::-1].astype(int)
+    red, green, blue = image[78, 120]  # the lower part of the box
+    assert blue > green > red
+    red, _, blue = image[185, 120]
+    assert red > blue + 100
+    for row, column in ((62, 120), (155, 120), (225, 220), (5, 310)):
+        assert (image[row, column] == 90).all()  # upper parts, and those that are not there

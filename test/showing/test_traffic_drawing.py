@@ -1,0 +1,181 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Vehicles and counts drawn into images."""
+
+import cv2
+import numpy as np
+import pytest
+from traffic_samples import vehicle
+
+from vehicle_pf_tracker.core.box import Box, intersections
+from vehicle_pf_tracker.counting.counter import Counter
+from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan, CountingZone
+from vehicle_pf_tracker.road.plane import Pair, RoadPlane
+from vehicle_pf_tracker.showing import drawing
+from vehicle_pf_tracker.showing.drawing import draw_box, draw_pixel_grid, write_labels
+from vehicle_pf_tracker.showing.traffic_drawing import (
+    Trails,
+    annotated,
+    draw_vehicle,
+    identity_colour,
+)
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
+
+BLACK = np.zeros((240, 320, 3), np.uint8)
+# The box of `vehicle(…, 160, 200, size=(100, 80))`: 110 to 210 across, 120 to 200 down.
+
+
+def drawn(mode, identity=3):
+    picture = BLACK.copy()
+    labels = []
+    draw_vehicle(picture, labels, vehicle(identity, 160, 200, mode, size=(100, 80)))
+    write_labels(picture, labels)
+    return picture
+
+
+def share_of_lower_edge(picture, colour):
+    return (picture[200, 110:211] == colour).all(axis=1).mean()
+
+
+def test_a_tracked_vehicle_has_a_closed_box_in_its_own_colour():
+    assert share_of_lower_edge(drawn(TrackMode.TRACKING), identity_colour(3)) == 1.0
+    assert share_of_lower_edge(drawn(TrackMode.TRACKING, 4), identity_colour(3)) == 0.0
+
+
+def test_an_occluded_vehicle_is_dashed():
+    share = share_of_lower_edge(drawn(TrackMode.OCCLUDED), identity_colour(3))
+    assert 0.4 < share < 0.8
+
+
+@pytest.mark.parametrize("mode", [TrackMode.TENTATIVE, TrackMode.LOST])
+def test_what_is_not_known_to_be_there_is_not_drawn(mode):
+    assert not drawn(mode).any()
+
+
+def test_a_trail_is_drawn_behind_a_vehicle_until_it_is_lost():
+    trails, counter = Trails(), Counter(CountingPlan())
+    for index in range(100):
+        estimates = [
+            vehicle(1, 100 + index, 200),
+            vehicle(2, 100 + index, 150, TrackMode.TENTATIVE),
+        ]
+        trails.add(estimates)
+    picture = annotated(BLACK, "", estimates, counter, trails)
+    on_road = picture[200, :180].any(axis=1)
+    assert on_road[145:].all()  # 60 positions, the last at 199
+    assert not on_road[:139].any()
+    assert not picture[150, :180].any()
+    trails.add([vehicle(1, 200, 200, TrackMode.LOST)])
+    assert trails.of == {}
+
+
+def test_a_speed_is_written_where_the_road_is_known(monkeypatch):
+    written = []
+    say = lambda _, words, *rest: written.append(words)  # noqa: E731
+    monkeypatch.setattr(drawing, "write_words", say)
+    corners = ((0.0, 0.0), (320.0, 0.0), (320.0, 240.0), (0.0, 240.0))
+    pairs = [Pair((x, y), (x / 10, y / 10)) for x, y in corners]
+    for plane, said in (
+        (RoadPlane.of_pairs(pairs, None, margin=0.0, coarsest=1.0), "1 car 36 km/h"),
+        (None, "1 car"),
+    ):
+        counter = Counter(CountingPlan(), plane)
+        for index in range(25):
+            estimates = [vehicle(1, 50 + 4 * index, 200)]  # 4 px in 40 ms are 10 m/s
+            counter.update(estimates, index * 40_000_000)
+        annotated(BLACK, "", estimates, counter, Trails())
+        assert said in written
+        written.clear()
+
+
+def test_numbers_stand_above_the_box():
+    assert drawn(TrackMode.TRACKING)[105:118, 108:150].any()
+
+
+@pytest.mark.parametrize(
+    "box", [(-500.0, -500.0, 20.0, 20.0), (1e9, 1e9, 1e9, 1e9), (-1e12, 5.0, 2e12, 9.0)]
+)
+@pytest.mark.parametrize("dashed", [True, False])
+def test_boxes_far_outside_are_no_trouble(box, dashed):
+    draw_box(BLACK.copy(), Box(*box), (255, 255, 255), 1, dashed=dashed)
+
+
+def test_colours_of_neighbouring_numbers_differ():
+    colours = np.array([identity_colour(identity) for identity in range(1, 201)], float)
+    steps = np.abs(np.diff(colours, axis=0)).sum(axis=1)
+    assert steps.min() > 100
+    assert colours.max(axis=1).min() == 255  # bright enough for a dark road
+
+
+def test_the_frame_stays_as_it_was():
+    frame = BLACK.copy()
+    picture = annotated(frame, "0:00.0", [vehicle(1, 160, 200)], Counter(CountingPlan()), Trails())
+    assert picture.any()
+    assert not frame.any()
+
+
+def test_lines_and_zones_are_drawn_with_their_counts():
+    plan = CountingPlan(
+        (CountingLine("exit", (0.0, 150.0), (320.0, 150.0)),),
+        (CountingZone("yard", ((10.0, 200.0), (90.0, 200.0), (90.0, 230.0), (10.0, 230.0))),),
+    )
+    counter = Counter(plan)
+    picture = annotated(BLACK, "", [], counter, Trails())
+    assert picture[150, 5:315].all()
+    assert picture[200:230, 10].all()
+    for index, bottom in enumerate([120, 180]):
+        counter.update([vehicle(1, 200, bottom)], index)
+    other = annotated(BLACK, "", [], counter, Trails())
+    assert (picture != other).any()  # 1 in
+
+
+def written(monkeypatch, estimates, words=""):
+    """Return the rectangles of the words that are written, by the words."""
+    places = {}
+
+    def note(picture, words, corner, colour, width=1):
+        (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, width)
+        places[words] = (corner[0], corner[1] - 11 * width, corner[0] + across, corner[1])
+
+    monkeypatch.setattr(drawing, "write_words", note)
+    annotated(BLACK, words, estimates, Counter(CountingPlan()), Trails())
+    return places
+
+
+def test_words_do_not_cover_each_other_nor_leave_the_picture(monkeypatch):
+    beside = [(150, 120), (165, 122), (150, 140), (300, 30), (20, 24), (318, 32)]
+    estimates = [vehicle(n, x, y, size=(24, 18)) for n, (x, y) in enumerate(beside, start=1)]
+    places = written(monkeypatch, estimates, "0:01.0  frame 30  6 vehicles")
+    assert len(places) == 7
+    edges = np.array(list(places.values()), float)
+    assert not np.triu(intersections(edges[:, None], edges[None]), 1).any()
+    assert edges.min() >= 0
+    assert (edges[:, 2:] <= (320, 240)).all()
+
+
+def test_a_vehicle_in_a_crowd_still_has_its_number(monkeypatch):
+    estimates = [vehicle(n, 150, 120, size=(24, 18)) for n in range(1, 9)]
+    assert {words.split()[0] for words in written(monkeypatch, estimates) if words} == set(
+        map(str, range(1, 9))
+    )
+
+
+def test_a_grid_can_be_read_in_4k():
+    """The words grow with the image: seven of them are not as small as those of VGA."""
+    vga, uhd = (
+        draw_pixel_grid(np.zeros(size, np.uint8)) for size in ((480, 640, 3), (2160, 3840, 3))
+    )
+    white_vga, white_uhd = ((one == 255).all(axis=2).sum() for one in (vga, uhd))
+    assert white_uhd > 4 * white_vga

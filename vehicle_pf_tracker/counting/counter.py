@@ -1,0 +1,238 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Counting of vehicles at lines and in zones.
+
+A vehicle is where the middle of its box's lower edge is: that point touches the road.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter as Tally
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from vehicle_pf_tracker.core.box import Box, Position
+from vehicle_pf_tracker.counting.plausibility import Crossing, Life, Plausibility
+from vehicle_pf_tracker.counting.watches import (
+    ENTRY,
+    EXIT,
+    LineWatch,
+    PassageSpeed,
+    Place,
+    ZoneWatch,
+)
+from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
+from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+
+_REMEMBERED_NS = 600 * 10**9
+"""Time in ns that a vehicle which is not among the estimates is remembered: the longest that a
+tracker keeps the number of a lost one for."""
+
+CONFIRMED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
+"""Modes of vehicles that count."""
+
+
+@dataclass(slots=True)
+class _Vehicle:
+    """Memory of one vehicle."""
+
+    lines: list[LineWatch]
+    zones: list[ZoneWatch]
+    speed: PassageSpeed
+    last_ns: int
+    life: Life
+    is_confirmed: bool = False
+    waiting: list[Crossing] = field(default_factory=list)
+    counted: set[tuple[str, str]] = field(default_factory=set)
+
+    def join(self, other: _Vehicle) -> None:
+        """Go on as the track that this vehicle turned out to be after it was hidden."""
+        for own, line in zip(self.lines, other.lines, strict=True):
+            line.join(own)
+        self.lines, self.zones, self.speed = other.lines, other.zones, other.speed
+        self.waiting = [
+            one for one in other.waiting if (one.place, one.direction) not in self.counted
+        ]
+
+
+class Counter:
+    """Counts each vehicle once per line and direction.
+
+    A vehicle has crossed a line when it has gone from clearly before it to clearly behind it, so
+    that one which shakes on the line counts once. Crossings under an occluder count at the time
+    that is predicted; those of a tentative vehicle count when it is confirmed. An implausible
+    crossing is marked, and left out of the totals.
+
+    Parameters
+    ----------
+    plan : CountingPlan
+        Lines and zones.
+    plane : RoadPlane or None
+        Road, for speeds in km/h.
+
+    Attributes
+    ----------
+    totals : Counter of (str, str, str)
+        Crossings by place, direction and class, but those in doubt.
+    plane : RoadPlane or None
+        The road, for vehicles that come from now on.
+    """
+
+    def __init__(self, plan: CountingPlan, plane: RoadPlane | None = None) -> None:
+        self.plan = plan
+        self.totals: Tally[tuple[str, str, str]] = Tally()
+        self.plane = plane
+        self.vehicles: dict[int, _Vehicle] = {}  # by their tracks
+        self._plausibility = Plausibility()
+        self._occupancy = {zone.name: 0 for zone in plan.zones}
+        self._last_ns: int | None = None
+        self._before_ns: int | None = None
+
+    @property
+    def directions(self) -> Mapping[str, tuple[str, str]]:
+        """Names of the two directions of each line and zone, by its name."""
+        lines = {line.name: line.directions for line in self.plan.lines}
+        return lines | {zone.name: (ENTRY, EXIT) for zone in self.plan.zones}
+
+    @property
+    def occupancy(self) -> Mapping[str, int]:
+        """Confirmed vehicles in each zone in the last image, by its name."""
+        return self._occupancy
+
+    def count(self, place: str, direction: str) -> int:
+        """Return the crossings of all classes at a place in a direction."""
+        return sum(
+            number for (at, to, _), number in self.totals.items() if (at, to) == (place, direction)
+        )
+
+    def speed_kmh(self, serial: int) -> float | None:
+        """Return the speed of the vehicle with this track; None where it is not known."""
+        vehicle = self.vehicles.get(serial)
+        return None if vehicle is None else vehicle.speed.kmh()
+
+    def forget_vehicles(self) -> None:
+        """Discard where all vehicles were, as when a recording begins again; totals stay."""
+        self.vehicles.clear()
+        self._occupancy = {zone.name: 0 for zone in self.plan.zones}
+        self._last_ns = None
+        self._plausibility = Plausibility()
+
+    def reset(self) -> None:
+        """Begin anew, all totals at 0."""
+        self.forget_vehicles()
+        self.totals.clear()
+
+    def update(self, estimates: Sequence[TrackEstimate], stamp_ns: int) -> tuple[Crossing, ...]:
+        """Take the estimates of the next image.
+
+        Parameters
+        ----------
+        estimates : sequence of TrackEstimate
+            All vehicles followed.
+        stamp_ns : int
+            Stamp of the image in ns. Time that goes back begins all paths anew.
+
+        Returns
+        -------
+        tuple of Crossing
+            Those that are known with this image, also those in doubt.
+        """
+        if self._last_ns is not None and stamp_ns < self._last_ns:
+            self.forget_vehicles()
+        self._before_ns, self._last_ns = self._last_ns, stamp_ns
+        self._occupancy = {zone.name: 0 for zone in self.plan.zones}
+        counted = [one for estimate in estimates for one in self._follow(estimate, stamp_ns)]
+        for one in counted:
+            if not one.doubt:
+                self.totals[one.place, one.direction, one.label] += 1
+        self._drop_old(stamp_ns)
+        return tuple(counted)
+
+    def _follow(self, estimate: TrackEstimate, stamp_ns: int) -> list[Crossing]:
+        mode: TrackMode = estimate.mode
+        if mode is TrackMode.LOST:
+            return []
+        vehicle = self.vehicles.get(estimate.serial)
+        if vehicle is None:
+            vehicle = self.vehicles[estimate.serial] = self._made(stamp_ns)
+        elif vehicle.last_ns != self._before_ns:  # back after it was lost
+            vehicle.speed.clear()
+            mode = TrackMode.LOST
+        if estimate.joined in self.vehicles:
+            vehicle.join(self.vehicles.pop(estimate.joined))
+        vehicle.last_ns = stamp_ns
+        if mode is not TrackMode.OCCLUDED:
+            vehicle.life.seen_ns = stamp_ns
+        vehicle.life.side = max(estimate.box.width, estimate.box.height)
+        vehicle.life.images += 1
+        vehicle.life.detected += not math.isnan(estimate.score)
+        place = Place(reference_point(estimate.box), stamp_ns, estimate.box.height, mode)
+        vehicle.speed.add(place.point, stamp_ns)
+        vehicle.is_confirmed = vehicle.is_confirmed or estimate.mode in CONFIRMED
+        vehicle.waiting += self._passed(vehicle, place, estimate)
+        if not vehicle.is_confirmed:
+            return []
+        for zone in vehicle.zones:
+            self._occupancy[zone.zone.name] += zone.is_inside
+        counted, vehicle.waiting = vehicle.waiting, []
+        vehicle.counted.update((one.place, one.direction) for one in counted)
+        return [self._judged(one, estimate, vehicle.life) for one in counted]
+
+    def _judged(self, one: Crossing, estimate: TrackEstimate, life: Life) -> Crossing:
+        """Return a crossing by what is known of its vehicle now."""
+        one = replace(one, identity=estimate.identity, label=estimate.label or one.label)
+        return replace(one, doubt=self._plausibility.doubt(one, life))
+
+    def _passed(self, vehicle: _Vehicle, place: Place, estimate: TrackEstimate) -> list[Crossing]:
+        """Return what the vehicle passed with the step to `place`."""
+        found = [
+            (line.line.name, *at_line)
+            for line in vehicle.lines
+            if (at_line := line.follow(place)) is not None
+        ] + [
+            (zone.zone.name, ENTRY if zone.is_inside else EXIT, at_edge)
+            for zone in vehicle.zones
+            if (at_edge := zone.follow(place)) is not None
+        ]
+        if not found:
+            return []
+        speeds = vehicle.speed.pixels(), vehicle.speed.kmh()
+        identity, label = estimate.identity, estimate.label
+        return [
+            Crossing(at.stamp_ns, name, direction, identity, label, at.mode, *speeds, at.point)
+            for name, direction, at in found
+        ]
+
+    def _made(self, stamp_ns: int) -> _Vehicle:
+        lines = [LineWatch(line) for line in self.plan.lines]
+        zones = [ZoneWatch(zone) for zone in self.plan.zones]
+        life = Life(stamp_ns, stamp_ns)
+        return _Vehicle(lines, zones, PassageSpeed(self.plane), stamp_ns, life)
+
+    def _drop_old(self, stamp_ns: int) -> None:
+        old = [
+            identity
+            for identity, vehicle in self.vehicles.items()
+            if stamp_ns - vehicle.last_ns > _REMEMBERED_NS
+        ]
+        for identity in old:
+            del self.vehicles[identity]
+
+
+def reference_point(box: Box) -> Position:
+    """Return the middle of a box's lower edge, px."""
+    return box.x + box.width / 2, box.y + box.height

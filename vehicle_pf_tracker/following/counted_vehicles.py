@@ -1,0 +1,147 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""All vehicles of one stream, followed and counted: the same for runs and for nodes."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter as Tally
+from pathlib import Path
+
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
+from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.following.detectors import PacedDetector, Run, call, detector_maker
+from vehicle_pf_tracker.following.model_files import Progress, silent
+from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
+from vehicle_pf_tracker.showing.traffic_drawing import Trails, annotated
+from vehicle_pf_tracker.trackers.traffic.association import check_library
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
+from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+
+
+class CountedVehicles:
+    """The vehicles of one stream of images.
+
+    Parameters
+    ----------
+    session : TrafficSession
+        Drives the tracker.
+    counter : Counter
+        Counts at lines and in zones, if there are any.
+
+    Attributes
+    ----------
+    session, counter
+        The same.
+    trails : Trails
+        Paths over the last images.
+    """
+
+    def __init__(self, session: TrafficSession, counter: Counter) -> None:
+        self.session, self.counter = session, counter
+        self.trails = Trails()
+        self._restarts = session.restarts
+
+    @property
+    def estimates(self) -> tuple[TrackEstimate, ...]:
+        """Estimates of the last image."""
+        return self.session.estimates
+
+    def follow(
+        self, image: Frame | CodedImage, stamp_ns: int, detections: Detections | None
+    ) -> tuple[Crossing, ...]:
+        """Take the next image, and return what is counted with it.
+
+        Raises
+        ------
+        InputError
+            If the image cannot be used; all vehicles are kept.
+        TrackerError
+            If the tracker fails, and does not start anew for it.
+        """
+        began = time.perf_counter()
+        self.session.feed(image, stamp_ns, detections)
+        detector = self.session.detector
+        if isinstance(detector, PacedDetector):
+            detector.pace(time.perf_counter() - began, self.session.tracker.frame_period)
+        if self.session.restarts != self._restarts:
+            self._begin_anew()
+        self.trails.add(self.estimates)
+        return self.counter.update(self.estimates, stamp_ns)
+
+    def drawn(self, frame: Frame, head: str = "") -> Frame:
+        """Return a copy of the last image with vehicles, counts, `head` and their number."""
+        modes = Tally(one.mode for one in self.estimates)
+        hidden = f", {modes[TrackMode.OCCLUDED]} occluded" if modes[TrackMode.OCCLUDED] else ""
+        words = f"{head}{sum(modes[mode] for mode in CONFIRMED)} vehicles{hidden}"
+        return annotated(frame, words, self.estimates, self.counter, self.trails)
+
+    def facts(self) -> dict[str, object]:
+        """Return the number of vehicles, and what was counted, by name."""
+        counter = self.counter
+        return {
+            "vehicles": sum(one.mode in CONFIRMED for one in self.estimates),
+            **{f"{zone}: inside": there for zone, there in counter.occupancy.items()},
+            **{
+                f"{place}: {to}": counter.count(place, to)
+                for place, both in counter.directions.items()
+                for to in both
+            },
+        }
+
+    def _begin_anew(self) -> None:
+        """Note that the session has discarded all vehicles but its `successors`."""
+        self._restarts = self.session.restarts
+        self.counter.forget_vehicles()
+
+
+def session_and_counter(
+    configuration: Configuration, run: Run = call, progress: Progress = silent
+) -> tuple[TrafficSession, Counter]:
+    """Make what parameters of `TRAFFIC` ask for.
+
+    Parameters
+    ----------
+    configuration : Configuration
+        The parameters.
+    run : callable
+        Calls the network.
+    progress : Progress
+        Shows how a network is fetched.
+
+    Raises
+    ------
+    InputError
+        If the network or the file of lines and zones cannot be used, or a library is missing.
+    """
+    check_library()
+    parameters, plane = configuration.tracker, configuration.session.road.fixed_plane()
+    plan = read_counting_plan(Path(parameters.lines)) if parameters.lines else CountingPlan()
+    make, tracker = detector_maker(parameters.detector, progress), TrafficTracker(parameters, plane)
+    session = TrafficSession(
+        tracker,
+        (lambda: PacedDetector(make(), lambda: tracker.parameters.detector.every, run))
+        if make
+        else None,
+        frame_rate=parameters.frame_rate,
+        reset_on_time_jump=configuration.session.reset_on_time_jump,
+        regions=plan.regions,
+    )
+    return session, Counter(plan, plane)

@@ -1,0 +1,217 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Sources of detections: the detector that the parameters ask for, and files of MOTChallenge."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import os
+import time
+from array import array
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.errors import InputError, read_text
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.following.model_files import Progress, model_file, silent
+from vehicle_pf_tracker.recordings.truth_formats import numbers_in, table_rows
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
+from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
+from vehicle_pf_tracker.trackers.traffic.network_detector import Network, NetworkDetector
+from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, DetectorParameters
+from vehicle_pf_tracker.trackers.traffic.session import Detector
+
+
+def open_network(model: str, progress: Progress = silent) -> Network:
+    """Load a network from its file or URL.
+
+    Raises
+    ------
+    InputError
+        If ONNX Runtime is not installed, or the file cannot be used.
+    """
+    os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # by default it reports to its makers
+    try:
+        runtime = importlib.import_module("onnxruntime")
+    except ImportError:
+        raise InputError(
+            "networks need ONNX Runtime: install the extra [video], "
+            "pip install 'vehicle_pf_tracker[video]'"
+        ) from None
+    path, _ = model_file(model, progress)
+    options = runtime.SessionOptions()
+    options.log_severity_level = 3  # errors: it warns of every unused weight
+    try:
+        network: Network = runtime.InferenceSession(
+            str(path), options, providers=["CPUExecutionProvider"]
+        )
+    except Exception as error:  # ONNX Runtime's errors have no base of their own
+        reason = " ".join(str(error).split())[:200]
+        raise InputError(f"the network {model} cannot be loaded: {reason}") from None
+    return network
+
+
+def detector_maker(
+    parameters: DetectorParameters, progress: Progress = silent
+) -> Callable[[], Detector] | None:
+    """Return a function that makes the detector; None where there shall be none.
+
+    Raises
+    ------
+    InputError
+        If the network cannot be used.
+    """
+    if parameters.kind == MOTION:
+        return MotionDetector
+    if parameters.kind == MODEL:
+        model = parameters.model
+        network = NetworkDetector(open_network(model, progress), model, parameters)
+        return lambda: network  # it keeps nothing between images
+    return None
+
+
+_SHARE = 0.8
+"""Share of the images' period that detecting and following may take; decoding and drawing need the
+rest."""
+_LONGEST = 0.1
+"""Longest time between two looks of a detector, s, also where the rate cannot be kept. On a dual
+carriageway at 30 Hz every third image leaves 97 % of IDF1, every sixth 56 %."""
+_RECENT = 0.1
+"""Weight of the latest image among the costs."""
+
+
+Run: TypeAlias = Callable[[Callable[[], Detections]], Detections]
+"""Calls what makes detections, and returns them."""
+
+
+def call(work: Callable[[], Detections]) -> Detections:
+    """Call `work`, and return what it returns."""
+    return work()
+
+
+class PacedDetector:
+    """A detector that looks at every k-th image; what it found last, and how long that took.
+
+    Parameters
+    ----------
+    detector : Detector
+        The detector.
+    wanted : callable
+        Returns k, which may change; 0 chooses the smallest that keeps the rate of the images.
+    run : callable
+        Calls the detector.
+
+    Attributes
+    ----------
+    every : int
+        k in use, which differs between machines where it is chosen.
+    found : int
+        Number of detections in the last image that it looked at.
+    seconds : float
+        Time that they took, s.
+    disturbed, is_blind : bool
+        See `Detector`.
+    """
+
+    def __init__(
+        self, detector: Detector, wanted: Callable[[], int] = lambda: 1, run: Run = call
+    ) -> None:
+        self._detector, self._run = detector, run
+        self._wanted = wanted
+        self.every = 1
+        self.found, self.seconds = 0, 0.0
+        self.disturbed = self.is_blind = False
+        self._images, self._others = 0, 0.0
+
+    def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
+        """Find vehicles, if it is this image's turn; see `Detector`."""
+        self._images += 1
+        self.every = self._wanted() or self.every
+        self.disturbed, self.is_blind = False, self._images > 1 and self._images <= self.every
+        if self.is_blind:
+            return Detections.make([], [])
+        self._images = 1
+        began = time.perf_counter()
+        found = self._run(partial(self._detector.detect, frame, tracks))
+        self.found, self.seconds = len(found), time.perf_counter() - began
+        self.disturbed, self.is_blind = self._detector.disturbed, self._detector.is_blind
+        return found
+
+    def pace(self, seconds: float, period: float) -> None:
+        """Take the time that the last image cost in all, and the images' period, s."""
+        others = seconds - (self.seconds if self._images == 1 else 0.0)
+        self._others += (others - self._others) * (_RECENT if self._others else 1.0)
+        if self._wanted() == 0:
+            most = max(round(_LONGEST / period), 1)
+            left = _SHARE * period - self._others
+            least = math.ceil(self.seconds / left) if left > 0 else most
+            self.every = min(max(least, 1), most)
+
+
+_LAST_FRAME = 10**9
+"""Largest number of a frame: a year of video."""
+
+
+class DetectionFile:
+    """Detections by the number of their frame.
+
+    Parameters
+    ----------
+    path : Path
+        Text file with a row per detection: frame from 1, id (not used), left, top, width and height
+        in px, score (1 where it is missing); columns after these are not used. Rows may be in any
+        order.
+
+    Attributes
+    ----------
+    notices : list of str
+        Irregularities, a sentence each.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or a row is not of this form; the row is named by its number.
+    """
+
+    def __init__(self, path: Path) -> None:
+        numbers = array("d")  # 48 bytes per row: a list of a million rows would take ten times that
+        text = read_text(path, "the detections")
+        for where, cells in table_rows(path, text, 6, "the detections"):
+            frame, _, *box = numbers_in(where, cells[:7])
+            if not (1 <= frame <= _LAST_FRAME and frame.is_integer()):
+                raise InputError(f"{where} has the frame {frame:g}; frames are integers from 1")
+            numbers.extend((frame, *box[:4], box[4] if len(box) > 4 else 1.0))
+        rows: Array = np.frombuffer(numbers, np.float64).reshape(-1, 6)
+        rows = rows[np.argsort(rows[:, 0], kind="stable")]
+        self.notices: list[str] = []
+        usable = np.isfinite(rows).all(axis=1) & (rows[:, 3:5] > 0).all(axis=1)
+        if not usable.all():
+            self.notices.append(
+                f"{np.count_nonzero(~usable)} of {len(rows)} detections in {path} have no area, or "
+                "numbers that are not finite, and are left out"
+            )
+        self._frames, self._rows = rows[usable, 0], rows[usable, 1:]
+
+    def of(self, frame: int) -> Detections:
+        """Return the detections of a frame; one without rows is one without vehicles."""
+        begin, end = np.searchsorted(self._frames, [frame, frame + 1])
+        return Detections.make(self._rows[begin:end, :4], self._rows[begin:end, 4])

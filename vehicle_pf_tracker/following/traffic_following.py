@@ -1,0 +1,215 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""All vehicles followed through a source, written and drawn as they go."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from types import MappingProxyType
+
+from vehicle_pf_tracker.core.box import Box, check_target
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.counting.counter import Counter
+from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles
+from vehicle_pf_tracker.following.detectors import DetectionFile
+from vehicle_pf_tracker.following.driver import unreached
+from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.results.estimates import clock_words
+from vehicle_pf_tracker.results.traffic_results import TrackFiles
+from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
+from vehicle_pf_tracker.showing.page_server import LivePage
+from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
+from vehicle_pf_tracker.showing.traffic_drawing import HeatPicture, PathPicture
+from vehicle_pf_tracker.trackers.session import TrackerError
+from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
+
+_MOST_NOTICES = 20
+"""Notices kept, what a screen holds: a camera without a clock gives one per frame, for hours."""
+
+
+class TrafficRun(CountedVehicles):
+    """One pass over a source.
+
+    Parameters
+    ----------
+    session : TrafficSession
+        Drives the tracker.
+    counter : Counter
+        Counts at lines and in zones, if there are any.
+    detections : DetectionFile or None
+        The detections of each frame; None leaves them to the session.
+
+    Attributes
+    ----------
+    summary : TrafficSummary
+        Vehicles and occlusions.
+    paths : PathPicture
+        Picture of all paths.
+    heat : HeatPicture
+        Picture of where vehicles drove and stood.
+    """
+
+    def __init__(
+        self, session: TrafficSession, counter: Counter, detections: DetectionFile | None = None
+    ) -> None:
+        super().__init__(session, counter)
+        self.summary = TrafficSummary()
+        self.paths = PathPicture()
+        self.heat = HeatPicture()
+        self._notices = list(detections.notices) if detections is not None else []
+        self._more_notices = 0
+        self._last_events: list[str] = []
+        self._detections = detections
+        self._targets: dict[str, dict[int, Box]] = {}
+        self._by_name: dict[str, int] = {}
+
+    @property
+    def notices(self) -> list[str]:
+        """Irregularities, a sentence each; of very many only the first."""
+        more = self._more_notices
+        later = [unreached(one) for boxes in self._targets.values() for one in boxes.items()]
+        return [*self._notices, *([f"and {more} more notices"] if more else []), *later]
+
+    def _note(self, sentence: str) -> None:
+        if len(self._notices) < _MOST_NOTICES:
+            self._notices.append(sentence)
+        else:
+            self._more_notices += 1
+
+    def follow_all(
+        self,
+        frames: Numbered,
+        files: TrackFiles,
+        pictures: Pictures | None = None,
+        page: LivePage | None = None,
+        targets: Mapping[str, Mapping[int, Box]] = MappingProxyType({}),
+    ) -> None:
+        """Follow all vehicles through `frames`.
+
+        Parameters
+        ----------
+        frames : iterator of (int, StampedFrame)
+            Frames with their numbers in the source.
+        files : TrackFiles
+            Files of the results.
+        pictures : Pictures or None
+            Pictures to make meanwhile.
+        page : LivePage or None
+            Page to show them on.
+        targets : mapping of str to mapping of int to Box
+            Vehicles given by hand, by name: boxes in px by the numbers of their frames.
+
+        Raises
+        ------
+        InputError
+            If a target is invalid in its frame, or something cannot be written.
+        """
+        pictures, self._targets = pictures or Pictures(), {n: dict(b) for n, b in targets.items()}
+        start_ns: int | None = None
+        with pictures.drawing(frames) as (take, all_frames):
+            for number, found in all_frames:
+                start_ns = found.stamp_ns if start_ns is None else start_ns
+                crossings = self._step(number, found)
+                if found.frame is None or crossings is None:
+                    continue
+                if not self.summary.frames:
+                    for name in self.counter.plan.outside(*frame_size(found.frame)):
+                        self._note(f"{name!r} is outside the image, so that nothing counts there")
+                estimates = self.estimates
+                files.write(number, found.stamp_ns, estimates, crossings)
+                self.summary.add(estimates)
+                self.paths.add(found.frame, estimates)
+                period = self.session.tracker.frame_period
+                self.heat.add(found.frame, estimates, found.stamp_ns, period)
+                elapsed = clock_words(found.stamp_ns - start_ns)
+                draw = partial(self.drawn, found.frame, f"{elapsed}  frame {number}  ")
+                take((), draw, found.frame, found.stamp_ns)
+                if page is not None:
+                    page.show(draw, self.facts)
+
+    def sentences(self, detector: str) -> list[str]:
+        """Return the summary, a line for each fact, or why there is no vehicle.
+
+        Parameters
+        ----------
+        detector : str
+            Kind of the detector, or the file of detections.
+        """
+        if self.summary.vehicles:
+            return self.summary.sentences(self.counter)
+        frames, found = self.summary.frames, self.session.found
+        inside = found.boxes - found.outside
+        if found.disturbed and 2 * found.images < frames:
+            why = (
+                "the camera moves, and motion is detected before a standing one only; give "
+                "--detections or --model"
+            )
+        elif not found.images:
+            why = "they are too few to learn what stands, which takes a second; give a longer clip"
+        elif not found.boxes:
+            why = {
+                MOTION: "nothing moves in them",
+                MODEL: "the network finds no vehicle; try --set detector.min_score=0.1",
+            }.get(detector, f"{detector} has no box in them")
+        elif not inside:
+            why = f"all {found.boxes} detections are outside the regions of interest"
+        else:
+            why = (
+                f"detections ({inside}) repeat too rarely to be vehicles; give them with "
+                "--target, or a file of `pick` with --targets"
+            )
+        return [f"no vehicle was found in {frames} frames: {why}"]
+
+    def _step(self, number: int, found: StampedFrame) -> tuple[Crossing, ...] | None:
+        """Take a frame; None where it is rejected, so that nothing is known of its time."""
+        if found.frame is None:
+            self._note(f"frame {number} was rejected: it cannot be read")
+            return None
+        detections = self._detections.of(number) if self._detections is not None else None
+        try:
+            crossings = super().follow(found.frame, found.stamp_ns, detections)
+        except (InputError, TrackerError) as error:
+            if isinstance(error, TrackerError) and error.persists:
+                raise
+            self._note(f"frame {number} was rejected: {error}")
+            return None
+        for event in self.session.events:
+            if event not in self._last_events:  # one that lasts is told once
+                self._note(f"frame {number}: {event}")
+        self._last_events = list(self.session.events)
+        self._add_targets(found.frame, number)
+        return crossings
+
+    def _begin_anew(self) -> None:
+        super()._begin_anew()
+        kept = self.session.successors
+        self._by_name = {name: kept[old] for name, old in self._by_name.items() if old in kept}
+
+    def _add_targets(self, frame: Frame, number: int) -> None:
+        """Follow the vehicles given for this frame; a name given again replaces the one before."""
+        for name, boxes in self._targets.items():
+            if (box := boxes.pop(number, None)) is None:
+                continue
+            try:
+                check_target(box, *frame_size(frame))
+            except InputError as error:
+                raise InputError(f"in frame {number}, {error}") from None
+            if name in self._by_name:
+                self.session.remove(self._by_name[name])
+            self._by_name[name] = self.session.add(box, "" if name.isdecimal() else name)

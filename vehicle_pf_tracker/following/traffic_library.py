@@ -1,0 +1,193 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Many vehicles for Python programs: arrays in, frozen dataclasses out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.frame import Frame, check_frame
+from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter
+from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.parameters.table import unknown_name
+from vehicle_pf_tracker.recordings.footage import check_fps
+from vehicle_pf_tracker.results.traffic_results import mot_numbers
+from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.parameters import MODEL
+
+DetectionsT = TypeVar("DetectionsT")
+
+
+class TrafficTracker(CountedVehicles):
+    """Follow and count every vehicle of a stream, image by image.
+
+    Parameters
+    ----------
+    frame_rate : float
+        Images per second; stamps, where they are given, tell the time between two images.
+    parameters : mapping of str to Any
+        Parameters of `traffic`, by their names in its parameter file.
+    lines : str or Path
+        File of lines, zones and regions of interest.
+    model : str or Path
+        Network, a file or a URL, that looks for vehicles where no detections are given. Without
+        one, what moves before the standing camera is looked for.
+
+    Attributes
+    ----------
+    crossings : tuple of Crossing
+        What the last image has added to the counts.
+
+    Raises
+    ------
+    InputError
+        If a parameter, the file of lines or the network cannot be used.
+    """
+
+    def __init__(
+        self,
+        frame_rate: float,
+        parameters: Mapping[str, Any] = MappingProxyType({}),
+        *,
+        lines: str | Path = "",
+        model: str | Path = "",
+    ) -> None:
+        named = {"detector.kind": MODEL, "detector.model": str(model)} if model else {}
+        given = {"frame_rate": frame_rate, "lines": str(lines), **named, **parameters}
+        known = (configuration := Configuration.of(TRAFFIC)).specs()
+        if unknown := [unknown_name(one, known) for one in given if one not in known]:
+            raise InputError("; ".join(unknown))
+        super().__init__(*session_and_counter(configuration.updated(given)))
+        self.crossings: tuple[Crossing, ...] = ()
+        self._period_ns = round(1e9 / check_fps(frame_rate, "frame_rate"))
+        self._stamp_ns = self._images = 0
+        self._class_ids: dict[str, int] = {}
+
+    def update(
+        self,
+        frame: Frame,
+        boxes: npt.ArrayLike | None = None,
+        scores: npt.ArrayLike | None = None,
+        labels: Sequence[str] | None = None,
+        *,
+        stamp_ns: int | None = None,
+    ) -> tuple[TrackEstimate, ...]:
+        """Follow all vehicles into the next image.
+
+        Parameters
+        ----------
+        frame : Frame
+            RGB image, bytes of the shape (height, width, 3).
+        boxes : array-like, shape (N, 4), optional
+            Detections: left, top, width and height in px; empty where the detector saw nothing.
+            None: the tracker looks for vehicles itself.
+        scores : array-like, shape (N,), optional
+            Their scores, of any scale; None: all alike.
+        labels : sequence of str, optional
+            Their classes.
+        stamp_ns : int, optional
+            Stamp of the image in ns; None: one period after the image before.
+
+        Returns
+        -------
+        tuple of TrackEstimate
+            The confirmed vehicles that are visible or predicted, by `id`.
+
+        Raises
+        ------
+        InputError
+            If the image is not usable.
+        ValueError
+            If a box has not four numbers, or there are not as many scores or labels as boxes.
+        """
+        if boxes is not None and np.ndim(boxes) > 1 and np.shape(boxes)[-1] not in {0, 4}:
+            raise ValueError("a box is left, top, width and height in px")
+        check_frame(np.asarray(frame))
+        self._images += 1
+        self._stamp_ns = self._stamp_ns + self._period_ns if stamp_ns is None else stamp_ns
+        detections = None if boxes is None else Detections.make(boxes, scores, labels)
+        self.crossings = self.follow(frame, self._stamp_ns, detections)
+        return tuple(one for one in self.estimates if one.id and one.mode is not TrackMode.LOST)
+
+    def update_with_detections(
+        self, frame: Frame, detections: DetectionsT, *, stamp_ns: int | None = None
+    ) -> DetectionsT:
+        """Follow all vehicles into the next image, with `supervision.Detections` in and out.
+
+        Returns those of all vehicles that `update` returns, the occluded ones included, with
+        `tracker_id`, and ``data`` with their ``class_name`` and ``mode``. Masks are not carried on.
+        """
+        given: Any = detections
+        corners = np.asarray(given.xyxy, np.float64).reshape(-1, 4)
+        boxes = np.hstack([corners[:, :2], corners[:, 2:] - corners[:, :2]])
+        ids = given.class_id
+        names = given.data.get("class_name", ids)
+        labels = None if names is None else [str(name) for name in names]
+        if labels is not None and ids is not None:
+            self._class_ids.update(zip(labels, map(int, ids), strict=True))
+        tracks = self.update(frame, boxes, given.confidence, labels, stamp_ns=stamp_ns)
+        # -1: a class that no detection has had, as of a vehicle that was given by hand.
+        known = [self._class_ids.get(one.label, -1) for one in tracks]
+        followed: DetectionsT = type(given)(
+            xyxy=np.array([[*one.box.corners[0], *one.box.corners[2]] for one in tracks])
+            .reshape(-1, 4)
+            .astype(np.float32),
+            confidence=np.array([one.confidence for one in tracks], np.float32),
+            class_id=np.array(known, int) if self._class_ids else None,
+            tracker_id=np.array([one.id for one in tracks], int),
+            data={
+                "class_name": np.array([one.label for one in tracks], str),
+                "mode": np.array([one.mode.value for one in tracks], str),
+            },
+        )
+        return followed
+
+    def update_with_rows(
+        self, frame: Frame, rows: npt.ArrayLike, *, stamp_ns: int | None = None
+    ) -> Array:
+        """Follow all vehicles into the next image, with rows of MOTChallenge in and out.
+
+        Parameters
+        ----------
+        frame : Frame
+            RGB image.
+        rows : array-like, shape (N, 6 or more)
+            Detections of this image: frame, id (neither is used), left, top, width, height, and a
+            score if there is one.
+        stamp_ns : int, optional
+            As for `update`.
+
+        Returns
+        -------
+        array, shape (M, 10)
+            Rows of ``tracks.txt``: the number of the image from 1, id, left, top, width, height,
+            confidence (half of it of an occluded vehicle) and three times -1.
+        """
+        given = np.asarray(rows, np.float64).reshape(-1, np.shape(rows)[-1] or 7)
+        scores = given[:, 6] if given.shape[1] > 6 else None
+        tracks = self.update(frame, given[:, 2:6], scores, stamp_ns=stamp_ns)
+        found = [mot_numbers(self._images, one) for one in tracks]
+        return np.array(found, np.float64).reshape(-1, 10)

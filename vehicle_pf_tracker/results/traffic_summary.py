@@ -1,0 +1,148 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Summary of a run over many vehicles: how many, of what class, through how many occlusions."""
+
+from __future__ import annotations
+
+from collections import Counter as Tally
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
+from vehicle_pf_tracker.counting.watches import ENTRY, EXIT
+from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate, TrackMode
+
+
+@dataclass(slots=True)
+class VehicleLog:
+    """Life of one vehicle in a run.
+
+    Attributes
+    ----------
+    labels : Counter of str
+        Frames in which it was visible as each class.
+    survived : int
+        Occlusions after which it was visible under the same number.
+    is_hidden : bool
+        True from the beginning of an occlusion until it is visible again; leaving is none.
+    """
+
+    labels: Tally[str] = field(default_factory=Tally)
+    survived: int = 0
+    is_hidden: bool = False
+
+    @property
+    def label(self) -> str:
+        """Class of most frames: a lorry far away looks like a car; "" where it is unknown."""
+        return max(self.labels, key=self.labels.__getitem__, default="")
+
+
+class TrafficSummary:
+    """Counts vehicles and occlusions, frame by frame.
+
+    Attributes
+    ----------
+    frames : int
+        Frames so far.
+    most_at_once : int
+        Largest number of confirmed vehicles in a frame.
+    vehicles : dict of int to VehicleLog
+        Every vehicle that was visible and confirmed, by its number.
+    """
+
+    def __init__(self) -> None:
+        self.frames = 0
+        self.most_at_once = 0
+        self.vehicles: dict[int, VehicleLog] = {}
+
+    def add(self, estimates: Iterable[TrackEstimate]) -> None:
+        """Take the next frame."""
+        self.frames += 1
+        confirmed = [one for one in estimates if one.mode in (*CONFIRMED, TrackMode.LOST)]
+        for one in confirmed:
+            self._follow(one)
+        present = sum(one.mode is not TrackMode.LOST for one in confirmed)
+        self.most_at_once = max(self.most_at_once, present)
+
+    def _follow(self, one: TrackEstimate) -> None:
+        if one.mode is TrackMode.TRACKING:
+            vehicle = self.vehicles.setdefault(one.identity, VehicleLog())
+            vehicle.survived += vehicle.is_hidden
+            vehicle.labels.update([one.label] * bool(one.label))
+            vehicle.is_hidden = False
+        elif one.identity in self.vehicles and one.hidden_by != BORDER:
+            self.vehicles[one.identity].is_hidden = True
+
+    @property
+    def survived(self) -> int:
+        """Occlusions after which a vehicle was visible under the same number."""
+        return sum(one.survived for one in self.vehicles.values())
+
+    @property
+    def ended_hidden(self) -> int:
+        """Vehicles that stayed invisible after their last occlusion."""
+        return sum(one.is_hidden for one in self.vehicles.values())
+
+    def sentences(self, counter: Counter) -> list[str]:
+        """Return the summary, a line for each fact."""
+        classes = Tally(one.label for one in self.vehicles.values() if one.label)
+        found = [
+            f"{_number(len(self.vehicles), 'vehicle')} in {self.frames} frames, at most "
+            f"{self.most_at_once} at once{_listed(classes)}",
+            f"{_number(self.survived, 'occlusion')} survived under the same number; "
+            f"{_number(self.ended_hidden, 'vehicle')} not seen again after an occlusion",
+        ]
+        lines = [
+            f"line {line.name}: "
+            + ", ".join(_direction(counter, line.name, to) for to in line.directions)
+            for line in counter.plan.lines
+        ]
+        zones = [
+            f"zone {zone.name}: {counter.count(zone.name, ENTRY)} entered, "
+            f"{counter.count(zone.name, EXIT)} left"
+            for zone in counter.plan.zones
+        ]
+        return [*found, *lines, *zones]
+
+    def to_json(self, counter: Counter) -> dict[str, Any]:
+        """Return the summary for `run.json`."""
+        return {
+            "frames": self.frames,
+            "vehicles": len(self.vehicles),
+            "most_at_once": self.most_at_once,
+            "occlusions_survived": self.survived,
+            "ended_occluded": self.ended_hidden,
+            "counts": [
+                {"place": place, "direction": direction, "class": label, "count": count}
+                for (place, direction, label), count in sorted(counter.totals.items())
+            ],
+        }
+
+
+def _direction(counter: Counter, place: str, direction: str) -> str:
+    both, totals = [place, direction], counter.totals.items()
+    classes = Tally({label: count for (*at, label), count in totals if at == both and label})
+    return f"{counter.count(place, direction)} {direction}{_listed(classes)}"
+
+
+def _listed(classes: Tally[str]) -> str:
+    """Return the classes in brackets, the most frequent first; empty where none is known."""
+    words = ", ".join(f"{count} {label}" for label, count in classes.most_common())
+    return f" ({words})" if words else ""
+
+
+def _number(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"

@@ -1,0 +1,273 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Drawing into images: words, boxes, estimates of targets, and grids of pixels and of the road."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
+from typing import TypeAlias
+
+import cv2
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import Box, Position, intersections
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.results.estimates import EstimateRow, clock_words
+from vehicle_pf_tracker.road.plane import Pair, RoadPlane
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
+
+Colour = tuple[int, int, int]
+"""Red, green, blue."""
+
+
+def line_width(picture: Frame) -> int:
+    """Return the width of lines that suits the picture's size, px."""
+    return line_width_of(frame_size(picture))
+
+
+def line_width_of(size: tuple[int, int]) -> int:
+    """Return the width of lines that suits pictures of a width and height, px."""
+    return max(1, round(min(size) / 300))
+
+
+def write_words(
+    picture: Frame, words: str, corner: tuple[int, int], colour: Colour, width: int = 1
+) -> None:
+    """Write words with a dark edge.
+
+    Parameters
+    ----------
+    picture : Frame
+        Written to.
+    words : str
+        One line.
+    corner : (int, int)
+        Lower left corner of the words, px.
+    colour : (int, int, int)
+        Red, green, blue.
+    width : int
+        Width of the strokes, px; the letters grow with it.
+    """
+    font, scale, smooth = cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, cv2.LINE_AA
+    x, y = corner
+    # Not by a thicker stroke: in OpenCV 5 that makes the letters wider.
+    for across, down in ((-width, 0), (width, 0), (0, -width), (0, width)):
+        cv2.putText(picture, words, (x + across, y + down), font, scale, (0, 0, 0), width, smooth)
+    cv2.putText(picture, words, corner, font, scale, colour, width, smooth)
+
+
+LETTER = 14
+"""Height of a line of words, in line widths."""
+_DASH = 6
+"""Length of a dash and of a gap, in line widths."""
+_FAR = 20_000
+"""Pixels beyond which OpenCV's coordinates, of 16 bits and a fraction, overflow."""
+
+
+def pixels_at(points: Array) -> list[tuple[int, int]]:
+    """Return the pixel that each continuous position (N, 2) lies in."""
+    return [(int(x), int(y)) for x, y in np.floor(np.clip(points, -_FAR, _FAR))]
+
+
+def draw_box(picture: Frame, box: Box, colour: Colour, width: int, *, dashed: bool = False) -> None:
+    """Draw a box of px into `picture`, its lines `width` px wide."""
+    corners = pixels_at(np.asarray(box.corners))
+    if not dashed:
+        cv2.rectangle(picture, corners[0], corners[2], colour, width)
+        return
+    for ends in dashes(corners, _DASH * width):
+        start, end = pixels_at(ends)
+        cv2.line(picture, start, end, colour, width)
+
+
+def draw_path(
+    picture: Frame, points: Iterable[Position], colour: Colour, *, closed: bool = False
+) -> None:
+    """Draw lines from point to point, px, as wide as suits the picture."""
+    pixels = np.array(pixels_at(np.array(list(points)).reshape(-1, 2)), np.int32)
+    path = pixels.reshape(-1, 1, 2)
+    cv2.polylines(picture, [path], closed, colour, line_width(picture), cv2.LINE_AA)
+
+
+Label: TypeAlias = tuple[Box, Colour, tuple[str, ...]]
+"""Box in px, and words for it: the first that find room."""
+Labels: TypeAlias = list[Label]
+
+
+def write_labels(picture: Frame, labels: Iterable[Label], width: int = 0) -> None:
+    """Write words around boxes, in the picture, where no others are; the first go first.
+
+    Strokes are `width` px wide or, with 0, as suits the picture.
+    """
+    width, taken = width or line_width(picture), np.zeros((0, 4))
+    for box, colour, choice in labels:
+        options = [(words, at) for words in choice for at in _places(picture, words, box, width)]
+        free = (one for one in options if not intersections(one[1], taken).any())
+        # Without room the shortest words cover others: a vehicle always has its number.
+        words, place = next(free, options[-4])
+        taken = np.vstack([taken, place])
+        corner = int(place[0]), int(place[3]) - 3 * width
+        write_words(picture, words, corner, colour, width)
+
+
+def _places(picture: Frame, words: str, box: Box, width: int) -> Array:
+    """Return the edges (4, 4) of words above, below, right and left of a box."""
+    (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, width)
+    (left, top), (right, bottom), size = box.corners[0], box.corners[2], (across, LETTER * width)
+    corners = (left, top - size[1]), (left, bottom), (right, top), (left - across, top)
+    inside = np.clip(corners, 0, np.maximum(np.subtract(frame_size(picture), size), 0))
+    return np.hstack([inside, inside + size])
+
+
+def dashes(corners: Sequence[Position], dash: float) -> Iterator[Array]:
+    """Yield the two ends (2, 2) of each dash of a closed line; `dash` is its length, px."""
+    for start, end in pairwise(np.array([*corners, corners[0]], float)):
+        length = float(np.hypot(*(end - start)))
+        for along in np.arange(0.0, length, 2 * dash):
+            yield start + (end - start) / length * np.array([[along], [min(along + dash, length)]])
+
+
+COLOURS: dict[str, Colour] = {
+    Mode.TRACKING.value: (64, 220, 64),
+    Mode.OCCLUDED.value: (255, 176, 0),
+    Mode.LOST.value: (255, 48, 48),
+}
+"""Colour of each mode, (red, green, blue); `NEUTRAL` for frames without an estimate."""
+NEUTRAL: Colour = (200, 200, 200)
+_PARTICLE: Colour = (96, 160, 255)
+_PATH_LENGTH = 300
+"""Positions shown of a path: ten seconds of video, longer ones hide the road."""
+
+
+class Annotator:
+    """Draws one target; keeps its path.
+
+    Parameters
+    ----------
+    name : str
+        Name of the target; empty where there is only one.
+    particles : bool
+        Draw the particles too.
+    """
+
+    def __init__(self, name: str = "", *, particles: bool = False) -> None:
+        self.name = name
+        self._shows_particles = particles
+        self._path: deque[tuple[float, float]] = deque(maxlen=_PATH_LENGTH)
+
+    def follow(self, estimate: Estimate | None) -> None:
+        """Continue the path; a lost target ends it."""
+        if estimate is None or estimate.mode is Mode.LOST:
+            self._path.clear()
+        else:
+            self._path.append(estimate.position)
+
+    def draw(self, picture: Frame, estimate: Estimate | None) -> None:
+        """Draw a frame's estimate into `picture`.
+
+        A predicted position, under an occluder, is dashed; a lost target has neither box nor path.
+        """
+        if estimate is None or estimate.mode is Mode.LOST:
+            return
+        colour, width = COLOURS[estimate.mode.value], line_width(picture)
+        if self._shows_particles:
+            for centre in pixels_at(estimate.particles):
+                cv2.circle(picture, centre, width, _PARTICLE, -1)
+        draw_path(picture, self._path, colour)
+        is_predicted = estimate.mode is Mode.OCCLUDED
+        draw_box(picture, estimate.box, colour, width, dashed=is_predicted)
+        if self.name:
+            write_labels(picture, [(estimate.box, colour, (self.name,))])
+
+
+def estimate_words(name: str, row: EstimateRow) -> str:
+    """Return name, mode and confidence of a target in one line; the name may be empty."""
+    confidence = "" if row.confidence is None else f" {row.confidence:.2f}"
+    return f"{name} {row.mode}{confidence}".lstrip()
+
+
+def annotated(
+    frame: Frame, elapsed_ns: int, states: Iterable[tuple[Annotator, EstimateRow, Estimate | None]]
+) -> Frame:
+    """Return a copy of `frame` with all targets, and a line for the time and for each of them."""
+    picture: Frame = np.array(frame, order="C")
+    number, lines = 0, []
+    for annotator, row, estimate in states:
+        annotator.draw(picture, estimate)
+        lines.append((estimate_words(annotator.name, row), COLOURS.get(row.mode, NEUTRAL)))
+        number = row.frame
+    width = line_width(picture)
+    head = (f"{clock_words(elapsed_ns)}  frame {number}", NEUTRAL)
+    for index, (words, colour) in enumerate([head, *lines], start=1):
+        write_words(picture, words, (5 * width, 16 * width * index), colour, width)
+    return picture
+
+
+_LINE, _TEXT = (255, 240, 80), (255, 255, 255)
+_POINT, _ROAD = (255, 60, 60), (80, 220, 255)
+_STEPS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+"""Distances of lines, px or m."""
+_LINES = 12
+"""Lines across the image, about: enough to read a point to a fifth of their distance."""
+_PIECES = 60
+"""Pieces that a line of the road is drawn in, which the lens may bend."""
+
+
+def draw_pixel_grid(frame: Frame) -> Frame:
+    """Draw lines with their pixel coordinates over a copy of `frame`."""
+    picture = np.array(frame, order="C")
+    (width, height), pen = frame_size(frame), max(1, line_width(picture) // 2)
+    step = _step(max(width, height) / _LINES)
+    for x in range(step, width, step):
+        cv2.line(picture, (x, 0), (x, height - 1), _LINE, pen)
+        write_words(picture, str(x), (x + 2 * pen, 11 * pen), _TEXT, pen)
+    for y in range(step, height, step):
+        cv2.line(picture, (0, y), (width - 1, y), _LINE, pen)
+        write_words(picture, str(y), (2 * pen, y - 3 * pen), _TEXT, pen)
+    return picture
+
+
+def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Frame:
+    """Draw lines of the road with their metres, and the pairs, over a copy of `frame`."""
+    picture: Frame = np.array(frame, order="C")
+    width = max(1, line_width(picture) // 2)
+    labels: Labels = [
+        (Box.around(pair.pixel, 0, 0), _TEXT, (f"{pair.road[0]:g},{pair.road[1]:g}",))
+        for pair in pairs
+    ]
+    points = np.array([pair.road for pair in pairs])
+    low, high = points.min(axis=0), points.max(axis=0)
+    for axis in (0, 1):
+        step = _step(float(high[axis] - low[axis]) / _LINES)
+        first, last = np.ceil(low[axis] / step), np.floor(high[axis] / step)
+        line = np.empty((_PIECES, 2))
+        line[:, 1 - axis] = np.linspace(low[1 - axis], high[1 - axis], _PIECES)
+        for number in np.arange(first, last + 1) * step:
+            line[:, axis] = number
+            pixels = np.clip(np.floor(plane.to_image(line)), -(2**14), 2**14).astype(np.int32)
+            cv2.polylines(picture, [pixels.reshape(-1, 1, 2)], False, _ROAD, width, cv2.LINE_AA)
+            at = Box.around(pixels[0].tolist(), 0, 0)
+            labels.append((at, _TEXT, (f"{'xy'[axis]}={number:g}", "")))  # left out without room
+    for centre in pixels_at(np.array([pair.pixel for pair in pairs])):
+        cv2.drawMarker(picture, centre, _POINT, cv2.MARKER_CROSS, 11 * width, width)
+    write_labels(picture, labels, width)
+    return picture
+
+
+def _step(least: float) -> int:
+    return next((step for step in _STEPS if step >= least), _STEPS[-1])
