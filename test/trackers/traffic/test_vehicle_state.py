@@ -190,3 +190,14 @@ def test_states_that_are_stacked_go_on_as_each_alone_would():
         assert other.box == one.box
         assert (other.velocity, other.horizon) == (pytest.approx(one.velocity), 20.0)
     assert VehicleState.stacked([]).is_sound.all()
+
+
+def test_the_point_on_the_road_errs_as_the_edges_do(state):
+    # Edges of 1 px: their middle has half the variance of one, the lower edge has its own.
+    assert state.foot_covariance == pytest.approx((0.5, 0.0, 1.0))
+    state.predict(5.0, STILL)
+    (left, _, right, bottom), between = state.edge_covariance.diagonal(), state.edge_covariance
+    by_x, both, by_y = state.foot_covariance
+    assert by_x == pytest.approx((left + right + 2 * between[0, 2]) / 4)
+    assert both == pytest.approx((between[0, 3] + between[2, 3]) / 2)
+    assert by_y == pytest.approx(bottom)

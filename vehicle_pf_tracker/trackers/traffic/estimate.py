@@ -59,6 +59,9 @@ class TrackEstimate:
         Number of its track, the same before and after it is confirmed.
     joined : int
         Serial of the track as which it was found again after it was hidden; 0 if of none.
+    foot_covariance : (float, float, float)
+        Variance of x, covariance of x and y, and variance of y of the middle of the box's lower
+        edge, px²; zeros where they are not known.
     """
 
     identity: int
@@ -72,6 +75,7 @@ class TrackEstimate:
     hidden_by: int | str | None
     serial: int = 0
     joined: int = 0
+    foot_covariance: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def id(self) -> int:

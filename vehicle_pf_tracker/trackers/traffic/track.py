@@ -321,6 +321,7 @@ class Track:
             score=self.score,
             age=self.age,
             hidden_by=(self.hidden_by or unknown) if hidden else None,
+            foot_covariance=state.foot_covariance,
         )
 
 

@@ -167,6 +167,12 @@ class VehicleState:
         return np.asarray(OBSERVATION @ self.covariance @ OBSERVATION.T)
 
     @property
+    def foot_covariance(self) -> tuple[float, float, float]:
+        """Of one vehicle's point on the road: variances of x and y around their covariance, px²."""
+        (by_x, both), (_, by_y) = self.covariance[: V + 1, : V + 1].tolist()
+        return by_x, both, by_y
+
+    @property
     def is_sound(self) -> npt.NDArray[np.bool_]:
         """True while the state is a Gaussian: finite, and of positive variances."""
         totals = self.mean.sum(axis=-1) + self.covariance.sum(axis=(-2, -1))
