@@ -35,11 +35,13 @@ RUNTIME = [
     "rich>=13",
     "PyYAML>=6.0",
 ]
-# Many vehicles: the assignment of detections, and detection networks.
-TRAFFIC = ["scipy>=1.11", "onnxruntime>=1.17"]
+# Many vehicles: the assignment of detections, and detection networks, fetched once.
+TRAFFIC = ["scipy>=1.11", "onnxruntime>=1.17", "pooch>=1.8"]
 VIDEO = ["av>=14", *TRAFFIC]
 EVALUATION = ["matplotlib>=3.6", "jinja2>=3.1", "optuna>=4.0", *VIDEO]
 NUMBA = ["numba>=0.60"]
+# Several machines: Dask's scheduler and workers, and recordings at URLs.
+CLUSTER = ["distributed>=2024.8", "fsspec[http]>=2024.6"]
 TEST = ["pytest>=7", "hypothesis>=6.100"]
 LINT = ["ruff>=0.17,<0.18", "mypy>=2.4,<3", "types-PyYAML"]
 COVERAGE = ["coverage>=7.10"]
@@ -115,9 +117,10 @@ setup(
         "ros": ROS,
         "evaluation": EVALUATION,
         "numba": NUMBA,
+        "cluster": CLUSTER,
         "test": TEST,
         "lint": LINT,
-        "dev": TEST + LINT + COVERAGE + NUMBA + EVALUATION + READERS,
+        "dev": TEST + LINT + COVERAGE + NUMBA + EVALUATION + CLUSTER + READERS,
     },
     entry_points={
         "console_scripts": [

@@ -26,6 +26,7 @@ ROOT = HERE.parent
 
 SETUPTOOLS = "setuptools>=77,<80"  # builds this package; the upper limit is colcon's
 BASE = (SETUPTOOLS, f"{ROOT}[dev]")
+EXAMPLES = ("supervision>=0.26",)  # what docs/examples.md shows, run by tests
 ROS = (*BASE, f"{ROOT}[ros]")
 KILTED = (*BASE, "ros-kilted-rclpy[fastrtps]==9.1.2", "ros-kilted-common-interfaces==5.5.1")
 COLCON = (
@@ -56,8 +57,9 @@ BASELINES = (  # the trackers compared with, and the scores of many vehicles
     "trackers==2.6.1",
     "trackeval==1.3.0",
 )
-# The last two ask for it, and it would overwrite the contrib package, which has all that it has.
-OVERWRITES_CONTRIB = "opencv-python=="
+# Asked for by the last two and by supervision: it would overwrite the OpenCV that is there, which
+# has all of it that they use.
+OVERWRITES_OPENCV = "opencv-python=="
 # The ROS wheels unpack metadata of their own besides; only what pip installed has a WHEEL file.
 INSTALLED = """
 from importlib.metadata import distributions
@@ -90,7 +92,7 @@ def lock_by_interpreters(interpreters: list[str], only: str | None) -> None:
     for interpreter in interpreters:
         version = run(interpreter, "-c", "import sys; print('%d.%d' % sys.version_info[:2])")[0]
         baselines = resolve(interpreter, BASELINES)
-        pins = {"baselines": {pin for pin in baselines if not pin.startswith(OVERWRITES_CONTRIB)}}
+        pins = {"baselines": without_opencv(baselines)}
         if only is None:
             pins |= own_pins(interpreter, version)
         for lock, found in pins.items():
@@ -117,7 +119,7 @@ def lock_docs() -> None:
 
 def own_pins(interpreter: str, version: str) -> dict[str, set[str]]:
     """Return the pins of every lock that this package itself is installed with."""
-    base = resolve(interpreter, BASE)
+    base = without_opencv(resolve(interpreter, (*BASE, *EXAMPLES)))
     pins = {
         "locked": base,
         "ros-jazzy": resolve(interpreter, ROS) - base,
@@ -127,6 +129,11 @@ def own_pins(interpreter: str, version: str) -> dict[str, set[str]]:
     if version in {"3.10", "3.11", "3.12"}:  # NumPy 1.26 has no wheels for later ones
         pins["noble"] = resolve(interpreter, NOBLE)
     return pins
+
+
+def without_opencv(pins: set[str]) -> set[str]:
+    """Leave out the package that would overwrite another OpenCV."""
+    return {pin for pin in pins if not pin.startswith(OVERWRITES_OPENCV)}
 
 
 def resolve(interpreter: str, wanted: tuple[str, ...]) -> set[str]:

@@ -112,9 +112,9 @@ def test_the_extra_of_evaluations_is_what_its_verbs_ask_for(setup):
     assert {re.match(r"[\w-]+", line)[0] for line in extra} >= {*EVALUATION_MODULES, "optuna"}
 
 
-def test_three_extras_bring_what_the_readme_shows(setup):
+def test_extras_bring_what_the_readme_shows(setup):
     extras = setup["extras_require"]
-    assert set(extras) == {"video", "ros", "evaluation", "numba", "test", "lint", "dev"}
+    assert set(extras) == {"video", "ros", "evaluation", "numba", "cluster", "test", "lint", "dev"}
     assert set(extras["video"]) <= set(extras["evaluation"])
     for extra in ("video", "ros"):
         assert {"scipy>=1.11", "onnxruntime>=1.17"} <= set(extras[extra])
