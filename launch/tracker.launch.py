@@ -34,6 +34,8 @@ def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     own = [Parameter("use_sim_time", is_true(given["use_sim_time"]))]
     if given["image_transport"]:
         own.append(Parameter("image_transport", given["image_transport"]))
+    if given["queue_depth"]:
+        own.append(Parameter("queue_depth", int(given["queue_depth"])))
     if given["detections_topic"]:
         own.append(Parameter("detector.kind", "topic"))
     if given["lines"]:

@@ -64,6 +64,8 @@ class StubTracker:
         List to append (name, event) to, shared by several stubs.
     on_image
         Called with the number of each image.
+    depth
+        Images that may wait for it.
     """
 
     def __init__(
@@ -76,6 +78,7 @@ class StubTracker:
         refuses_target=False,
         log=None,
         on_image=None,
+        depth=COUNT,
     ):
         self.name = name
         self.events, self.images = [], []
@@ -87,7 +90,7 @@ class StubTracker:
         self.node.add_on_set_parameters_callback(self.set)
         self.mode = self.node.create_publisher(DiagnosticArray, "~/mode", 10)
         self.node.create_service(Trigger, "~/reset", self.reset)
-        qos = QoSProfile(depth=COUNT, reliability=ReliabilityPolicy.BEST_EFFORT)
+        qos = QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT)
         self.node.create_subscription(Image, topic, self.take, qos)
         bench.add(self.node)
 

@@ -14,9 +14,15 @@ pytest.importorskip("rclpy")
 
 from replay_rig import record
 
+from vehicle_pf_tracker.cli.main import make_parser
+from vehicle_pf_tracker.cli.replay import Request
+from vehicle_pf_tracker.cli.requests import request_of
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml
+from vehicle_pf_tracker.ros.launching import ARGUMENTS as NODE
 from vehicle_pf_tracker.ros.launching import parameter_file, read_cameras
+from vehicle_pf_tracker.ros.replay.launched_replay import ARGUMENTS as REPLAY
+from vehicle_pf_tracker.ros.replay.launched_replay import queue_depth, replay_words
 from vehicle_pf_tracker.ros.replay.publishing import recorded_images
 
 FILE = """
@@ -46,6 +52,39 @@ def test_compressed_images_of_any_name_are_published_where_a_node_listens():
     assert recorded_images(found) == (
         "/front/jpeg", "/front/jpeg", "compressed", "/front/jpeg/compressed",
     )  # fmt: skip
+
+
+DEFAULTS = {name: default for name, (default, _) in {**NODE, **REPLAY}.items()}
+
+
+def words_of(folder, **given):
+    given = {**DEFAULTS, "recording": str(folder), **given}
+    return replay_words(given, recorded_images(record(folder))), queue_depth(given)
+
+
+def test_a_launched_replay_is_in_lockstep_at_the_pace_of_the_recording(tmp_path):
+    words, depth = words_of(tmp_path)
+    assert words == [
+        str(tmp_path), "--topic", "/camera/image_raw", "--rate", "1.0", "--node", "/apf_tracker",
+        "--timeout", "60", "--lockstep",
+    ]  # fmt: skip
+    assert depth == ""
+
+
+def test_a_launched_replay_in_real_time_has_a_queue(tmp_path):
+    words, depth = words_of(tmp_path, lockstep="False", loop="true")
+    assert "--lockstep" not in words
+    assert words[-1] == "--loop"
+    assert int(depth) >= 10
+
+
+def test_the_words_of_a_launched_replay_are_options_of_the_replay(tmp_path):
+    words, _ = words_of(
+        tmp_path, loop="true", use_sim_time="true", target="1,2,3,4", namespace="/front", name="a"
+    )
+    request = request_of(Request, make_parser(["replay"]).parse_args(["replay", *words]))
+    assert (request.loop, request.lockstep, request.clock) == (True, True, 100.0)
+    assert list(request.nodes) == ["front/a"]
 
 
 def test_a_camera_may_have_the_node_of_many_vehicles(tmp_path):

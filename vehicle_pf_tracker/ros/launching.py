@@ -35,6 +35,7 @@ ARGUMENTS = {
     "params_file": ("", "Parameter YAML; empty takes that of the variant"),
     "image_topic": ("/camera/image_raw", "Images; compressed ones are below it, in /compressed"),
     "image_transport": ("", "raw or compressed; empty leaves it to the parameter file"),
+    "queue_depth": ("", "Images that may wait; empty leaves it to the parameter file"),
     "detections_topic": (
         "", "For traffic: detections (vision_msgs/Detection2DArray) to follow; empty leaves the "
         "detector to the parameter file, whose default is what moves before a standing camera",

@@ -5,8 +5,8 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from vehicle_pf_tracker.ros.replay.player import Pace
-from vehicle_pf_tracker.ros.replay.tracker_link import Answers, nearest_frame
+from vehicle_pf_tracker.ros.replay.pace import Pace
+from vehicle_pf_tracker.ros.replay.starting_target import nearest_frame
 
 
 class Watch:
@@ -77,20 +77,3 @@ def test_no_image_beyond_the_next_is_read():
     stamps = iter([100, 200, 300, 400])
     assert nearest_frame(stamps, 100, limit_ns=10) == 1
     assert next(stamps) == 300
-
-
-def test_answers_to_other_images_are_passed_over():
-    from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus  # noqa: PLC0415
-
-    answers = Answers()
-    message = DiagnosticArray(status=[DiagnosticStatus(message="WAITING")])
-    message.header.stamp.nanosec = 5
-    answers.receive(message)
-    answers.expect(1, 5)
-    assert not answers.has(1)
-    answers.receive(message)
-    answers.receive(message)
-    assert answers.has(1)
-    assert answers.count == 1
-    (row,) = answers.rows()
-    assert (row.frame, row.stamp_ns, row.mode, row.x) == (1, 5, "WAITING", None)

@@ -3,6 +3,7 @@
 
 import os
 import signal
+import time
 
 import pytest
 
@@ -53,6 +54,18 @@ def test_unanswered_frames_keep_their_rows(bench, tmp_path):
     assert [row.frame for row in node.rows] == list(range(1, COUNT + 1))
     assert [row.mode for row in node.rows].index("DROPPED") == 3
     assert node.rows[3].x is None
+    (notice,) = report.notices
+    assert notice.startswith("/stub_tracker did not answer 1 of 10 images: ")
+
+
+def test_images_lost_to_a_busy_node_are_told_from_those_lost_on_the_way(bench, tmp_path):
+    stub = StubTracker(bench, depth=1, on_image=lambda count: time.sleep(0.3 * (count == 1)))
+    report = play(bench, record(tmp_path / "bag"), rate=1.0)
+    lost = COUNT - len(stub.stamps)
+    assert lost >= 4  # 0.3 s are 7 images, of which the last one waits
+    (notice,) = report.notices
+    assert f"did not answer {lost} of 10 images: " in notice
+    assert "came while it was at work on an earlier one" in notice
 
 
 def test_a_dropped_last_frame_is_waited_for_no_longer_than_the_timeout(bench, tmp_path):

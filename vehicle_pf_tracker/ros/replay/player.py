@@ -1,103 +1,27 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The bag player: publishes a recording and collects the tracker nodes' answers.
-
-Its pace, and the time on `/clock` that follows it.
-"""
+"""The bag player: publishes a recording and collects the tracker nodes' answers."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
-from rclpy.clock import Clock as RosClock
-from rclpy.clock import ClockType
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rosgraph_msgs.msg import Clock
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Lookout, Spinner
+from vehicle_pf_tracker.ros.replay.pace import Pace, PlaybackClock
 from vehicle_pf_tracker.ros.replay.publishing import make_publishers
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, ReplayReport
-from vehicle_pf_tracker.ros.replay.tracker_link import Targets, TrackerLink, played, starting_target
+from vehicle_pf_tracker.ros.replay.starting_target import Targets, played, starting_target
+from vehicle_pf_tracker.ros.replay.tracker_link import TrackerLink
 
 _ACKNOWLEDGEMENT_SLICE = Duration(seconds=0.05)
-
-
-class Pace:
-    """Maps log times to the monotonic clock.
-
-    Parameters
-    ----------
-    rate : float or None
-        Seconds of log time per second; None does not pace: everything is due at once.
-    clock : callable
-        The monotonic clock in s.
-    """
-
-    def __init__(self, rate: float | None, clock: Callable[[], float] = time.monotonic) -> None:
-        self._rate = rate
-        self._clock = clock
-        self._begin: tuple[int, float] | None = None
-        self._latest_ns = 0
-
-    def restart(self) -> None:
-        """Take the next log time as now, as each pass of a loop does."""
-        self._begin = None
-
-    def due(self, log_time_ns: int) -> float:
-        """Moment on the clock, in s, at which a message with this log time is due."""
-        now = self._clock()
-        if self._begin is None:
-            self._begin = log_time_ns, now
-        self._latest_ns = log_time_ns
-        if self._rate is None:
-            return now
-        first_ns, began = self._begin
-        return began + (log_time_ns - first_ns) * 1e-9 / self._rate
-
-    def log_time_ns(self) -> int | None:
-        """Present log time, never beyond the message asked for last; None before the first.
-
-        Without a rate, time advances with the messages.
-        """
-        if self._begin is None or self._rate is None:
-            return self._latest_ns if self._begin else None
-        first_ns, began = self._begin
-        return min(first_ns + round((self._clock() - began) * self._rate * 1e9), self._latest_ns)
-
-
-class PlaybackClock:
-    """Publishes the log time that it is by `pace`, from the first message on.
-
-    Parameters
-    ----------
-    node : Node
-        The player's own node.
-    pace : Pace
-        Tells the log time.
-    frequency : float
-        Messages per second.
-    """
-
-    def __init__(self, node: Node, pace: Pace, frequency: float) -> None:
-        self._pace = pace
-        self._publisher = node.create_publisher(Clock, "/clock", 10)
-        steady = RosClock(clock_type=ClockType.STEADY_TIME)
-        self._timer = node.create_timer(1 / frequency, self.publish, clock=steady)
-
-    def publish(self) -> None:
-        """Publish the time now."""
-        log_time_ns = self._pace.log_time_ns()
-        if log_time_ns is None:
-            return
-        message = Clock()
-        message.clock.sec, message.clock.nanosec = divmod(log_time_ns, 1_000_000_000)
-        self._publisher.publish(message)
 
 
 class NoTargetError(InputError):
@@ -163,15 +87,22 @@ class Player:
             self._play(targets)
         except Interrupted:
             is_interrupted = True
-        skipped = self._skipped
-        notices = (f"skipped {len(skipped)} messages; the first, {skipped[0]}",) if skipped else ()
         return ReplayReport(
             frames=self._frames,
             seconds=time.monotonic() - began,
             nodes=tuple(link.report() for link in self._links),
-            notices=notices,
+            notices=tuple(self._notices(is_interrupted=is_interrupted)),
             interrupted=is_interrupted,
         )
+
+    def _notices(self, *, is_interrupted: bool) -> Iterator[str]:
+        if self._skipped:
+            yield f"skipped {len(self._skipped)} messages; the first, {self._skipped[0]}"
+        for link in self._links:
+            losses = link.answers.losses()
+            # An interruption leaves the last image without its answer, which is no loss.
+            if losses.total > is_interrupted:
+                yield losses.sentence(link.name, self._frames)
 
     def _get_ready(self) -> Targets:
         options, images = self._options, self._publishers.get(self._recording.image_topic)
