@@ -28,14 +28,14 @@ import numpy as np
 from laboratory.scenes.mot_folder import write_mot_folder
 from laboratory.scenes.traffic_scene import TrafficScene
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.detection.motion_detector import MotionDetector
 from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.roads import Carriageway, any_car, countryside
 from vehicle_pf_tracker.scenes.scene import Camera
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
-from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker

@@ -23,10 +23,10 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.detection.motion_detector import MotionDetector
 from vehicle_pf_tracker.evaluation.traffic.scoring import overlaps
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
-from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker

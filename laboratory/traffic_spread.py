@@ -21,12 +21,12 @@ from pathlib import Path
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.detection.motion_detector import MotionDetector
 from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION
 from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker, counts, kept_identities
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
-from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker

@@ -23,7 +23,7 @@ MAX_FILE_LINES = 350
 MAX_FUNCTION_LINES = 60
 
 GROUND = {"core", "road", "parameters", "filtering", "image"}
-BELOW = {*GROUND, "trackers", "recordings", "scenes", "counting"}
+BELOW = {*GROUND, "detection", "trackers", "recordings", "scenes", "counting"}
 FOLLOWING = {*BELOW, "results", "showing"}
 MAY_IMPORT = {
     "core": set[str](),
@@ -31,10 +31,11 @@ MAY_IMPORT = {
     "parameters": {"core", "road"},
     "filtering": {"core", "road", "parameters"},
     "image": GROUND - {"image"},
-    "trackers": GROUND,
+    "detection": GROUND,
+    "trackers": {*GROUND, "detection"},
     "recordings": GROUND,
     "scenes": GROUND,
-    "counting": {*GROUND, "trackers"},
+    "counting": {*GROUND, "detection", "trackers"},
     "results": BELOW,
     "showing": {*BELOW, "results"},
     "following": FOLLOWING,
@@ -54,7 +55,7 @@ ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", *MESSAGES}
 ON_A_ROBOT = {"rclpy", "launch", "launch_ros", *MESSAGES, "numpy", "scipy", "cv2", "yaml", "numba"}
 
 
-WITHOUT_FILES = {"filtering", "trackers"}
+WITHOUT_FILES = {"filtering", "detection", "trackers"}
 """Rooms that neither read or write files nor paint."""
 FILES = {"fileinput", "glob", "io", "onnxruntime", "os", "pathlib", "shutil", "tempfile"}
 CALLS = {
@@ -367,6 +368,7 @@ def made_up(folder: Path, **files: str) -> dict[str, Module]:
         ("image__window", "from .. import cli"),
         ("trackers__apf", "from vehicle_pf_tracker.recordings.reader import Recording"),
         ("trackers__apf", "def late():\n    import vehicle_pf_tracker.scenes"),
+        ("detection__blobs", "from vehicle_pf_tracker.trackers.estimate import Mode"),
         ("recordings__reader", "from vehicle_pf_tracker.trackers.estimate import Mode"),
         ("scenes__road", "from vehicle_pf_tracker.recordings.writer import write"),
         ("scenes__road", "from vehicle_pf_tracker.recordings import writer"),

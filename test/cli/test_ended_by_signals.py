@@ -83,7 +83,7 @@ def test_an_import_that_is_not_done_leaves_nothing(tmp_path, clip, number):
 
 STUCK = """
 import ctypes, itertools
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.detection.detections import Detections
 class Stuck:
     disturbed = is_blind = False
     calls = itertools.count(1)

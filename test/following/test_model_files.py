@@ -12,10 +12,10 @@ import onnx_networks as networks
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.detection.parameters import DetectorParameters
 from vehicle_pf_tracker.following import model_files
 from vehicle_pf_tracker.following.detectors import detector_maker
 from vehicle_pf_tracker.following.model_files import model_file
-from vehicle_pf_tracker.trackers.traffic.parameters import DetectorParameters
 
 CONTENT = bytes(range(256)) * 1000
 SUM = hashlib.sha256(CONTENT).hexdigest()

@@ -13,8 +13,8 @@ import pytest
 from onnx_networks import BLUE, RED
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.detection.parameters import DetectorParameters
 from vehicle_pf_tracker.following.detectors import detector_maker
-from vehicle_pf_tracker.trackers.traffic.parameters import DetectorParameters
 
 GREY = 50
 

@@ -13,12 +13,12 @@ from failing import failing
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.counting.counter import Counter
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.following.traffic_following import TrafficRun
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.results.traffic_results import TrackFiles
 from vehicle_pf_tracker.trackers.session import TrackerError
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 

@@ -18,6 +18,7 @@ from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, cut_short, number
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
+from vehicle_pf_tracker.detection.parameters import MODEL, MOTION, NONE, TOPIC
 from vehicle_pf_tracker.following.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.following.detectors import DetectionFile, call
 from vehicle_pf_tracker.following.model_files import model_file
@@ -31,7 +32,6 @@ from vehicle_pf_tracker.results.traffic_results import COUNTS, MOT_TRACKS, TRACK
 from vehicle_pf_tracker.showing.page_server import LivePage
 from vehicle_pf_tracker.showing.pictures import Pictures
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, NONE, TOPIC
 
 PICTURE = "summary.png"
 HEAT = "heat.png"

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingZone
 from vehicle_pf_tracker.road.motion import KMH
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.detections import LITTLE
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import LITTLE
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
 _LEAST_MARGIN = 1.0

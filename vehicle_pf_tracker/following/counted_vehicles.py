@@ -12,6 +12,7 @@ from pathlib import Path
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
 from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.following.detectors import PacedDetector, Run, call, detector_maker
 from vehicle_pf_tracker.following.model_files import Progress, silent
 from vehicle_pf_tracker.image.compressed_image import CodedImage
@@ -19,7 +20,6 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.showing.traffic_drawing import Trails, annotated
 from vehicle_pf_tracker.trackers.traffic.association import check_library
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker

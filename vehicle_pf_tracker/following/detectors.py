@@ -20,14 +20,14 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.detection.detector import Detector, FollowedVehicle
+from vehicle_pf_tracker.detection.motion_detector import MotionDetector
+from vehicle_pf_tracker.detection.network import Network
+from vehicle_pf_tracker.detection.network_detector import NetworkDetector
+from vehicle_pf_tracker.detection.parameters import MODEL, MOTION, DetectorParameters
 from vehicle_pf_tracker.following.model_files import Progress, model_file, silent
 from vehicle_pf_tracker.recordings.truth_formats import numbers_in, table_rows
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
-from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
-from vehicle_pf_tracker.trackers.traffic.network_detector import Network, NetworkDetector
-from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION, DetectorParameters
-from vehicle_pf_tracker.trackers.traffic.session import Detector
 
 
 def open_network(model: str, progress: Progress = silent) -> Network:
@@ -131,7 +131,7 @@ class PacedDetector:
         self.disturbed = self.is_blind = False
         self._images, self._others = 0, 0.0
 
-    def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
+    def detect(self, frame: Frame, tracks: Sequence[FollowedVehicle] = ()) -> Detections:
         """Find vehicles, if it is this image's turn; see `Detector`."""
         self._images += 1
         self.every = self._wanted() or self.every

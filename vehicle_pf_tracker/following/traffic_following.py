@@ -14,6 +14,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.counting.counter import Counter
 from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.detection.parameters import MODEL, MOTION
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles
 from vehicle_pf_tracker.following.detectors import DetectionFile
 from vehicle_pf_tracker.following.driver import unreached
@@ -25,7 +26,6 @@ from vehicle_pf_tracker.showing.page_server import LivePage
 from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
 from vehicle_pf_tracker.showing.traffic_drawing import HeatPicture, PathPicture
 from vehicle_pf_tracker.trackers.session import TrackerError
-from vehicle_pf_tracker.trackers.traffic.parameters import MODEL, MOTION
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 _MOST_NOTICES = 20

@@ -17,15 +17,15 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.detection.parameters import MODEL
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import unknown_name
 from vehicle_pf_tracker.recordings.footage import check_fps
 from vehicle_pf_tracker.results.traffic_results import mot_numbers
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.parameters import MODEL
 
 DetectionsT = TypeVar("DetectionsT")
 

@@ -28,7 +28,7 @@ CellBlock: TypeAlias = npt.NDArray[np.intp]
 Points: TypeAlias = npt.NDArray[np.float32]
 """x, y in px as OpenCV counts them, the middle of the first pixel being 0, shape (N, 2)."""
 _Complex: TypeAlias = npt.NDArray[np.complex128]
-Found: TypeAlias = npt.NDArray[np.bool_]
+PointMask: TypeAlias = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class PointFlow:
 
     def follow(
         self, before: Grey, after: Grey, points: Points, guess: Points | None = None
-    ) -> tuple[Points, Found]:
+    ) -> tuple[Points, PointMask]:
         """Find the points of `before` in `after`, starting from a guess (N, 2) if there is one.
 
         Returns
@@ -80,7 +80,7 @@ class PointFlow:
 
     def follow_and_return(
         self, before: Grey, after: Grey, points: Points, guess: Points | None = None
-    ) -> tuple[Points, Found, Points]:
+    ) -> tuple[Points, PointMask, Points]:
         """Find points as `follow`, then follow them back (Kalal et al. 2010).
 
         Returns

@@ -27,6 +27,7 @@ from tracker_rig import FIRST_NS, PERIOD_NS, QUEUE, diagnostics_of, header, over
 from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, hear_notices, lanes
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros import messages as ros_messages
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
@@ -34,7 +35,6 @@ from vehicle_pf_tracker.ros.traffic import stream
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import pytest
 
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING, WaitingImages
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 
 WAIT = 0.5
 SEEN = Detections.make([[1, 2, 3, 4]])

@@ -6,7 +6,7 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.detections import DetectionEvidence
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
 
 SIZE = (320, 240)
 ROAD, TREE = np.array([100.0, 100, 140, 130]), np.array([10.0, 10, 20, 20])

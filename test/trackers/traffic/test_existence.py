@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from traffic_samples import DRIVE, track
 
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections, birth_odds
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
-from vehicle_pf_tracker.trackers.traffic.detections import CERTAIN, DetectionEvidence, Detections
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import CERTAIN, DetectionEvidence
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.track import FEW, predict

@@ -6,7 +6,8 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.detections import overlaps, places_of
+from vehicle_pf_tracker.core.overlaps import overlaps
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import places_of
 from vehicle_pf_tracker.trackers.traffic.measuring import first_state, measure, outgrown
 from vehicle_pf_tracker.trackers.traffic.occlusion import Returns
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters

@@ -8,6 +8,8 @@ import pytest
 from traffic_samples import track
 
 from vehicle_pf_tracker.core.box import intersections
+from vehicle_pf_tracker.core.overlaps import areas, clipped, inside_image, overlaps
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import (
     GATE,
     FrameDetections,
@@ -17,14 +19,7 @@ from vehicle_pf_tracker.trackers.traffic.association import (
     pair_costs,
 )
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
-from vehicle_pf_tracker.trackers.traffic.detections import (
-    DetectionEvidence,
-    Detections,
-    areas,
-    clipped,
-    inside_image,
-    overlaps,
-)
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
 
 BOX = np.array([10.0, 10, 50, 40])

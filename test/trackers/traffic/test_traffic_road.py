@@ -10,9 +10,9 @@ from traffic_samples import track
 from laboratory.scenes import make_traffic_scene
 from laboratory.scenes.perspective import looking
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.road.camera import Lens, Pose
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.horizon import calibrated_row
 from vehicle_pf_tracker.trackers.traffic.occlusion import nearest_first
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
+from vehicle_pf_tracker.detection.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker

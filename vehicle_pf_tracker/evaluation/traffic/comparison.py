@@ -19,6 +19,9 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.detection.detector import FollowedVehicle
+from vehicle_pf_tracker.detection.motion_detector import MotionDetector
 from vehicle_pf_tracker.evaluation.tables import NOTHING, Rows, markdown
 from vehicle_pf_tracker.evaluation.traffic.scoring import (
     TRAFFIC_BASELINES,
@@ -30,9 +33,6 @@ from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
 from vehicle_pf_tracker.results.output_files import make_folder, write_csv, write_json, write_text
 from vehicle_pf_tracker.results.run_folder import versions
 from vehicle_pf_tracker.results.traffic_results import IN_TRACKS, Backdating, Frames
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
-from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
@@ -155,7 +155,7 @@ class _Recorder(MotionDetector):
         super().__init__()
         self.rows: list[Array] = []
 
-    def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
+    def detect(self, frame: Frame, tracks: Sequence[FollowedVehicle] = ()) -> Detections:
         """Find what moves."""
         found = super().detect(frame, tracks)
         numbers = np.full(len(found.scores), len(self.rows) + 1)

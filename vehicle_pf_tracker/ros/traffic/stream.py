@@ -21,6 +21,8 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import header_stamp_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.detection.detections import MOST_DETECTIONS, Detections
+from vehicle_pf_tracker.detection.parameters import TOPIC
 from vehicle_pf_tracker.following.detectors import PacedDetector
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration
@@ -34,9 +36,7 @@ from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.showing.drawing import Colour, draw_box, line_width
 from vehicle_pf_tracker.showing.page_server import LivePage
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
-from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
 _BY_PIXELS = "vehicles are followed by their pixels meanwhile"
 

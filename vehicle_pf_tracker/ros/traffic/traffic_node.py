@@ -13,6 +13,7 @@ from sensor_msgs.msg import RegionOfInterest
 from std_msgs.msg import Int64
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.detection.parameters import TOPIC
 from vehicle_pf_tracker.following.model_files import is_url
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import box_of_region, detections_type, finite
@@ -23,7 +24,6 @@ from vehicle_pf_tracker.ros.traffic.messages import LONGEST
 from vehicle_pf_tracker.ros.traffic.stream import TrafficOutputs, TrafficStream
 from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
-from vehicle_pf_tracker.trackers.traffic.parameters import TOPIC
 
 _LOOK_EVERY = 0.02
 """Interval in s in which images that wait for detections are looked at."""

@@ -16,11 +16,11 @@ from vehicle_pf_tracker.core.box import Box, Position, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 NONE = 0

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
+from vehicle_pf_tracker.detection.detections import Detections
 
 MOST_WAITING = 16
 """Images that may wait: half a second at 30 Hz; of 1080p they are 100 MB."""

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image import shared_motion
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.shared_motion import Found, PointFlow, Points
+from vehicle_pf_tracker.image.shared_motion import PointFlow, PointMask, Points
 from vehicle_pf_tracker.trackers.fusion.surface_flow import BOX_REACH
 
 _GRID = 8
@@ -153,7 +153,7 @@ def _grid(count: int, reach: float) -> Array:
 
 def _flow(
     before: Patch, after: Patch, start: Points, guess: Points | None, flow: PointFlow
-) -> tuple[Points, Found]:
+) -> tuple[Points, PointMask]:
     """Track points (N, 2) forth and back; also tell which came back to where they started."""
     end, found, error = flow.follow_and_return(before.grey, after.grey, start, guess)
     return end, found & (np.square(error).sum(axis=1) < _ROUND_TRIP_PX**2)

@@ -21,16 +21,13 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.overlaps import NOTHING, areas, clipped, overlaps
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
-from vehicle_pf_tracker.trackers.traffic.detections import (
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
     HALF,
     LEAST_PART,
-    NOTHING,
     DetectionEvidence,
-    Detections,
-    areas,
-    clipped,
-    overlaps,
 )
 from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
 from vehicle_pf_tracker.trackers.traffic.track import FALL, FEW, Track

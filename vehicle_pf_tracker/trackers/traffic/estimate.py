@@ -83,6 +83,16 @@ class TrackEstimate:
         return self.identity
 
     @property
+    def is_visible(self) -> bool:
+        """True where it is seen."""
+        return self.mode is TrackMode.TRACKING
+
+    @property
+    def is_followed(self) -> bool:
+        """True where it is seen, or taken to be hidden."""
+        return self.mode in (TrackMode.TRACKING, TrackMode.OCCLUDED)
+
+    @property
     def position(self) -> Position:
         """Centre of the box in px."""
         return self.box.centre

@@ -8,13 +8,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from vehicle_pf_tracker.core.overlaps import inside_image
 from vehicle_pf_tracker.trackers.traffic.association import FrameDetections
-from vehicle_pf_tracker.trackers.traffic.detections import (
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
     CERTAIN,
     HALF,
     LITTLE,
     DetectionEvidence,
-    inside_image,
     places_of,
 )
 from vehicle_pf_tracker.trackers.traffic.occlusion import Returns

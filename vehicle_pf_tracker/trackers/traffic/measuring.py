@@ -16,13 +16,13 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
+from vehicle_pf_tracker.core.overlaps import areas
 from vehicle_pf_tracker.trackers.traffic.association import INWARD, cut_edges, deviations
-from vehicle_pf_tracker.trackers.traffic.detections import (
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
     HALF,
     INSIDE,
     LITTLE,
     Place,
-    areas,
     places_of,
 )
 from vehicle_pf_tracker.trackers.traffic.occlusion import Returns

@@ -14,15 +14,9 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
+from vehicle_pf_tracker.core.overlaps import NOTHING, areas, inside_image
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.detections import (
-    GRID,
-    HALF,
-    NOTHING,
-    Place,
-    areas,
-    inside_image,
-)
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import GRID, HALF, Place
 from vehicle_pf_tracker.trackers.traffic.track import FEW, Track, edges_of
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import SETTLED_AFTER
 

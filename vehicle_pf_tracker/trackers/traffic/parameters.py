@@ -1,13 +1,13 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Parameters of `traffic` and of its detector; docs/traffic.md has the model."""
+"""Parameters of `traffic`; docs/traffic.md has the model."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.detection.parameters import DetectorParameters
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.parameters import frame_rate_parameter
 
@@ -55,70 +55,6 @@ class BirthParameters:
         0.4, "Larger: unless its scores speak for it, a vehicle is reported after a longer way.",
         bounds=(0.0, 10.0), unit="of the width", tuned=(0.1, 1.0),
     )  # fmt: skip
-
-
-MOTION, MODEL, TOPIC, NONE = "motion", "model", "topic", "none"
-
-
-@dataclass(frozen=True, slots=True)
-class DetectorParameters:
-    """Source of detections, and the network where it is one."""
-
-    kind: str = parameter(
-        MOTION,
-        "Source of detections: what moves before a standing camera, a network of yours, a topic "
-        "(of a node), or none (targets given by hand).",
-        choices=(MOTION, MODEL, TOPIC, NONE), read_only=True,
-    )  # fmt: skip
-    model: str = parameter(
-        "",
-        "Network, .onnx: YOLOX, YOLOv8 or SSD by the form of its outputs. A file, or a URL that "
-        "is fetched once; #sha256=… at its end demands this sum.",
-        read_only=True,
-    )  # fmt: skip
-    classes: str = parameter(
-        "car,motorcycle,bus,truck",
-        "Classes of the network that are vehicles, by name or number, apart by commas; empty takes "
-        "all.",
-        read_only=True,
-    )
-    names: str = parameter(
-        "",
-        "Names of the network's classes in their order, apart by commas; empty takes those in the "
-        "file, else COCO's.",
-        read_only=True,
-    )
-    min_score: float = parameter(
-        0.1, "Higher: fewer false alarms, more vehicles missed; the tracker itself weighs scores.",
-        bounds=(0.0, 1.0), read_only=True,
-    )  # fmt: skip
-    overlap: float = parameter(
-        0.65, "Higher: more of the boxes that overlap are kept, as intersection over union.",
-        bounds=(0.05, 1.0), read_only=True,
-    )  # fmt: skip
-    input_size: int = parameter(
-        640,
-        "Longer side of the network's input where the file leaves it open; larger finds smaller "
-        "vehicles, and takes longer.",
-        bounds=(32, 4096), unit="px", read_only=True,
-    )  # fmt: skip
-    max_wait: float = parameter(
-        0.5,
-        "Longer: an image waits longer for its detections from a topic, and a detector that has "
-        "stopped delays everything for longer.",
-        bounds=(0.0, 60.0), unit="s",
-    )  # fmt: skip
-    every: int = parameter(
-        1, "Above 1: the detector looks at every k-th image, and pixels hold vehicles in between; "
-        "images do not wait for a topic's. 0: the smallest k that keeps the images' rate, which "
-        "depends on the machine.",
-        bounds=(0, 1000), unit="images",
-    )  # fmt: skip
-
-    def validate(self) -> None:
-        """Refuse a network without its file."""
-        if self.kind == MODEL and not self.model:
-            raise InputError("detector.kind is model, and detector.model names no .onnx file")
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,9 +18,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.overlaps import areas
 from vehicle_pf_tracker.image.shared_motion import PointFlow
 from vehicle_pf_tracker.trackers.traffic.colours import RIM, ColourBins, similarity
-from vehicle_pf_tracker.trackers.traffic.detections import HALF, areas
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import HALF
 from vehicle_pf_tracker.trackers.traffic.track import FEW, Track
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR, PIXEL_NOISE, V, X
 

@@ -13,16 +13,16 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Protocol
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.detection.detector import Detector
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.counting_plan import Region
 from vehicle_pf_tracker.trackers.image_stream import Turn
 from vehicle_pf_tracker.trackers.session import StreamSession
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
@@ -32,27 +32,8 @@ _DISTURBED = (
 )
 
 
-class Detector(Protocol):
-    """Finds vehicles in an image.
-
-    Attributes
-    ----------
-    disturbed : bool
-        True where the latest image differs too much from those before to look for vehicles in it.
-    is_blind : bool
-        True where it has not looked in the latest image, for this reason or another.
-    """
-
-    disturbed: bool
-    is_blind: bool
-
-    def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
-        """Find them; `tracks` are the estimates of the frame before."""
-        ...
-
-
 @dataclass(slots=True)
-class Found:
+class DetectionTotals:
     """Totals of what was detected, for a user who finds no vehicle.
 
     Attributes
@@ -100,7 +81,7 @@ class TrafficSession(StreamSession[TrafficTracker]):
         Estimates of the last image.
     detector : Detector or None
         The detector in use.
-    found : Found
+    found : DetectionTotals
         Totals of what was detected.
     events, recovered
         See `StreamSession`.
@@ -121,7 +102,7 @@ class TrafficSession(StreamSession[TrafficTracker]):
     ) -> None:
         super().__init__(tracker, frame_rate, reset_on_time_jump)
         self.estimates: tuple[TrackEstimate, ...] = ()
-        self.found = Found()
+        self.found = DetectionTotals()
         self.restarts = 0
         self.successors: Mapping[int, int] = MappingProxyType({})
         self.detector = make_detector() if make_detector else None

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.overlaps import NOTHING
 from vehicle_pf_tracker.trackers.traffic.colours import BINS
-from vehicle_pf_tracker.trackers.traffic.detections import CERTAIN, HALF, NOTHING, Place, Sample
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import CERTAIN, HALF, Place, Sample
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.horizon import Growth
 from vehicle_pf_tracker.trackers.traffic.straight_drive import StraightDrive

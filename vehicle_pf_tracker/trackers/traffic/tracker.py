@@ -15,6 +15,8 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, check_target, intersections
 from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
+from vehicle_pf_tracker.core.overlaps import areas
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.base import drawn_seed
 from vehicle_pf_tracker.trackers.traffic.association import (
@@ -28,12 +30,7 @@ from vehicle_pf_tracker.trackers.traffic.association import (
     pair_costs,
 )
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins, similarity
-from vehicle_pf_tracker.trackers.traffic.detections import (
-    INSIDE,
-    DetectionEvidence,
-    Detections,
-    areas,
-)
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import INSIDE, DetectionEvidence
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.existence import Existence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon

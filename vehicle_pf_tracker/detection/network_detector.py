@@ -1,13 +1,12 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Detection by a network that somebody else has loaded, in whose input images are fitted."""
+"""Detection by a network that somebody else has loaded."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import cv2
 import numpy as np
@@ -16,74 +15,21 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.trackers.traffic import network_outputs
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
-from vehicle_pf_tracker.trackers.traffic.network_outputs import (
+from vehicle_pf_tracker.detection import network_classes
+from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.detection.detector import FollowedVehicle
+from vehicle_pf_tracker.detection.network import Network
+from vehicle_pf_tracker.detection.network_input import PADDING, Fit, letterboxed, stretched
+from vehicle_pf_tracker.detection.network_outputs import (
     SSD,
     YOLOV8,
     YOLOX,
-    Found,
+    NetworkBoxes,
     class_count,
     decode,
     form_of,
 )
-from vehicle_pf_tracker.trackers.traffic.parameters import DetectorParameters
-
-PADDING = 114
-"""Grey of the borders, which YOLOX and YOLOv8 were trained with."""
-
-
-@dataclass(frozen=True, slots=True)
-class Fit:
-    """Place of an image in the input of a network.
-
-    Attributes
-    ----------
-    scale : (float, float)
-        Pixels of the input per pixel of the image, across and down.
-    offset : (float, float)
-        Upper left corner of the image in the input, px.
-    """
-
-    scale: tuple[float, float]
-    offset: tuple[float, float]
-
-    def to_image(self, boxes: Array) -> Array:
-        """Map boxes (N, 4: left, top, width, height) in px of the input to px of the image."""
-        scale = np.array([*self.scale, *self.scale])
-        mapped: Array = (boxes - np.array([*self.offset, 0.0, 0.0])) / scale
-        return mapped
-
-
-def letterboxed(frame: Frame, width: int, height: int, *, centred: bool) -> tuple[Frame, Fit]:
-    """Fit an image into `width` x `height` px with its proportions, grey around it.
-
-    Parameters
-    ----------
-    frame : Frame
-        The image.
-    width, height : int
-        Size of the input in px.
-    centred : bool
-        Put it in the middle; else in the upper left corner.
-    """
-    across, down = frame_size(frame)
-    ratio = min(width / across, height / down)
-    small, fit = stretched(frame, max(1, round(across * ratio)), max(1, round(down * ratio)))
-    size = frame_size(small)
-    left, top = ((width - size[0]) // 2, (height - size[1]) // 2) if centred else (0, 0)
-    picture: Frame = np.full((height, width, 3), PADDING, np.uint8)
-    picture[top : top + size[1], left : left + size[0]] = small
-    return picture, Fit(fit.scale, (float(left), float(top)))
-
-
-def stretched(frame: Frame, width: int, height: int) -> tuple[Frame, Fit]:
-    """Resize an image to `width` x `height` px, whatever its proportions."""
-    across, down = frame_size(frame)
-    resized = cv2.resize(frame, (width, height), interpolation=cv2.INTER_LINEAR)
-    return np.asarray(resized, np.uint8), Fit((width / across, height / down), (0.0, 0.0))
-
+from vehicle_pf_tracker.detection.parameters import DetectorParameters
 
 _TYPES: Mapping[str, Any] = {
     "tensor(float)": np.float32,
@@ -97,45 +43,6 @@ _CELL = 32
 """Size of the largest cells of most networks, px: an open input's sides are multiples of it."""
 _MOST_BOXES = 3000
 """Best boxes of which overlapping ones are suppressed; that takes the square of their number."""
-
-
-class Tensor(Protocol):
-    """Input or output of a network, as ONNX Runtime describes it."""
-
-    @property
-    def name(self) -> str:
-        """Name to run it by."""
-        ...
-
-    @property
-    def type(self) -> str:
-        """Type of its elements, such as ``tensor(float)``."""
-        ...
-
-    @property
-    def shape(self) -> Sequence[int | str | None]:
-        """Its sizes; words and None where they are open."""
-        ...
-
-
-class Network(Protocol):
-    """Loaded network: the part of ONNX Runtime's InferenceSession that is used."""
-
-    def get_inputs(self) -> Sequence[Tensor]:
-        """Describe the inputs."""
-        ...
-
-    def get_outputs(self) -> Sequence[Tensor]:
-        """Describe the outputs."""
-        ...
-
-    def get_modelmeta(self) -> Any:
-        """Return what its author noted; ``custom_metadata_map`` may have names of classes."""
-        ...
-
-    def run(self, names: Sequence[str], inputs: Mapping[str, Array]) -> Sequence[Array]:
-        """Compute the outputs of these names."""
-        ...
 
 
 class NetworkDetector:
@@ -181,11 +88,11 @@ class NetworkDetector:
         except InputError as error:
             raise InputError(f"the network {self._name}: {error}") from None
 
-    def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
+    def detect(self, frame: Frame, tracks: Sequence[FollowedVehicle] = ()) -> Detections:
         """Find vehicles; `tracks` are not used."""
         picture, fit = self._fitted(frame)
-        found = decode(self.form, self._run(picture), *frame_size(picture))
-        boxes, scores, classes = self._filtered(found)
+        decoded = decode(self.form, self._run(picture), *frame_size(picture))
+        boxes, scores, classes = self._filtered(decoded)
         kept = self._without_overlaps(boxes, scores)
         labels = [self._names.get(int(number), str(number)) for number in classes[kept]]
         return Detections.make(fit.to_image(boxes[kept]), scores[kept], labels)
@@ -251,15 +158,15 @@ class NetworkDetector:
         if words:
             if count is not None and len(words) != count:
                 raise InputError(f"it has {count} classes, and detector.names {len(words)} names")
-            return network_outputs.numbered(tuple(words))
+            return network_classes.numbered(tuple(words))
         metadata = self._network.get_modelmeta().custom_metadata_map
-        in_file = network_outputs.parse_metadata(metadata.get("names", ""))
+        in_file = network_classes.parse_metadata(metadata.get("names", ""))
         if in_file:
             return in_file
         if self.form == SSD:
-            return network_outputs.coco_from_one()
-        if count == len(network_outputs.COCO):
-            return network_outputs.numbered(network_outputs.COCO)
+            return network_classes.coco_from_one()
+        if count == len(network_classes.COCO):
+            return network_classes.numbered(network_classes.COCO)
         if count == 1:
             return {0: ""}
         raise InputError(f"it has {count} classes without names; give them with detector.names")
@@ -272,17 +179,17 @@ class NetworkDetector:
         if words == DetectorParameters().classes:  # a network need not know all of these
             known = [word for word in words.split(",") if word in self._names.values()]
             words = ",".join(known) or words
-        return network_outputs.chosen(words, self._names)
+        return network_classes.chosen(words, self._names)
 
-    def _filtered(self, found: Found) -> tuple[Array, Array, npt.NDArray[np.int64]]:
+    def _filtered(self, decoded: NetworkBoxes) -> tuple[Array, Array, npt.NDArray[np.int64]]:
         """Return boxes, scores and classes of usable boxes of the chosen classes, best first."""
-        usable = np.isfinite(found.boxes).all(axis=1) & (found.boxes[:, 2:] > 0).all(axis=1)
-        usable &= found.scores >= max(self._parameters.min_score, 1e-9)
+        usable = np.isfinite(decoded.boxes).all(axis=1) & (decoded.boxes[:, 2:] > 0).all(axis=1)
+        usable &= decoded.scores >= max(self._parameters.min_score, 1e-9)
         if self._classes:
-            usable &= np.isin(found.classes, sorted(self._classes))
+            usable &= np.isin(decoded.classes, sorted(self._classes))
         kept = np.flatnonzero(usable)
-        kept = kept[np.argsort(-found.scores[kept], kind="stable")][:_MOST_BOXES]
-        return found.boxes[kept], found.scores[kept], found.classes[kept]
+        kept = kept[np.argsort(-decoded.scores[kept], kind="stable")][:_MOST_BOXES]
+        return decoded.boxes[kept], decoded.scores[kept], decoded.classes[kept]
 
     def _without_overlaps(self, boxes: Array, scores: Array) -> list[int]:
         """Return the indices of the boxes that no better one overlaps."""

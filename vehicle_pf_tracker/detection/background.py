@@ -1,9 +1,9 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Detection of moving vehicles before a standing camera, which may shake.
+"""Model of the background of a standing camera: a few earlier colours of every pixel.
 
-The background is a few earlier colours of every pixel. A pixel is background where two of its
+A pixel is background where two of its
 samples have its colour; samples are renewed at random where the background is seen, and some are
 given to a neighbour, so that leaves and uncovered road are learnt from their surroundings (Barnich
 and Van Droogenbroeck 2011). What has changed is not learnt until it has stayed for long: a lorry of
@@ -12,26 +12,13 @@ one colour hides a place for seconds, and would melt in.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.frame import Frame, check_frame
-from vehicle_pf_tracker.trackers.traffic.blobs import WIDEST, BlobReader
-from vehicle_pf_tracker.trackers.traffic.detections import (
-    HALF,
-    LITTLE,
-    SHIPPED,
-    Detections,
-    TrafficNumbers,
-)
-from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.steady import Steadier
+from vehicle_pf_tracker.detection.motion_thresholds import MotionThresholds
 
 Colours = npt.NDArray[np.uint8]
 Planes = npt.NDArray[np.uint8]
@@ -60,6 +47,9 @@ _SPARSE = (slice(None), slice(None, None, 4), slice(None, None, 4))
 _MOST_GAIN = 1.3
 """Largest change of the camera's gain, either way; beyond it the light was switched."""
 _NEIGHBOURS = ((-1, 0), (1, 0), (0, -1), (0, 1))
+_FORGIVEN = 0.1
+"""Images of change that an image without any makes up for: behind one vehicle in ten images there
+is still a road to be learnt, and leaves that move in more of them are background in the end."""
 _AROUND = np.ones((7, 7), np.uint8)
 """Surroundings of a change that are not learnt either: the rim of a vehicle that is not told from
 the road would be given on to its neighbours, and eat into it."""
@@ -74,12 +64,12 @@ class Background:
         Shape of the images.
     seed : int
         Seed of the choice of the samples.
-    numbers : TrafficNumbers
+    thresholds : MotionThresholds
         Thresholds.
     """
 
-    def __init__(self, shape: tuple[int, ...], seed: int, numbers: TrafficNumbers) -> None:
-        self._numbers = numbers
+    def __init__(self, shape: tuple[int, ...], seed: int, thresholds: MotionThresholds) -> None:
+        self._thresholds = thresholds
         self._rng = np.random.default_rng(seed)
         # One image of noise, read from another place each time, is cheaper than new noise.
         self._noise = self._rng.integers(0, 256, 2 * shape[0] * shape[1], dtype=np.uint8)
@@ -103,15 +93,14 @@ class Background:
         planes = self._with_former_gain(_planes(image))
         agreeing = np.zeros(image.shape[:2], np.uint8)
         for sample in self._samples:
-            agreeing += _sum(cv2.absdiff(planes, sample)) < self._numbers.colour_threshold
+            agreeing += _sum(cv2.absdiff(planes, sample)) < self._thresholds.colour_threshold
         changed = agreeing < _AGREEING
         return np.asarray(changed & ~self._shadows(planes, changed))
 
     def learn(self, image: Colours, changed: Pixels, held: Pixels) -> None:
         """Renew samples, but where something has changed lately or is held."""
-        patience = self._numbers.patience
-        # Behind a vehicle in ten there is still a road; leaves in the wind are learnt in the end.
-        self._exposure += np.where(changed, np.float32(1), np.float32(-LITTLE))
+        patience = self._thresholds.patience
+        self._exposure += np.where(changed, np.float32(1), np.float32(-_FORGIVEN))
         np.clip(self._exposure, 0, 2 * patience, out=self._exposure)
         near = cv2.dilate(changed.astype(np.uint8), _AROUND) > 0
         learnt = ~(held | (near & (self._exposure < patience)))
@@ -128,7 +117,7 @@ class Background:
             one.reshape(3, -1, one.shape[1])[_SPARSE].sum(axis=0, dtype=np.float32)
             for one in (self._samples[0], planes)
         )
-        lit = before > self._numbers.colour_threshold  # darker ones are noise
+        lit = before > self._thresholds.colour_threshold  # darker ones are noise
         if not lit.any():
             return planes
         gain = float(np.median(now[lit] / before[lit]))
@@ -162,7 +151,7 @@ class Background:
         apart = (colours**2).sum(axis=0) - share**2 * power
         shares, dark = np.ones(changed.shape, np.float32), np.zeros(changed.shape, np.bool_)
         shares.flat[index] = share
-        dark.flat[index] = (self._numbers.shadow <= share) & (share <= 1)
+        dark.flat[index] = (self._thresholds.shadow <= share) & (share <= 1)
         dark.flat[index] &= apart < (_SHADE * share) ** 2
         smooth = cv2.blur(shares, (3, 3))
         slope = cv2.magnitude(
@@ -192,119 +181,3 @@ def _give(planes: Planes, chosen: Pixels, sample: Planes, offset: tuple[int, int
     for new, old in zip(np.split(planes, 3), np.split(sample, 3), strict=True):
         part = old[max(dy, 0) : height - max(-dy, 0), max(dx, 0) : width - max(-dx, 0)]
         cv2.copyTo(new[rows, columns], mask, part)
-
-
-_CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
-"""Holes and gaps up to this size are closed: windscreens show the sky."""
-_FOLLOWED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
-"""Modes of vehicles that join their pieces; tentative ones may be pieces of a lorry."""
-
-
-class MotionDetector:
-    """Model of the background, whose difference to the image shows vehicles.
-
-    Parameters
-    ----------
-    seed : int
-        Seed of the choice of samples that the background is made of.
-    numbers : TrafficNumbers
-        Thresholds.
-
-    Attributes
-    ----------
-    disturbed : bool
-        True where so much of the latest image differs that nothing was reported: the camera moves,
-        or the light was switched. The background is then learnt anew.
-    is_blind : bool
-        True where nothing was looked for in the latest image: it is disturbed, or one of those that
-        the background is learnt from.
-    """
-
-    def __init__(self, seed: int = 0, numbers: TrafficNumbers = SHIPPED) -> None:
-        self._seed, self._numbers = seed, numbers
-        self.disturbed = False
-        self.is_blind = False
-        self._blobs = BlobReader(numbers)
-        self._shape: tuple[int, ...] = (0, 0)
-        self._restart()
-
-    def detect(self, frame: Frame, tracks: Sequence[TrackEstimate] = ()) -> Detections:
-        """Find what moves.
-
-        Parameters
-        ----------
-        frame : Frame
-            RGB image.
-        tracks : sequence of TrackEstimate
-            Estimates of the frame before; the background is not learnt where they stand.
-
-        Returns
-        -------
-        Detections
-            Boxes, scored by how full they are.
-        """
-        small, zoom = _reduced(check_frame(frame))
-        if small.shape != self._shape:
-            self._shape = small.shape
-            self._restart()
-        # Estimates are of the image before, and so is where the camera then was.
-        tracked = [one for one in tracks if one.mode is TrackMode.TRACKING]
-        followed = [one for one in tracks if one.mode in _FOLLOWED]
-        covered = self._steadier.to_reference(_edges(tracked) * zoom)
-        predicted = self._steadier.to_reference(_predicted(followed) * zoom)
-        small, seen = self._steadier.steady(small)
-        self.disturbed = False
-        self.is_blind = not self._background.is_known
-        if self.is_blind:
-            self._background.begin(small)
-            return Detections.none()
-        changed = self._background.compare(small)
-        if seen is not None:
-            changed &= seen > 0
-        # The camera moves, or the light was switched.
-        if np.count_nonzero(changed) > HALF * changed.size:
-            self.disturbed = self.is_blind = True
-            self._restart()
-            return Detections.none()
-        moving = np.asarray(cv2.medianBlur(changed.astype(np.uint8), 3), np.uint8)
-        moving = np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _CLOSED), np.uint8)
-        self._background.learn(small, moving > 0, _covered(covered, small))
-        velocities = np.array([one.velocity for one in tracks]).reshape(-1, 2)
-        edges, fullness = self._blobs.read(moving, predicted, velocities)
-        edges = self._steadier.from_reference(edges)
-        boxes = np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
-        return replace(Detections.make(boxes, fullness), are_shapes=True)
-
-    def _restart(self) -> None:
-        self._background = Background(self._shape, self._seed, self._numbers)
-        self._steadier = Steadier()
-
-
-def _covered(boxes: Array, image: Colours) -> Pixels:
-    """Mark the pixels of vehicles, of which one that stops must not melt in."""
-    covered = np.zeros(image.shape[:2], dtype=np.bool_)
-    for left, top, right, bottom in np.maximum(boxes, -1).astype(int).tolist():
-        covered[max(top, 0) : bottom + 1, max(left, 0) : right + 1] = True
-    return covered
-
-
-def _reduced(frame: Frame) -> tuple[npt.NDArray[np.uint8], float]:
-    """Halve the image until it is narrow enough; also its scale."""
-    small, zoom = np.ascontiguousarray(frame), 1.0
-    while small.shape[1] > WIDEST:
-        half = (max(small.shape[1] // 2, 1), max(small.shape[0] // 2, 1))
-        small = np.asarray(cv2.resize(small, half, interpolation=cv2.INTER_AREA), np.uint8)
-        zoom *= 0.5
-    return small, zoom
-
-
-def _edges(tracks: Sequence[TrackEstimate]) -> Array:
-    """Edges (T, 4) of vehicles in px."""
-    corners = [(*box.corners[0], *box.corners[2]) for box in (track.box for track in tracks)]
-    return np.array(corners).reshape(-1, 4)
-
-
-def _predicted(tracks: Sequence[TrackEstimate]) -> Array:
-    """Edges (T, 4) in px where vehicles are about to be."""
-    velocities = np.array([track.velocity for track in tracks]).reshape(-1, 2)
-    return np.asarray(_edges(tracks) + np.tile(velocities, 2))

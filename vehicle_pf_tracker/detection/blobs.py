@@ -20,15 +20,8 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
-from vehicle_pf_tracker.trackers.traffic.detections import (
-    HALF,
-    LEAST_PART,
-    LITTLE,
-    SHIPPED,
-    TrafficNumbers,
-    areas,
-)
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import USUAL_ASPECT
+from vehicle_pf_tracker.core.overlaps import areas
+from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED, MotionThresholds
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
 
@@ -38,11 +31,23 @@ _LEAST_PIECE = 4
 """Smallest area in px of a piece of a vehicle."""
 _USUAL_FULLNESS, _ASPECT_SPREAD = 0.8, 0.3
 """Usual share of a vehicle's box to start from; standard deviation of the aspect's logarithm."""
+_FROM_AHEAD = 0.8
+"""Usual height over width, to start from, of vehicles that drive towards or away from the camera:
+that of cars from the front."""
 _FROM_THE_SIDE, _ACROSS = 0.5, 6
 """Usual height over width, to start from, of vehicles that drive across the image; and power of the
 share of their motion across by which they are: of 76 clips, only a steep one fits."""
 _SPREAD = 0.2
 """Standard deviation of the logarithms of this share, and of a car's size."""
+_MEMBER = 0.5
+"""Share of a predicted vehicle inside a blob's box above which the blob is of it: most of it."""
+_LEAST_PART = 0.15
+"""Smallest share of a blob's area that may be a vehicle of its own, and least pixels, of the
+fullest row's, of a row that belongs to a vehicle. With other shares HOTA by motion behind a bridge
+is seven less (`python -m laboratory traffic_score`)."""
+_LEAST_SHARE = 0.1
+"""Area of a piece, of the largest one's, below which it is a speck that happens to be in the same
+prediction."""
 _PIECE = 0.8
 """Share of a blob inside a prediction above which it is a piece of that vehicle."""
 _ASPECT_SIDE = 10
@@ -142,12 +147,12 @@ class BlobReader:
 
     Parameters
     ----------
-    numbers : TrafficNumbers
+    thresholds : MotionThresholds
         Thresholds.
     """
 
-    def __init__(self, numbers: TrafficNumbers = SHIPPED) -> None:
-        self._numbers = numbers
+    def __init__(self, thresholds: MotionThresholds = SHIPPED) -> None:
+        self._thresholds = thresholds
         self._fullness = math.log(_USUAL_FULLNESS)
         self._aspect = self._learnt_aspect = 0.0
         self._unlearnt, self._motion = 1.0, np.zeros(2)
@@ -179,7 +184,7 @@ class BlobReader:
         pieces: dict[int, list[Piece]] = {}
         room = areas(predicted)
         for part, box in _components(mask):
-            members = int(np.count_nonzero(intersections(box, predicted) > HALF * room))
+            members = int(np.count_nonzero(intersections(box, predicted) > _MEMBER * room))
             for piece in self._apart(part, *box[:2].astype(int).tolist()):
                 self._learn_shape(piece, mask.shape, members)
                 inside = intersections(piece.edges, predicted)
@@ -199,7 +204,7 @@ class BlobReader:
         self._motion = MEMORY * self._motion + motion
         # After hours without a vehicle nothing is left of either.
         across = float(self._motion[0] / max(self._motion[1], 1e-9)) ** _ACROSS
-        first = USUAL_ASPECT + across * (_FROM_THE_SIDE - USUAL_ASPECT)
+        first = _FROM_AHEAD + across * (_FROM_THE_SIDE - _FROM_AHEAD)
         self._aspect = self._learnt_aspect + self._unlearnt * math.log(first)
 
     def _is_vehicle(self, piece: Piece, least: float, shape: tuple[int, ...]) -> bool:
@@ -211,7 +216,7 @@ class BlobReader:
     def _apart(self, part: Mask, x: int, y: int) -> list[Piece]:
         """Divide a blob again and again, while its parts look more like vehicles than the whole."""
         whole = _piece(part, x, y)
-        if whole.area < _ASPECT_SIDE**2 or self._shape_cost(whole) <= self._numbers.apart:
+        if whole.area < _ASPECT_SIDE**2 or self._shape_cost(whole) <= self._thresholds.apart:
             return [whole]
         cuts = [_cut(part, axis) for axis in (0, 1) if part.shape[axis] > 1]
         pieces = [[_piece(half, x + u, y + v) for half, u, v in halves] for halves in cuts]
@@ -223,16 +228,17 @@ class BlobReader:
     def _grouped(self, pieces: list[Piece]) -> list[Piece]:
         """Join the pieces in one prediction, unless they look like vehicles of their own."""
         joined = _joined(pieces)
-        notable = [one for one in pieces if one.area > LEAST_PART * joined.area]
+        notable = [one for one in pieces if one.area > _LEAST_PART * joined.area]
         if len(notable) > 1 and self._are_several(notable, joined):
             return notable
         return [joined]
 
     def _are_several(self, parts: list[Piece], whole: Piece) -> bool:
         """Test whether parts of a blob look more like vehicles than the whole does."""
-        if min(one.area for one in parts) < LEAST_PART * whole.area or whole.area < _ASPECT_SIDE**2:
+        smallest = min(one.area for one in parts)
+        if smallest < _LEAST_PART * whole.area or whole.area < _ASPECT_SIDE**2:
             return False
-        return self._worst(parts) + self._numbers.apart < self._shape_cost(whole)
+        return self._worst(parts) + self._thresholds.apart < self._shape_cost(whole)
 
     def _worst(self, parts: list[Piece]) -> float:
         return max(self._shape_cost(one) for one in parts)
@@ -269,7 +275,7 @@ def _piece(part: Mask, x: int, y: int) -> Piece:
     edges = []
     for axis in (0, 1):
         sums = cv2.reduce(part, axis, cv2.REDUCE_SUM, dtype=cv2.CV_32S).ravel()
-        kept = np.flatnonzero(sums >= LEAST_PART * sums.max())
+        kept = np.flatnonzero(sums >= _LEAST_PART * sums.max())
         edges.append((int(kept[0]), int(kept[-1]) + 1))
     (left, right), (top, bottom) = edges
     return Piece(x + left, y + top, x + right, y + bottom, int(sums.sum()))
@@ -300,6 +306,6 @@ def _joined(pieces: list[Piece]) -> Piece:
     """Join pieces of one vehicle; specks that happen to be in its prediction are none."""
     largest = max(piece.area for piece in pieces)
     left, top, right, bottom, area = zip(
-        *(piece for piece in pieces if piece.area > LITTLE * largest), strict=True
+        *(piece for piece in pieces if piece.area > _LEAST_SHARE * largest), strict=True
     )
     return Piece(min(left), min(top), max(right), max(bottom), sum(area))

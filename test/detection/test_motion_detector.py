@@ -6,8 +6,8 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.blobs import BlobReader
-from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
+from vehicle_pf_tracker.detection.blobs import BlobReader
+from vehicle_pf_tracker.detection.motion_detector import MotionDetector
 
 GROUND = np.random.default_rng(0).integers(90, 120, (120, 160, 3))
 PAINT = np.random.default_rng(1).integers(180, 250, (24, 36, 3))

@@ -13,13 +13,11 @@ form       outputs                                           input it is given
            classes or labels                                 where the input has real numbers
 =========  ================================================  =======================================
 
-N is the number of cells of 8, 16 and 32 px (and 64 px) that the input has. The names of a network's
-classes come from a parameter, from its file, or are those of COCO.
+N is the number of cells of 8, 16 and 32 px (and 64 px) that the input has.
 """
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -27,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.errors import InputError, suggestion
+from vehicle_pf_tracker.core.errors import InputError
 
 YOLOX, YOLOV8, SSD = "YOLOX", "YOLOv8", "SSD"
 
@@ -41,8 +39,8 @@ _NORMALISED = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """Boxes that a network found.
+class NetworkBoxes:
+    """Boxes in the outputs of a network.
 
     Attributes
     ----------
@@ -89,7 +87,7 @@ def class_count(form: str, outputs: Mapping[str, Array]) -> int | None:
     return int(output.shape[2] - 5 if form == YOLOX else output.shape[1] - 4)
 
 
-def decode(form: str, outputs: Mapping[str, Array], width: int, height: int) -> Found:
+def decode(form: str, outputs: Mapping[str, Array], width: int, height: int) -> NetworkBoxes:
     """Read the outputs for an input of this size in px; a box with NaN or infinity scores 0."""
     if form == SSD:
         return _decode_ssd(outputs, width, height)
@@ -100,7 +98,7 @@ def decode(form: str, outputs: Mapping[str, Array], width: int, height: int) -> 
     classes = scores.argmax(axis=1)
     best = scores[np.arange(len(scores)), classes]
     corner = boxes[:, :2] - boxes[:, 2:] / 2
-    return Found(np.hstack([corner, boxes[:, 2:]]), best, classes)
+    return NetworkBoxes(np.hstack([corner, boxes[:, 2:]]), best, classes)
 
 
 def _finite(rows: Array) -> Array:
@@ -147,7 +145,7 @@ def _ssd_names(names: Sequence[str]) -> tuple[str, str, str] | None:
     return found[0], found[1], found[2]
 
 
-def _decode_ssd(outputs: Mapping[str, Array], width: int, height: int) -> Found:
+def _decode_ssd(outputs: Mapping[str, Array], width: int, height: int) -> NetworkBoxes:
     names = _ssd_names(list(outputs))
     assert names is not None, "it is SSD by these names"
     columns = [
@@ -162,72 +160,4 @@ def _decode_ssd(outputs: Mapping[str, Array], width: int, height: int) -> Found:
     if np.abs(boxes).max(initial=0.0) <= _NORMALISED:
         boxes = boxes * np.array([width, height, width, height])
     corners = np.hstack([boxes[:, :2], boxes[:, 2:] - boxes[:, :2]])
-    return Found(corners, rows[:, 4], rows[:, 5].astype(np.int64))
-
-
-COCO = (
-    "person", "bicycle", "car", "motorcycle", "airplane", "bus", "train", "truck", "boat",
-    "traffic light", "fire hydrant", "stop sign", "parking meter", "bench", "bird", "cat", "dog",
-    "horse", "sheep", "cow", "elephant", "bear", "zebra", "giraffe", "backpack", "umbrella",
-    "handbag", "tie", "suitcase", "frisbee", "skis", "snowboard", "sports ball", "kite",
-    "baseball bat", "baseball glove", "skateboard", "surfboard", "tennis racket", "bottle",
-    "wine glass", "cup", "fork", "knife", "spoon", "bowl", "banana", "apple", "sandwich", "orange",
-    "broccoli", "carrot", "hot dog", "pizza", "donut", "cake", "chair", "couch", "potted plant",
-    "bed", "dining table", "toilet", "tv", "laptop", "mouse", "remote", "keyboard", "cell phone",
-    "microwave", "oven", "toaster", "sink", "refrigerator", "book", "clock", "vase", "scissors",
-    "teddy bear", "hair drier", "toothbrush",
-)  # fmt: skip
-"""The 80 classes of COCO, as YOLO numbers them from 0."""
-
-_UNUSED = frozenset({12, 26, 29, 30, 45, 66, 68, 69, 71, 83})
-"""Numbers of COCO's own list, from 1 to 90, that no class has."""
-
-
-def numbered(names: tuple[str, ...]) -> dict[int, str]:
-    """Give classes their numbers, from 0."""
-    return dict(enumerate(names))
-
-
-def coco_from_one() -> dict[int, str]:
-    """Return COCO's classes as its own files and SSD number them, from 1 with gaps."""
-    numbers = (number for number in range(1, 91) if number not in _UNUSED)
-    return dict(zip(numbers, COCO, strict=True))
-
-
-def parse_metadata(text: str) -> dict[int, str]:
-    """Read names as exporters write them into the file, ``{0: 'person', 1: …}``; else none."""
-    try:
-        found = ast.literal_eval(text)
-    except (ValueError, SyntaxError, MemoryError, RecursionError):
-        return {}
-    if isinstance(found, list | tuple):
-        found = dict(enumerate(found))
-    if not isinstance(found, dict):
-        return {}
-    try:
-        return {int(number): str(name) for number, name in found.items()}
-    except (TypeError, ValueError):
-        return {}
-
-
-def chosen(words: str, names: Mapping[int, str]) -> frozenset[int]:
-    """Return the numbers of the classes in `words`, names or numbers apart by commas.
-
-    Raises
-    ------
-    InputError
-        If one is not among `names`.
-    """
-    by_name = {name: number for number, name in names.items()}
-    found = set()
-    for word in filter(None, (word.strip() for word in words.split(","))):
-        if word in by_name:
-            found.add(by_name[word])
-        elif word.isdecimal() and (not names or int(word) in names):
-            found.add(int(word))
-        else:
-            raise InputError(
-                f"the network has no class {word!r}{suggestion(word, by_name)}; see "
-                "detector.classes and detector.names"
-            )
-    return frozenset(found)
+    return NetworkBoxes(corners, rows[:, 4], rows[:, 5].astype(np.int64))

@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.motion_detector import MotionDetector
-from vehicle_pf_tracker.trackers.traffic.steady import Steadier
+from vehicle_pf_tracker.detection.motion_detector import MotionDetector
+from vehicle_pf_tracker.detection.stabilising import Stabiliser
 
 GROUND = cv2.resize(
     np.random.default_rng(2).integers(40, 200, (36, 48, 3)).astype(np.uint8), (384, 288)
@@ -25,29 +25,29 @@ def shown(dx, dy, car=None):
 
 
 def test_a_shaken_image_is_moved_back():
-    steadier = Steadier()
-    steadier.steady(shown(0, 0))
-    image, seen = steadier.steady(shown(4, -3))
+    stabiliser = Stabiliser()
+    stabiliser.stabilise(shown(0, 0))
+    image, seen = stabiliser.stabilise(shown(4, -3))
     assert seen[:, :-5].any()
     inner = (slice(10, -10), slice(10, -10))
     assert np.abs(image[inner].astype(int) - shown(0, 0)[inner]).mean() < 2
     box = np.array([[100.0, 90.0, 140.0, 120.0]])
-    assert steadier.to_reference(box)[0] == pytest.approx((104, 87, 144, 117), abs=0.3)
-    assert steadier.from_reference(steadier.to_reference(box)) == pytest.approx(box)
+    assert stabiliser.to_reference(box)[0] == pytest.approx((104, 87, 144, 117), abs=0.3)
+    assert stabiliser.from_reference(stabiliser.to_reference(box)) == pytest.approx(box)
 
 
 def test_the_image_of_a_standing_camera_is_left_as_it_is():
-    steadier = Steadier()
+    stabiliser = Stabiliser()
     for index in range(40):
         frame = shown(0, 0, (30 + 5 * index, 100))
-        image, seen = steadier.steady(frame)
+        image, seen = stabiliser.stabilise(frame)
         assert image is frame
         assert seen is None
 
 
 def test_an_image_without_a_corner_is_taken_as_it_is():
-    steadier, black = Steadier(), np.zeros((48, 64, 3), np.uint8)
-    assert [steadier.steady(black)[1] for _ in range(3)] == [None] * 3
+    stabiliser, black = Stabiliser(), np.zeros((48, 64, 3), np.uint8)
+    assert [stabiliser.stabilise(black)[1] for _ in range(3)] == [None] * 3
 
 
 def test_what_moves_is_found_before_a_shaking_camera_and_nothing_else():

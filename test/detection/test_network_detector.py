@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.traffic.network_detector import NetworkDetector
-from vehicle_pf_tracker.trackers.traffic.parameters import DetectorParameters
+from vehicle_pf_tracker.detection.network_detector import NetworkDetector
+from vehicle_pf_tracker.detection.parameters import DetectorParameters
 
 SIDE = 64
 CELLS = 84  # of 8, 16 and 32 px

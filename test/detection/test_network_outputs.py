@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.traffic import network_outputs
-from vehicle_pf_tracker.trackers.traffic.network_outputs import class_count, decode, form_of
+from vehicle_pf_tracker.detection import network_classes
+from vehicle_pf_tracker.detection.network_outputs import class_count, decode, form_of
 
 
 def zeros(*shape):
@@ -104,7 +104,7 @@ def test_a_box_with_a_number_without_meaning_scores_nothing_and_spoils_no_other(
 
 
 def test_coco_from_one_has_its_gaps():
-    names = network_outputs.coco_from_one()
+    names = network_classes.coco_from_one()
     assert [names[number] for number in (1, 3, 4, 6, 8, 90)] == [
         "person", "car", "motorcycle", "bus", "truck", "toothbrush",
     ]  # fmt: skip
@@ -114,9 +114,9 @@ def test_coco_from_one_has_its_gaps():
 
 @pytest.mark.parametrize("text", ["", "names", "__import__('os')", "{0: ", "[" * 5000, "{'a': 1}"])
 def test_odd_metadata_gives_no_names(text):
-    assert network_outputs.parse_metadata(text) == {}
+    assert network_classes.parse_metadata(text) == {}
 
 
 def test_names_of_exporters_are_read():
-    assert network_outputs.parse_metadata("{0: 'car', 1: 'bus'}") == {0: "car", 1: "bus"}
-    assert network_outputs.parse_metadata("['car', 'bus']") == {0: "car", 1: "bus"}
+    assert network_classes.parse_metadata("{0: 'car', 1: 'bus'}") == {0: "car", 1: "bus"}
+    assert network_classes.parse_metadata("['car', 'bus']") == {0: "car", 1: "bus"}

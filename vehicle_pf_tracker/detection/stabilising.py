@@ -13,23 +13,29 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.shared_motion import PointFlow, shared_similarity
-from vehicle_pf_tracker.trackers.traffic.detections import LITTLE
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import PIXEL_NOISE, SETTLED_AFTER
 
 Image: TypeAlias = npt.NDArray[np.uint8]
 
 _CORNERS, _QUALITY, _APART = 120, 0.01, 10
 """Most corners that are followed, their least strength, of the strongest one's, and their least
 distance in px: of thirty that are hidden by vehicles, ninety are left."""
+_STEADY_AFTER = 30
+"""Images without a shake after which a camera is taken to be steady: one second of 30 Hz.
+The first shake after it is seen up to `_CHECKED_EVERY` images late."""
 _CHECKED_EVERY = 5
-"""After `SETTLED_AFTER` images without a shake only every so many are measured."""
+"""After `_STEADY_AFTER` images without a shake only every so many are measured."""
+_RETURN = 0.7
+"""Largest distance in px at which a corner that is followed there and back may end: the grid of
+pixels makes half a px, each way."""
+_LARGEST_SHAKE = 0.1
+"""Largest shift of a shake, of the image's width; beyond it the camera was turned."""
 _RENEWED_AFTER = 300
 """Images after which corners are chosen anew: the light changes."""
 _FLOW = PointFlow(window=15, levels=3, steps=10, precision=0.03)
 _STILL = np.eye(2, 3)
 
 
-class Steadier:
+class Stabiliser:
     """Registers each image with a reference."""
 
     def __init__(self) -> None:
@@ -38,7 +44,7 @@ class Steadier:
         self._map = _STILL
         self._age = self._still = 0
 
-    def steady(self, image: Image) -> tuple[Image, Image | None]:
+    def stabilise(self, image: Image) -> tuple[Image, Image | None]:
         """Move an image to where the reference was taken.
 
         Parameters
@@ -78,11 +84,10 @@ class Steadier:
             self._refer_to(grey)
             return
         self._age += 1
-        if self._still >= SETTLED_AFTER and self._age % _CHECKED_EVERY:
+        if self._still >= _STEADY_AFTER and self._age % _CHECKED_EVERY:
             return
         found = self._similarity(self._reference, grey)
-        # A larger shift is no shake: the camera was turned.
-        if np.abs(found[:, 2]).max() > LITTLE * grey.shape[1] or (found == _STILL).all():
+        if np.abs(found[:, 2]).max() > _LARGEST_SHAKE * grey.shape[1] or (found == _STILL).all():
             found = _STILL
         self._map = found
         self._still = self._still + 1 if found is _STILL else 0
@@ -96,7 +101,7 @@ class Steadier:
         back = np.asarray(cv2.invertAffineTransform(self._map))
         guess = (self._corners @ back[:, :2].T + back[:, 2]).astype(np.float32)
         moved, found, error = _FLOW.follow_and_return(reference, grey, self._corners, guess)
-        good = found & (np.abs(error).max(axis=1, initial=0.0) < PIXEL_NOISE)
+        good = found & (np.abs(error).max(axis=1, initial=0.0) < _RETURN)
         return shared_similarity(moved[good].astype(float), self._corners[good].astype(float))
 
     def _refer_to(self, grey: Image) -> None:

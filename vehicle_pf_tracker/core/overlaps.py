@@ -1,0 +1,38 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Areas and overlaps of many boxes at once, given by their edges: left, top, right, bottom."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import intersections
+
+NOTHING = np.empty((0, 4))
+"""Edges (0, 4) of no boxes."""
+
+
+def areas(edges: Array) -> Array:
+    """Measure the areas in px² of boxes (..., 4), at least one."""
+    sides = np.maximum(edges[..., 2:] - edges[..., :2], 0.0)
+    return np.asarray(np.maximum(sides[..., 0] * sides[..., 1], 1.0))
+
+
+def overlaps(edges: Array, others: Array) -> Array:
+    """Measure the intersection over union of boxes (..., 4) with others (..., 4)."""
+    common = intersections(edges, others)
+    return np.asarray(common / (areas(edges) + areas(others) - common))
+
+
+def inside_image(edges: Array, size: tuple[int, int]) -> Array:
+    """Measure the shares of boxes (..., 4) that lie in an image of this width and height."""
+    return np.asarray(intersections(edges, np.array([0.0, 0.0, *size])) / areas(edges))
+
+
+def clipped(edges: Array, size: tuple[int, int]) -> Array:
+    """Cut boxes (N, 4) at the borders of the image, at least one px wide and high."""
+    limits = np.array([*size, *size], dtype=np.float64)
+    low = np.clip(edges[:, :2], 0.0, limits[:2] - 1)
+    return np.hstack([low, np.maximum(np.clip(edges[:, 2:], 0.0, limits[2:]), low + 1)])

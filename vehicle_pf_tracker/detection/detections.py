@@ -1,0 +1,110 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Boxes that a detector reports in one image."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import LARGEST_SHARE
+from vehicle_pf_tracker.parameters.counting_plan import Region
+
+MOST_DETECTIONS = 300
+"""Detections of a frame that are looked at, the highest scores first. No camera shows as many
+vehicles; a detector that reports more is out of order, and association would take seconds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Detections:
+    """Detections of one frame.
+
+    Attributes
+    ----------
+    boxes : array, shape (N, 4)
+        Left, top, width and height in px.
+    scores : array, shape (N,)
+        Scores of the detector, of any scale: only their order counts.
+    labels : tuple of str
+        Class of each, or "".
+    are_shapes : bool
+        True where they are shapes of what has changed, and may be of pieces of vehicles, which
+        drive as well.
+    """
+
+    boxes: Array
+    scores: Array
+    labels: tuple[str, ...]
+    are_shapes: bool = False
+
+    @classmethod
+    def make(
+        cls, boxes: object, scores: object = None, labels: Sequence[str] | None = None
+    ) -> Detections:
+        """Make them from anything that numpy takes; without scores all count alike."""
+        array = np.asarray(boxes, dtype=np.float64).reshape(-1, 4)
+        count = len(array)
+        values = np.ones(count) if scores is None else np.asarray(scores, dtype=np.float64).ravel()
+        if len(values) != count or (labels is not None and len(labels) != count):
+            raise ValueError("as many scores and labels as boxes are needed")
+        return cls(array, values, tuple(labels) if labels is not None else ("",) * count)
+
+    @classmethod
+    def none(cls) -> Detections:
+        """Make the result of a detector that saw nothing."""
+        return cls.make(np.empty((0, 4)))
+
+    def __len__(self) -> int:
+        return len(self.boxes)
+
+    def take(self, indices: npt.NDArray[np.intp]) -> Detections:
+        """Those at `indices`, in this order."""
+        labels = tuple(self.labels[i] for i in indices.tolist())
+        return replace(self, boxes=self.boxes[indices], scores=self.scores[indices], labels=labels)
+
+    def within(self, regions: Sequence[Region]) -> Detections:
+        """Those whose centre lies in one of the inner regions, if any, and in no outer one."""
+        centres = (self.boxes[:, :2] + self.boxes[:, 2:] / 2).astype(np.float32)
+        kept, inner = np.ones(len(self), bool), np.zeros(len(self), bool)
+        for region in regions:
+            outline = np.asarray(region.corners, np.float32)
+            signs = [cv2.pointPolygonTest(outline, one, False) for one in centres.tolist()]
+            inside = np.array(signs, np.float64) >= 0  # of no detection too
+            if region.is_inside:
+                inner |= inside
+            else:
+                kept &= ~inside
+        if any(region.is_inside for region in regions):
+            kept &= inner
+        return self.take(np.flatnonzero(kept))
+
+    def usable(self, width: int, height: int) -> Detections:
+        """Those a tracker can use in an image of `width` x `height` px.
+
+        Boxes that are not finite, have no area, are far larger than the image or wholly outside it
+        are left out, and so are scores that are not finite, exact duplicates, and whatever is
+        beyond the `MOST_DETECTIONS` highest scores.
+        """
+        boxes, scores = self.boxes, self.scores
+        with np.errstate(invalid="ignore", over="ignore"):
+            right, bottom = boxes[:, 0] + boxes[:, 2], boxes[:, 1] + boxes[:, 3]
+            good = np.isfinite(boxes).all(axis=1) & np.isfinite(scores)
+            good &= (boxes[:, 2] >= 1) & (boxes[:, 3] >= 1)
+            good &= boxes[:, 2] <= LARGEST_SHARE * width
+            good &= boxes[:, 3] <= LARGEST_SHARE * height
+            good &= (boxes[:, 0] < width) & (boxes[:, 1] < height) & (right > 0) & (bottom > 0)
+        kept = np.flatnonzero(good)
+        # Stable: equal scores stay in the detector's order, so that runs repeat.
+        kept = kept[np.argsort(-scores[kept], kind="stable")]
+        single: dict[tuple[float, ...], int] = {}
+        for index in kept.tolist():
+            single.setdefault(tuple(boxes[index].tolist()), index)
+            if len(single) == MOST_DETECTIONS:
+                break
+        return self.take(np.array(sorted(single.values()), np.intp))
