@@ -25,6 +25,7 @@ from vehicle_pf_tracker.recordings.messages import IMAGE_ANNOTATIONS, deserializ
 from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
 from vehicle_pf_tracker.results.estimates import read_estimates
 from vehicle_pf_tracker.showing import pictures
+from vehicle_pf_tracker.showing.video_file import video_writer
 
 
 @pytest.fixture
@@ -222,7 +223,7 @@ def test_a_video_that_finds_no_space_is_an_error_and_is_not_left(tmp_path):
     with (
         little_space(),
         pytest.raises(InputError, match=f"cannot write {path}"),
-        pictures.video_writer(path, (160, 120), 25.0) as write,
+        video_writer(path, (160, 120), 25.0) as write,
     ):
         for index, frame in enumerate(noise):
             write(frame, index / 25)
@@ -351,3 +352,63 @@ def test_a_recorded_run_of_one_target_keeps_the_truth_of_its_part(run, tmp_path)
     assert [truth.stamp_ns for truth in truths] == [found.stamp_ns for found in images]
     assert len(images) == COUNT - 2
     assert annotations(Recording(bag), "/pf_tracker/annotations")[0][0].startswith("TRACKING")
+
+
+@pytest.mark.parametrize("rate", ["999999", "0.0001", "1000", "0.1"])
+def test_a_video_of_any_rate_costs_no_estimate(run, video, tmp_path, capsys, rate):
+    made = tmp_path / "made.mp4"
+    status = run(video, "--target", TARGET, "--fps", rate, "--video", made)
+    assert "Traceback" not in capsys.readouterr().err
+    assert len(estimates(tmp_path / "out")) == COUNT
+    assert status == 0
+    assert cv2.VideoCapture(str(made)).get(cv2.CAP_PROP_FRAME_COUNT) == COUNT
+
+
+@pytest.mark.parametrize(
+    ("broken", "told"),
+    [
+        ("showing.video_file.Fraction", "cannot make the video"),
+        ("showing.video_file.replacing", "cannot make the video"),
+        ("showing.contact_sheet.write_picture", "cannot make the picture"),
+        ("showing.contact_sheet._thumb", "cannot make the picture"),
+        ("showing.estimates_recording.jpeg", "cannot make the recording"),
+        ("showing.estimates_recording.RecordingWriter", "cannot make the recording"),
+    ],
+)
+def test_a_product_that_fails_costs_itself_alone(
+    run, video, tmp_path, monkeypatch, capsys, broken, told
+):
+    def fail(*_, **__):
+        raise RuntimeError("it fails")
+
+    products = {
+        "video": tmp_path / "made.mp4",
+        "picture": tmp_path / "out" / "summary.png",
+        "recording": tmp_path / "bag",
+    }
+    words = ("--video", products["video"], "--recording", products["recording"])
+    monkeypatch.setattr(f"vehicle_pf_tracker.{broken}", fail)
+    assert run(video, "--target", TARGET, *words) == 1
+    out, err = capsys.readouterr()
+    assert told in err and err.count("it fails; all else is written") == 1
+    assert "Traceback" not in err
+    assert len(estimates(tmp_path / "out")) == COUNT
+    notices = json.loads((tmp_path / "out" / "run.json").read_text())["notices"]
+    assert [one for one in notices if told in one] == notices
+    for name, path in products.items():
+        assert path.exists() == (name not in told), name
+        if name == "video":
+            assert (f"the video is {path}" in out) == path.exists()
+
+
+def test_a_disk_that_is_full_costs_the_video(run, video, tmp_path, capsys):
+    noise = np.random.default_rng(0).integers(0, 256, (30, 120, 160, 3), np.uint8)
+    given = enumerate((StampedFrame(n * 40_000_000, one) for n, one in enumerate(noise)), start=1)
+    made = pictures.Pictures(tmp_path / "made.mp4")
+    with little_space(), made.drawing(given) as (take, frames):
+        for _, found in frames:
+            take((), lambda found=found: found.frame, found.frame, found.stamp_ns)
+    assert made.side.notices == [
+        f"cannot write {tmp_path / 'made.mp4'}: File too large; all else is written"
+    ]
+    assert list(tmp_path.iterdir()) == [video]

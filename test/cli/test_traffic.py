@@ -9,6 +9,7 @@ import math
 import os
 import re
 import signal
+import socket
 import sys
 import threading
 import time
@@ -407,3 +408,38 @@ def test_the_lines_of_the_page_are_counted_at(run, tmp_path):
     counts = table(run("--lines", tmp_path / "page.yaml") / "counts.csv")
     # The first vehicle begins below the line, and drives past its end at x = 40.
     assert [(row["place"], row["direction"], row["id"]) for row in counts] == [("exit", "in", "2")]
+
+
+@pytest.mark.parametrize(
+    ("broken", "told"),
+    [
+        ("heat_picture.HeatPicture.add", "heat.png"),
+        ("heat_picture.HeatPicture.write", "heat.png"),
+        ("path_picture.PathPicture.add", "summary.png"),
+        ("path_picture.PathPicture.write", "summary.png"),
+        ("video_file.replacing", "made.mp4"),
+    ],
+)
+def test_a_picture_that_fails_costs_itself_alone(run, tmp_path, monkeypatch, capsys, broken, told):
+    def fail(*_, **__):
+        raise RuntimeError("it fails")
+
+    monkeypatch.setattr(f"vehicle_pf_tracker.showing.{broken}", fail)
+    out = run("--lines", tmp_path / "lines.yaml", "--video", tmp_path / "made.mp4", status=1)
+    err = capsys.readouterr().err
+    assert f"{told}: it fails; all else is written" in err and "Traceback" not in err
+    assert table(out / "tracks.csv") and table(out / "counts.csv")
+    (notice,) = json.loads((out / "run.json").read_text())["notices"]
+    assert told in notice
+    made = {path.name for path in [*out.iterdir(), *tmp_path.iterdir()]}
+    assert told not in made
+    # The heat is drawn over the frame that the paths were drawn over.
+    rest = {"heat.png", "summary.png", "made.mp4"} - {told}
+    assert rest - ({"heat.png"} if broken == "path_picture.PathPicture.add" else set()) <= made
+
+
+def test_a_port_that_is_taken_costs_the_page_alone(run, capsys):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        out = run("--serve", taken.getsockname()[1], status=1)
+    assert "cannot serve at port" in capsys.readouterr().err
+    assert table(out / "tracks.csv")

@@ -18,8 +18,8 @@ import pytest
 from vehicle_pf_tracker import TrafficTracker, read_counts, read_tracks
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines import DEFAULT, VARIABLE
-from vehicle_pf_tracker.showing.pictures import video_writer
 from vehicle_pf_tracker.showing.traffic_drawing import identity_colour
+from vehicle_pf_tracker.showing.video_file import video_writer
 
 ROOT = Path(__file__).parents[2]
 PROGRAMS = dict(

@@ -13,7 +13,9 @@ from vehicle_pf_tracker.counting.counter import Counter
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
 from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.showing import drawing
-from vehicle_pf_tracker.showing.traffic_drawing import HeatPicture, PathPicture, identity_colour
+from vehicle_pf_tracker.showing.heat_picture import HeatPicture
+from vehicle_pf_tracker.showing.path_picture import PathPicture
+from vehicle_pf_tracker.showing.traffic_drawing import identity_colour
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate, TrackMode
 
 MODES = {

@@ -9,8 +9,8 @@ import pytest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.results.estimates import EstimateRow
+from vehicle_pf_tracker.showing.contact_sheet import THUMB_WIDTH, ContactSheet
 from vehicle_pf_tracker.showing.drawing import COLOURS, Annotator, annotated, estimate_words
-from vehicle_pf_tracker.showing.pictures import THUMB_WIDTH, ContactSheet
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 BLACK = np.zeros((120, 160, 3), np.uint8)

@@ -153,4 +153,4 @@ def _judge(written: Report, limit: float | None) -> int:
               if limit is not None and found is not None and found.mean > limit]  # fmt: skip
     if beyond:
         console.tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {', '.join(beyond)}")
-    return int(bool(failed or beyond))
+    return int(bool(failed or beyond or written.failures))

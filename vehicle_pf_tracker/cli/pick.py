@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import tempfile
 import threading
 import webbrowser
@@ -35,7 +36,6 @@ from vehicle_pf_tracker.results.output_files import write_picture, write_text
 from vehicle_pf_tracker.road.plane import Pair
 from vehicle_pf_tracker.showing.drawing import draw_pixel_grid
 from vehicle_pf_tracker.showing.page_server import Content, PageHandler, PageServer
-from vehicle_pf_tracker.showing.pictures import has_display
 
 Document: TypeAlias = dict[str, Any]
 """Drawn shapes by section, as in a file of `pick`."""
@@ -210,6 +210,13 @@ def ask(
     if not editor.drawn:
         raise UsageError("nothing was picked")
     return editor.drawn
+
+
+def has_display() -> bool:
+    """Return whether windows can be shown."""
+    return os.name != "posix" or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

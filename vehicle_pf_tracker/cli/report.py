@@ -42,8 +42,7 @@ def run(request: Request) -> int:
     # A folder that is not there is not made, and `write` says so.
     outputs = [Products(request.folder)] if request.folder.is_dir() else []
     with claimed(outputs, [], overwrite=True):
-        write(request.folder, request)
-    return 0
+        return int(bool(write(request.folder, request).failures))
 
 
 def write(folder: Path, request: ReportParts) -> Report:
@@ -52,6 +51,7 @@ def write(folder: Path, request: ReportParts) -> Report:
 
     with stages("report") as on_stage:
         report = write_report(folder, figures=request.figures, on_stage=on_stage)
-    tell_notices(report.evaluation.mixed_versions)
-    print(f"the report is {report.page}")
+    tell_notices([*report.evaluation.mixed_versions, *report.failures])
+    if report.page.exists():
+        print(f"the report is {report.page}")
     return report

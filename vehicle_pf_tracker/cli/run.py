@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -67,7 +66,8 @@ def run(request: Request) -> int:
 
 
 def _track(request: Request, variant: Variant, source: Source, folder: Path, stop: Stop) -> int:
-    pictures = Pictures(request.video, particles=request.particles)
+    sheet = folder / SHEET
+    pictures = Pictures(request.video, particles=request.particles, sheet=sheet)
     trackers, rows = _follow(request, variant, source, stop, pictures)
     ended = cut_short(stop, source, max(map(len, rows.values())))
     of_trackers = [
@@ -75,10 +75,11 @@ def _track(request: Request, variant: Variant, source: Source, folder: Path, sto
         for name, tracker in trackers.items()
         for sentence in tracker.notices
     ]
-    notices = [*source.notices, *of_trackers, *pictures.notices, *ended]
+    pictures.write_sheet()
+    side = pictures.side
+    notices = [*source.notices, *of_trackers, *side.notices, *ended]
     tell_notices(notices)
-    for earlier in (TRACKS, SHEET):
-        (folder / earlier).unlink(missing_ok=True)
+    (folder / TRACKS).unlink(missing_ok=True)
     for name, tracker in trackers.items():
         provenance = request.command, request.source, source.image_topic, notices
         description = describe_run(tracker.session, tracker.start_frame, *provenance)
@@ -88,15 +89,15 @@ def _track(request: Request, variant: Variant, source: Source, folder: Path, sto
         write_tracks(folder / TRACKS, rows)
     else:
         _score(request, source, folder, *rows.values())
-    pictures.sheet.write(folder / SHEET)
     for name, of_target in rows.items():
         print(f"{name + ': ' if len(rows) > 1 else ''}{summary(of_target)}")
-    print(f"results are in {folder}; {SHEET} shows the key frames")
-    if request.video and not pictures.problem:
+    has_sheet = sheet.exists()
+    print(f"results are in {folder}{f'; {SHEET} shows the key frames' if has_sheet else ''}")
+    if pictures.has_video:
         print(f"the video is {request.video}")
-    if request.recording:
+    if request.recording and not side.failed(_recording_of(request)):
         print(f"the recording is {request.recording}, for Foxglove and `ros2 bag play`")
-    return stop.status if ended else int(bool(pictures.problem))
+    return stop.status if ended else int(bool(side.notices))
 
 
 def _follow(
@@ -106,9 +107,17 @@ def _follow(
     with stopping(stop), counting("tracked") as progress:
         (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
         trackers = _trackers(request, variant, source, first, found.stamp_ns)
-        out, node, names = request.recording, f"{variant.name}_tracker", list(trackers)
-        with run_recording(out, node, names, source.truth()) if out else nullcontext() as on_frame:
+        if not request.recording:
+            return trackers, follow(trackers, frames, pictures)
+        node = f"{variant.name}_tracker"
+        recording = run_recording(request.recording, node, list(trackers), source.truth())
+        with pictures.side.growing(_recording_of(request), recording) as on_frame:
             return trackers, follow(trackers, frames, pictures, on_frame)
+
+
+def _recording_of(request: Request) -> str:
+    """Return what sentences call the recording of the run."""
+    return f"the recording {request.recording}"
 
 
 def _trackers(

@@ -18,7 +18,7 @@ from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.results.output_files import write_csv
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.scenes.scene import Scene
-from vehicle_pf_tracker.showing.pictures import SUFFIX, video_writer
+from vehicle_pf_tracker.showing.video_file import SUFFIX, video_writer
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,8 +5,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import closing, nullcontext, suppress
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -29,13 +29,13 @@ from vehicle_pf_tracker.recordings.source import Source
 from vehicle_pf_tracker.results.output_files import make_folder, write_json
 from vehicle_pf_tracker.results.run_folder import RUN, describe
 from vehicle_pf_tracker.results.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
-from vehicle_pf_tracker.showing.page_server import LivePage
+from vehicle_pf_tracker.showing.page_server import PAGE, LivePage
 from vehicle_pf_tracker.showing.pictures import Pictures
+from vehicle_pf_tracker.showing.side_products import SideProducts
+from vehicle_pf_tracker.showing.traffic_pictures import HEAT, PATHS, TrafficPictures
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
-PICTURE = "summary.png"
-HEAT = "heat.png"
-PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PICTURE, HEAT)
+PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PATHS, HEAT)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,21 +72,24 @@ def run(request: Request) -> int:
     stop = Stop()
     source = request.open_source()
     folder = request.output or Path("results", f"{Path(request.source).stem or 'run'}_traffic")
+    pictures = Pictures(request.video)
+    overview = TrafficPictures(pictures.side)
     outputs = (Products(folder, PRODUCTS), request.video)
     inputs = (*request.inputs, request.detections, request.model, request.lines)
     with claimed(outputs, inputs, overwrite=request.overwrite):
         tracking = _tracking(request, configuration, stop)
-        pictures, ended = _follow(request, tracking, source, make_folder(folder), stop)
-        notices = [*source.notices, *tracking.notices, *pictures.notices, *ended]
+        ended = _follow(request, tracking, source, make_folder(folder), stop, pictures, overview)
+        has_paths = overview.write(folder, tracking.counter)
+        notices = [*source.notices, *tracking.notices, *pictures.side.notices, *ended]
         tell_notices(notices)
         document = _document(request, configuration, tracking, source.image_topic, notices)
         write_json(folder / RUN, document)
     for sentence in tracking.sentences(document["detector"]):
         print(sentence)
-    print(f"results are in {folder}; {PICTURE} shows all paths")
-    if request.video and not pictures.problem:
+    print(f"results are in {folder}{f'; {PATHS} shows all paths' if has_paths else ''}")
+    if pictures.has_video:
         print(f"the video is {request.video}")
-    return stop.ended(stop.status if ended else int(bool(pictures.problem)))
+    return stop.ended(stop.status if ended else int(bool(pictures.side.notices)))
 
 
 def _tracking(request: Request, configuration: Configuration, stop: Stop) -> TrafficRun:
@@ -105,31 +108,43 @@ def _tracking(request: Request, configuration: Configuration, stop: Stop) -> Tra
 
 
 def _follow(
-    request: Request, tracking: TrafficRun, source: Source, folder: Path, stop: Stop
-) -> tuple[Pictures, list[str]]:
-    """Follow all vehicles to the end or to a signal; return the pictures, and what cut it short."""
-    pictures = Pictures(request.video)
+    request: Request,
+    tracking: TrafficRun,
+    source: Source,
+    folder: Path,
+    stop: Stop,
+    pictures: Pictures,
+    overview: TrafficPictures,
+) -> list[str]:
+    """Follow all vehicles to the end or to a signal; return what cut it short."""
     counts, port = tracking.counter.plan.is_counting, tracking.session.tracker.parameters.page_port
     with (
         stopping(stop),
         counting("tracked") as progress,
-        closing(LivePage(port)) if port >= 0 else nullcontext() as page,
+        _page(port, pictures.side) as page,
         track_files(folder, counting=counts) as files,
     ):
         first, frames = numbered_part(source, request.start, request.end, stop, progress)
         targets = by_name(request.given_targets(), first[0])
-        if page is not None:
-            print(f"open {page.url} in a browser on this machine", flush=True)
         with suppress(StillAtWork):
-            tracking.follow_all(frames, files, pictures, page, targets)
-    ended = cut_short(stop, source, tracking.summary.frames)
-    if tracking.paths.ground is None:
-        for name in (PICTURE, HEAT):
-            (folder / name).unlink(missing_ok=True)
-    else:
-        tracking.paths.write(folder / PICTURE, tracking.counter)
-        tracking.heat.write(folder / HEAT, tracking.paths.ground)
-    return pictures, ended
+            tracking.follow_all(frames, files, pictures, overview, page, targets)
+    return cut_short(stop, source, tracking.summary.frames)
+
+
+@contextmanager
+def _page(port: int, side: SideProducts) -> Iterator[LivePage | None]:
+    """Serve a page; None where no port is given, or it cannot be had, which is told at once."""
+    page = None
+    if port >= 0:
+        with side.attempt(PAGE):
+            page = LivePage(port)
+    if page is None:
+        tell_notices(side.notices)
+        yield None
+        return
+    print(f"open {page.url} in a browser on this machine", flush=True)
+    with closing(page):
+        yield page
 
 
 def _document(

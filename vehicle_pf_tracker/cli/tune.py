@@ -9,7 +9,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import PROGRAM, counting, print_rows, stages, tell_notice
+from vehicle_pf_tracker.cli.console import (
+    PROGRAM,
+    counting,
+    print_rows,
+    stages,
+    tell_notice,
+    tell_notices,
+)
 from vehicle_pf_tracker.cli.requests import (
     MaxDiffOption,
     Names,
@@ -156,6 +163,7 @@ def _judge(
     with counting("compared", "runs") as on_progress:
         complete(plan, folder, on_this_machine(request.workers), on_progress)
     report = write_report(folder)
+    tell_notices(report.failures)
     if report.evaluation.failed:
         raise InputError(f"not every run succeeded; {report.page} says why")
     held_out = [source.name for source, _ in recordings if source not in what.sources]

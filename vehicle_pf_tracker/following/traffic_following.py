@@ -22,9 +22,9 @@ from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.results.estimates import clock_words
 from vehicle_pf_tracker.results.traffic_results import TrackFiles
 from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
-from vehicle_pf_tracker.showing.page_server import LivePage
+from vehicle_pf_tracker.showing.page_server import PAGE, LivePage
 from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
-from vehicle_pf_tracker.showing.traffic_drawing import HeatPicture, PathPicture
+from vehicle_pf_tracker.showing.traffic_pictures import TrafficPictures
 from vehicle_pf_tracker.trackers.session import TrackerError
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
@@ -48,10 +48,6 @@ class TrafficRun(CountedVehicles):
     ----------
     summary : TrafficSummary
         Vehicles and occlusions.
-    paths : PathPicture
-        Picture of all paths.
-    heat : HeatPicture
-        Picture of where vehicles drove and stood.
     """
 
     def __init__(
@@ -59,8 +55,6 @@ class TrafficRun(CountedVehicles):
     ) -> None:
         super().__init__(session, counter)
         self.summary = TrafficSummary()
-        self.paths = PathPicture()
-        self.heat = HeatPicture()
         self._notices = list(detections.notices) if detections is not None else []
         self._more_notices = 0
         self._last_events: list[str] = []
@@ -86,6 +80,7 @@ class TrafficRun(CountedVehicles):
         frames: Numbered,
         files: TrackFiles,
         pictures: Pictures | None = None,
+        overview: TrafficPictures | None = None,
         page: LivePage | None = None,
         targets: Mapping[str, Mapping[int, Box]] = MappingProxyType({}),
     ) -> None:
@@ -99,6 +94,8 @@ class TrafficRun(CountedVehicles):
             Files of the results.
         pictures : Pictures or None
             Pictures to make meanwhile.
+        overview : TrafficPictures or None
+            Pictures of the whole run.
         page : LivePage or None
             Page to show them on.
         targets : mapping of str to mapping of int to Box
@@ -109,7 +106,8 @@ class TrafficRun(CountedVehicles):
         InputError
             If a target is invalid in its frame, or something cannot be written.
         """
-        pictures, self._targets = pictures or Pictures(), {n: dict(b) for n, b in targets.items()}
+        pictures = pictures or Pictures()
+        self._targets = {name: dict(boxes) for name, boxes in targets.items()}
         start_ns: int | None = None
         with pictures.drawing(frames) as (take, all_frames):
             for number, found in all_frames:
@@ -123,14 +121,15 @@ class TrafficRun(CountedVehicles):
                 estimates = self.estimates
                 files.write(number, found.stamp_ns, estimates, crossings)
                 self.summary.add(estimates)
-                self.paths.add(found.frame, estimates)
-                period = self.session.tracker.frame_period
-                self.heat.add(found.frame, estimates, found.stamp_ns, period)
+                if overview is not None:
+                    period = self.session.tracker.frame_period
+                    overview.add(found.frame, estimates, found.stamp_ns, period)
                 elapsed = clock_words(found.stamp_ns - start_ns)
                 draw = partial(self.drawn, found.frame, f"{elapsed}  frame {number}  ")
                 take((), draw, found.frame, found.stamp_ns)
-                if page is not None:
-                    page.show(draw, self.facts)
+                if page is not None and not pictures.side.failed(PAGE):
+                    with pictures.side.attempt(PAGE):
+                        page.show(draw, self.facts)
 
     def sentences(self, detector: str) -> list[str]:
         """Return the summary, a line for each fact, or why there is no vehicle.

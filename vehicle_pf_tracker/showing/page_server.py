@@ -20,6 +20,8 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import jpeg
 
+PAGE = "the live page"
+"""What a message calls it."""
 Content = tuple[str, bytes]
 """Media type and bytes of an answer."""
 

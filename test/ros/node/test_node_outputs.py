@@ -127,3 +127,18 @@ def test_messages_that_nobody_hears_are_not_made(bench, rig, monkeypatch):
     rig.play(frames[2:], first=2)
     bench.wait_for(lambda: len(boxes) == 2)
     assert made == ["box_message"] * 2
+
+
+def test_an_overlay_that_cannot_be_drawn_costs_no_image_its_answer(bench, monkeypatch):
+    tried = []
+
+    def fail(*_):
+        tried.append(1)
+        raise MemoryError
+
+    rig = Rig(bench, on_target())
+    monkeypatch.setattr(Annotator, "draw", fail)
+    bench.collect(Image, "/apf_tracker/overlay", qos_profile_sensor_data)
+    frames = road(4)
+    assert rig.play(frames) == ["TRACKING"] * 4
+    assert tried

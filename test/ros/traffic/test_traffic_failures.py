@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+import socket
+
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
@@ -13,6 +15,7 @@ from failing import ERROR, failing
 from tracker_rig import diagnostics_of, ended_by_failures, overrides, values_of
 from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, lanes
 
+from vehicle_pf_tracker.showing.page_server import LivePage
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 pytestmark = pytest.mark.ros
@@ -49,3 +52,16 @@ def test_a_broken_tracker_ends_its_node(bench, start_process):
         "raise SystemExit(main('traffic', []))"
     )
     ended_by_failures(bench, start_process("-c", code), f"{NODE}/mode")
+
+
+def test_a_page_that_cannot_be_drawn_costs_no_image_its_answer(bench, monkeypatch):
+    rig = TrafficRig(bench, overrides(page_port=0))
+    monkeypatch.setattr(LivePage, "show", failing(LivePage.show, {0, 1, 2, 3}))
+    assert len(rig.play(lanes(4))) == 4
+
+
+def test_a_port_that_is_taken_costs_the_page_alone(bench):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        rig = TrafficRig(bench, overrides(page_port=taken.getsockname()[1]))
+        assert rig.node.stream.page is None
+        assert len(rig.play(lanes(4))) == 4

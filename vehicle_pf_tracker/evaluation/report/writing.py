@@ -18,6 +18,7 @@ from vehicle_pf_tracker.evaluation.report.figures import write_figures
 from vehicle_pf_tracker.evaluation.report.page import make_page, title
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, score_folder
 from vehicle_pf_tracker.results.output_files import csv_text, write_json, write_text
+from vehicle_pf_tracker.showing.side_products import SideProducts
 
 ALL_RECORDINGS = "(all)"
 """Stands for the name of a recording where values are means over all of them."""
@@ -102,11 +103,24 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
 
 
 class Report(NamedTuple):
-    """A report that was written: its page, and the results it shows."""
+    """A report that was written.
+
+    Attributes
+    ----------
+    page : Path
+        Its page.
+    evaluation : ScoredEvaluation
+        The results it shows.
+    aggregates : Aggregates
+        Their means.
+    failures : list of str
+        Its parts that could not be made, a sentence each; the results do not depend on them.
+    """
 
     page: Path
     evaluation: ScoredEvaluation
     aggregates: Aggregates
+    failures: list[str]
 
 
 def write_report(
@@ -128,23 +142,27 @@ def write_report(
     Raises
     ------
     InputError
-        If it is not an evaluation folder, or cannot be written to.
+        If it is not an evaluation folder.
     """
     on_stage("scoring the runs")
     evaluation = score_folder(EvaluationFolder(folder))
     aggregates = aggregate(evaluation)
     page = folder / "report.html"
     on_stage("drawing the page")
-    texts = {
-        page: make_page(evaluation, aggregates),
-        folder / "summary.md": summary_markdown(evaluation, aggregates),
-        folder / "summary.csv": summary_csv(aggregates),
-        folder / "summary.tex": summary_tex(aggregates),
+    texts: dict[Path, Callable[[], str]] = {
+        page: lambda: make_page(evaluation, aggregates),
+        folder / "summary.md": lambda: summary_markdown(evaluation, aggregates),
+        folder / "summary.csv": lambda: summary_csv(aggregates),
+        folder / "summary.tex": lambda: summary_tex(aggregates),
     }
+    side = SideProducts()
     for path, text in texts.items():
-        write_text(path, text)
-    write_json(folder / "summary.json", summary_json(evaluation, aggregates))
+        with side.attempt(str(path)):
+            write_text(path, text())
+    with side.attempt(str(folder / "summary.json")):
+        write_json(folder / "summary.json", summary_json(evaluation, aggregates))
     if figures:
         on_stage("drawing the figures")
-        write_figures(evaluation, aggregates, figures)
-    return Report(page, evaluation, aggregates)
+        with side.attempt("the figures"):
+            write_figures(evaluation, aggregates, figures)
+    return Report(page, evaluation, aggregates, side.notices)

@@ -8,7 +8,8 @@ from __future__ import annotations
 import time
 import traceback
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 from rclpy.node import Node
@@ -212,6 +213,14 @@ class NodeStream(ABC):
                 self._kept.save(self.followed)
         except OSError as error:
             self.warnings.say("kept", f"the target cannot be saved: {error.strerror or error}")
+
+    @contextmanager
+    def drawing(self, product: str) -> Iterator[None]:
+        """Draw for those who look at it; a drawing that fails costs no image its answer."""
+        try:
+            yield
+        except Exception as error:  # OpenCV's errors, memory
+            self.warnings.say(product, f"cannot make {product}: {error or type(error).__name__}")
 
     def publish_mode(self, header: Header, mode: str, values: Mapping[str, object]) -> None:
         """Publish the one `~/mode` of an image; see `Outputs.publish_mode`."""

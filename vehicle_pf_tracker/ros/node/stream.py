@@ -229,7 +229,8 @@ class Stream(NodeStream):
             sentences += self._doubts(frame, estimate)
             values = {**estimate.scalars(), **self.health.road}
         if own.publish.overlay:
-            self._outputs.publish_overlay(header, frame, mode, estimate, words)
+            with self.drawing("the overlay"):
+                self._outputs.publish_overlay(header, frame, mode, estimate, words)
         self.health.answered(mode, estimate.duration * 1e3 if estimate else None)
         if sentences:
             values["event"] = "; ".join(sentences)

@@ -115,7 +115,7 @@ class TrafficStream(NodeStream):
     Raises
     ------
     InputError
-        If the network, the file of lines and zones, or the port of the page cannot be used.
+        If the network, or the file of lines and zones, cannot be used.
     """
 
     def __init__(
@@ -131,8 +131,17 @@ class TrafficStream(NodeStream):
         self._events: list[str] = []
         self.tell_drawn_seed(self.vehicles.session.tracker.seed)
         port = configuration.tracker.page_port
-        self.page = LivePage(port) if port >= 0 else None
-        if self.page is not None:
+        self.page: LivePage | None = None
+        if port >= 0:
+            self._open_page(port)
+
+    def _open_page(self, port: int) -> None:
+        """Serve the page; a port that cannot be had costs the page only."""
+        try:
+            self.page = LivePage(port)
+        except InputError as error:
+            self.log.error(f"{error}; all vehicles are followed without the page")
+        else:
             self.log.info(f"picture and counts are at {self.page.url}")
 
     @property
@@ -285,6 +294,8 @@ class TrafficStream(NodeStream):
     def _show(self, header: Header, frame: Frame) -> None:
         """Draw the image for those who look at it."""
         if self._configuration.node.publish.overlay:
-            self._outputs.publish_overlay(header, frame, self.vehicles)
+            with self.drawing("the overlay"):
+                self._outputs.publish_overlay(header, frame, self.vehicles)
         if self.page is not None:
-            self.page.show(partial(self.vehicles.drawn, frame), self.vehicles.facts)
+            with self.drawing("the live page"):
+                self.page.show(partial(self.vehicles.drawn, frame), self.vehicles.facts)

@@ -1,0 +1,61 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Pictures of a run of `traffic`: paths, and where vehicles drove and stood."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.counting.counter import Counter
+from vehicle_pf_tracker.showing.heat_picture import HeatPicture
+from vehicle_pf_tracker.showing.path_picture import PathPicture
+from vehicle_pf_tracker.showing.side_products import SideProducts
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
+
+PATHS, HEAT = "summary.png", "heat.png"
+
+
+class TrafficPictures:
+    """The two pictures, each of which may fail without the other.
+
+    Parameters
+    ----------
+    side : SideProducts
+        Notes what fails.
+    """
+
+    def __init__(self, side: SideProducts) -> None:
+        self._side = side
+        self._paths = PathPicture()
+        self._heat = HeatPicture()
+
+    def add(
+        self, frame: Frame, estimates: Sequence[TrackEstimate], stamp_ns: int, period: float
+    ) -> None:
+        """Take the next frame and the nominal period in s."""
+        with self._side.attempt(PATHS):
+            self._paths.add(frame, estimates)
+        with self._side.attempt(HEAT):
+            self._heat.add(frame, estimates, stamp_ns, period)
+
+    def write(self, folder: Path, counter: Counter) -> bool:
+        """Write the pictures that have not failed, and return whether there is one of the paths.
+
+        Without a frame there is none, and none of an earlier run is left.
+        """
+        ground = self._paths.ground
+        for name in (PATHS, HEAT):
+            with self._side.attempt(name):
+                (folder / name).unlink(missing_ok=True)
+        if ground is None:
+            return False
+        if not self._side.failed(PATHS):
+            with self._side.attempt(PATHS):
+                self._paths.write(folder / PATHS, counter)
+        if not self._side.failed(HEAT):
+            with self._side.attempt(HEAT):
+                self._heat.write(folder / HEAT, ground)
+        return not self._side.failed(PATHS)
