@@ -63,6 +63,9 @@ CVAT_VIDEO = (
         + cvat_box(14, frame=3, outside=0)
     )
 )
+TWO_TRACKS = "<annotations>{}</annotations>".format(
+    "".join(f"<track id='{n}'>{cvat_box(8, frame=0, outside=0)}</track>" for n in (3, 8))
+)
 CVAT_IMAGES = "<?xml version='1.0' encoding='utf-8'?>\n<annotations>{}</annotations>".format(
     "".join(
         f'<image id="{3 - index}" name="part/{index + 1:06d}.jpg">{cvat_box(8 + 2 * index)}</image>'
@@ -218,6 +221,71 @@ def test_truth_that_is_named_takes_the_place_of_what_lies_there(lay, tmp_path):
     assert (truth.box.x, truth.box.y) == (30, 40)
 
 
+@pytest.mark.parametrize("parts", [("car1_2.txt",), ("car1_1.txt", "car1_2.txt")])
+@pytest.mark.parametrize("places", [("data_seq/UAV123/car1", "anno/UAV123"), ("car1", "anno")])
+def test_parts_of_a_video_are_said_and_not_read(lay, tmp_path, capsys, parts, places):
+    images, truth = places
+    files = {f"{truth}/{part}": FROM_1[2:] for part in parts}
+    folder = lay(images + "/{:06d}.jpg", files)
+    assert main(["import", str(folder), str(tmp_path / "bag")]) == 0
+    told = capsys.readouterr()
+    assert "0 with truth" in told.out
+    assert f"{parts[0]} is the truth of a part of a video" in told.err
+
+
+def test_the_name_of_a_folder_is_no_pattern(lay):
+    folder = lay("anno/../car[1]/{:06d}.jpg", {"anno/car[1].txt": FROM_1, "anno/car1.txt": ["x"]})
+    assert len(FrameFolder(folder, fps=10).truth()) == 3
+
+
+UNREADABLE = {
+    "empty": ("gt/gt.txt", "", "is empty"),
+    "no number": ("groundtruth.txt", "1,2,3,4\n1,2,3,four\n", "'four' as number 4"),
+    "own table": ("groundtruth.csv", "frame,x,y\n1,2,3\n", "lacks the column w"),
+    "several": ("gt/gt.txt", track(3) + track(8), "has the truth of 2 vehicles"),
+    "other frames": ("gt/gt.txt", "70,1,2,3,4,5\n", "no frame of the truth .* has an image"),
+    "no text": ("groundtruth.csv", "\ud800", "is not text"),
+}
+
+
+@pytest.mark.parametrize("case", UNREADABLE)
+def test_a_run_with_a_target_outlives_truth_that_cannot_be_read(lay, tmp_path, capsys, case):
+    name, content, said = UNREADABLE[case]
+    folder = lay(files={name: "" if case == "no text" else content})
+    if case == "no text":
+        (folder / name).write_bytes(b"\xff\xfe\x00\x80")
+    out = tmp_path / "out"
+    words = ["run", str(folder), "--variant", "ms", "-o", str(out), "--overwrite"]
+    assert main([*words, "--target", "8,24,16,12"]) == 0
+    assert re.search(said, capsys.readouterr().err)
+    assert (out / "estimates.csv").read_text().count("\n") == 5
+    assert not (out / "metrics.json").exists()
+    assert main(words) == 2
+    assert re.search(said, capsys.readouterr().err)
+
+
+def test_truth_that_is_named_must_be_read_even_with_a_target(lay, tmp_path, capsys):
+    folder = lay(files={"other.txt": "1,2,3,4\n1,2,3,four\n"})
+    words = ["run", str(folder), "--target", "8,24,16,12", "-o", str(tmp_path / "out")]
+    assert main([*words, "--truth", str(tmp_path / "data" / "other.txt")]) == 1
+    assert "'four' as number 4" in capsys.readouterr().err
+
+
+def test_a_target_that_is_not_there_ends_a_run(lay, tmp_path):
+    folder = str(lay(files={"gt/gt.txt": track(3)}))
+    words = ["run", folder, "--target", "8,24,16,12", "-o", str(tmp_path / "out")]
+    assert main([*words, "--id", "4"]) == 1
+
+
+@pytest.mark.parametrize("case", UNREADABLE)
+def test_traffic_does_not_read_truth(lay, tmp_path, capsys, case):
+    name, content, said = UNREADABLE[case]
+    folder = lay(files={name: "" if case == "no text" else content})
+    words = ["traffic", str(folder), "--target", "8,24,16,12", "--detector", "none"]
+    assert main([*words, "-o", str(tmp_path / "out")]) == 0
+    assert not re.search(said, capsys.readouterr().err)
+
+
 def test_tc128_states_the_images_that_its_rows_begin_at(lay):
     files = {"Car/Car_gt.txt": FROM_1[:2], "Car/Car_frames.txt": ["3,4"]}
     folder = FrameFolder(lay("Car/img/{:04d}.jpg", files), fps=10)
@@ -243,7 +311,6 @@ def test_the_truth_above_the_folder_of_the_images_is_found(lay):
             "has several boxes in an image, and no tracks",
         ),
         ("project-1.json", '[{"image": "1.jpg"}]', "is not Label Studio's export as JSON"),
-        ("gt/gt.txt", track(3) + track(8), "has the truth of 2 vehicles; .* --id: 3, 8"),
     ],
 )
 def test_what_is_seen_and_not_read_is_said(lay, tmp_path, capsys, name, content, said):
@@ -272,6 +339,19 @@ def test_what_is_seen_and_not_read_is_said(lay, tmp_path, capsys, name, content,
 def test_a_fault_is_named(lay, name, content, words, said):
     with pytest.raises(InputError, match=said):
         FrameFolder(lay(files={name: content}), **words)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"), [("gt/gt.txt", track(3) + track(8)), ("annotations.xml", TWO_TRACKS)]
+)
+def test_truth_of_several_vehicles_asks_which(lay, tmp_path, capsys, name, content):
+    folder = str(lay(files={name: content}))
+    assert main(["import", folder, str(tmp_path / "bag")]) == 1
+    assert "has the truth of 2 vehicles; choose one with --id: 3, 8" in capsys.readouterr().err
+    assert not (tmp_path / "bag").exists()
+    assert main(["run", folder, "-o", str(tmp_path / "out")]) == 2
+    assert "choose one with --id: 3, 8" in capsys.readouterr().err
+    assert main(["import", folder, str(tmp_path / "bag"), "--id", "8"]) == 0
 
 
 def test_fewer_rows_than_images_are_said(lay):

@@ -189,11 +189,12 @@ class SourceOptions(TopicOption):
         metavar="HZ", help="frame rate, instead of the one that SOURCE states"
     )
 
-    def open_source(self, **truth: Any) -> Source:
-        """Open the source, with the settings of its truth."""
+    def open_source(self) -> Source:
+        """Open the source; the truth beside its images is not read."""
         from vehicle_pf_tracker.recordings.source import open_source
+        from vehicle_pf_tracker.recordings.truth_files import Beside
 
-        return open_source(self.source, topic=self.topic, fps=self.fps, **truth)
+        return open_source(self.source, topic=self.topic, fps=self.fps, beside=Beside.IGNORED)
 
 
 @dataclass(frozen=True, kw_only=True)

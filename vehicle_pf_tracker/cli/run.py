@@ -19,7 +19,8 @@ from vehicle_pf_tracker.evaluation.columns import COLUMNS, number_text
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.following.driver import OfflineTracker, follow
-from vehicle_pf_tracker.recordings.source import Source
+from vehicle_pf_tracker.recordings.source import Source, open_source
+from vehicle_pf_tracker.recordings.truth_files import Beside
 from vehicle_pf_tracker.results.estimates import EstimateRow, summary, write_tracks
 from vehicle_pf_tracker.results.output_files import write_json
 from vehicle_pf_tracker.results.run_folder import ESTIMATES, METRICS, RUN, describe_run, write_run
@@ -56,7 +57,15 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
 def run(request: Request) -> int:
     """Track, write the results, and print a summary of each target."""
     variant = find_variant(request.variant)
-    source = request.open_source(truth=request.truth, identity=request.id)
+    # What cannot be read of the truth beside images costs the scores, and not the run.
+    source = open_source(
+        request.source,
+        topic=request.topic,
+        fps=request.fps,
+        truth=request.truth,
+        identity=request.id,
+        beside=Beside.NOTED,
+    )
     path = request.output or Path("results", Path(request.source).stem or "run")
     outputs = (Products(path, PRODUCTS), request.video, request.recording)
     stop = Stop()

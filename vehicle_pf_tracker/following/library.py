@@ -20,6 +20,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.following.driver import OfflineTracker
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.recordings.source import frame_at, open_source
+from vehicle_pf_tracker.recordings.truth_files import Beside
 from vehicle_pf_tracker.results.estimates import EstimateRow, summary, write_estimates
 from vehicle_pf_tracker.showing.drawing import Annotator, annotated
 from vehicle_pf_tracker.trackers.estimate import Estimate
@@ -101,7 +102,7 @@ class Estimates(Sequence[EstimateRow]):
         InputError
             If there is no such frame, or it cannot be read.
         """
-        frame = frame_at(open_source(self.source), number)
+        frame = frame_at(open_source(self.source, beside=Beside.IGNORED), number)
         annotator, row = Annotator(), self.rows[number - 1]
         for estimate in self._estimates[:number]:
             annotator.follow(estimate)
@@ -140,10 +141,11 @@ def track(
         If the source cannot be read, there is no such variant or parameter, a value does not fit,
         or there is no target.
     """
-    found, opened = find_variant(variant), open_source(source)
+    found, opened = find_variant(variant), open_source(source, beside=Beside.NOTED)
     truth = next(iter(opened.truth()), None)
     if target is None and truth is None:
-        raise InputError(f"{source} has no truth to start on; give the vehicle's box")
+        seen = "".join(f"; {sentence}" for sentence in opened.notices)
+        raise InputError(f"{source} has no truth to start on; give the vehicle's box{seen}")
     if target is not None and not isinstance(target, Box):
         if len(target) != len(fields(Box)):
             raise InputError(f"the target {target} is not left, top, width and height in px")

@@ -52,7 +52,7 @@ def _folder_files(folder: Path) -> tuple[list[Path], list[str]]:
     if information is not None:
         _check_storage(folder, information)
         return _listed_files(folder, information)
-    present = sorted(filter(Path.is_file, folder.glob("*.mcap")), key=_natural_order)
+    present = sorted(filter(Path.is_file, folder.glob("[!.]*.mcap")), key=_natural_order)
     if not present:
         raise InputError(f"the folder {folder} holds no recording (metadata.yaml, *.mcap)")
     state = "damaged" if metadata.exists() else "missing"

@@ -1,16 +1,17 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Footage in a folder of images: their numbers, their frame rate, and truth if there is any."""
+"""Footage in a folder of images."""
 
 from __future__ import annotations
 
 import configparser
 import json
 import math
-import re
+import statistics
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError, read_text
@@ -18,18 +19,20 @@ from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.recordings.footage import (
+    LAST_STAMP_NS,
+    START_NS,
     Footage,
     Picture,
     StampedFrame,
     check_fps,
     stamp_of,
 )
-from vehicle_pf_tracker.recordings.truth_files import read_truth, truth_beside
+from vehicle_pf_tracker.recordings.image_names import NamedImages, natural_key, number_images
+from vehicle_pf_tracker.recordings.truth_files import Beside, read_truth, truth_beside
 from vehicle_pf_tracker.recordings.truth_formats import Images
 
 FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
 """The image files that are read, and what a CompressedImage calls them."""
-
 
 IMAGE_FOLDERS = ("img", "img1", "color", "images", ".")
 """Places of the images in a folder, the first that has any: OTB's and ours, MOTChallenge's, VOT's,
@@ -40,12 +43,12 @@ ASSUMED_FPS = 30.0
 
 
 class FrameFolder(Footage):
-    """A folder of numbered images with their frame rate, and with truth if there is any.
+    """A folder of images with their times, and with truth if there is any.
 
-    Images are numbered by the digits that end their names, or by their order where a name has none.
-    A gap in the numbers is a gap in the stamps. Truth belongs to the image of its number. The frame
-    rate is the one given, else that of ``sequence.json`` or ``seqinfo.ini``, else `ASSUMED_FPS`,
-    which `notices` reports.
+    Images are in the natural order of their names (`number_images`). Names that are times give the
+    stamps, unless a frame rate is given. Elsewhere the frame rate is the one given, else that of
+    ``sequence.json`` or ``seqinfo.ini``, else `ASSUMED_FPS`, which `notices` reports, and a gap in
+    the numbers is a gap in the stamps. Truth belongs to the image of its number.
 
     Parameters
     ----------
@@ -57,21 +60,23 @@ class FrameFolder(Footage):
         File of the truth; None to look for it, as `truth_beside` does.
     identity : int or None
         Number of the target, where the truth has several.
+    beside : Beside
+        Use of the truth beside the images.
 
     Attributes
     ----------
     images : mapping of int to Path
         The image files by their numbers, in order.
     stamps : list of int
-        Their stamps in ns; the first is at the start, whatever its number.
+        Their stamps in ns. Unless they are times since 1970, the first is at the start.
     truths : mapping of int to Truth
         The truth by the number of its image; empty where there is none.
 
     Raises
     ------
     InputError
-        If there are no images, two have one number, the frame rate is invalid, or the truth is
-        faulty or belongs to none of the images.
+        If there are no images, two have one number, the names leave the times open, the frame rate
+        is invalid, or the truth is faulty or belongs to none of the images.
     """
 
     def __init__(
@@ -80,29 +85,29 @@ class FrameFolder(Footage):
         fps: float | None = None,
         truth: Path | None = None,
         identity: int | None = None,
+        beside: Beside = Beside.NEEDED,
     ) -> None:
-        self.images = numbered_images(folder)
-        self.frame_count = len(self.images)
         stated = _frame_rate(folder) if fps is None else check_fps(fps, "--fps")
-        self.fps = ASSUMED_FPS if stated is None else stated
-        first = min(self.images)
-        self.stamps = [stamp_of(number - first, self.fps) for number in self.images]
-        names = {path.name: number for number, path in self.images.items()}
-        images = Images(list(self.images), self._size, names)
-        if truth is None:
-            beside = folder.parent if folder.name in IMAGE_FOLDERS else folder
-            table, notices = truth_beside(beside, images, identity)
-        else:
-            table, notices = read_truth([truth], images, identity)
-        numbered = zip(self.images, self.stamps, strict=True)
-        self.truths = {n: replace(table[n], stamp_ns=at) for n, at in numbered if n in table}
-        if table and not self.truths:
-            raise InputError(f"no frame of the truth {truth or 'in ' + str(folder)} has an image")
-        if stated is None:
+        named = number_images(_listed(folder), stated, is_given=fps is not None)
+        self.images = named.images
+        self.frame_count = len(self.images)
+        self.stamps, self.fps = _stamps(named, stated)
+        notices = named.notices
+        if stated is None and named.times_ns is None:
             notices.append(
                 f"the folder {folder} states no frame rate; {ASSUMED_FPS:g} frames/s are assumed, "
                 "give --fps or a sequence.json to change that"
             )
+        names = {path.name: number for number, path in self.images.items()}
+        images = Images(list(self.images), self._size, names)
+        if truth is None:
+            home = folder.parent if folder.name in IMAGE_FOLDERS else folder
+            table, said = truth_beside(home, images, identity, beside)
+        else:
+            table, said = read_truth([truth], images, identity)
+        notices += said
+        numbered = zip(self.images, self.stamps, strict=True)
+        self.truths = {n: replace(table[n], stamp_ns=at) for n, at in numbered if n in table}
         if lost := len(table) - len(self.truths):
             notices.append(f"frames of the truth without an image: {lost}")
         self._notices = self._found = notices
@@ -137,39 +142,50 @@ class FrameFolder(Footage):
 
 
 def image_files(folder: Path) -> list[Path]:
-    """Return the images in a folder or in one of `IMAGE_FOLDERS` below it, by name."""
+    """Return the images in a folder or in one of `IMAGE_FOLDERS` below it, in natural order.
+
+    Names that begin with a dot are no images: macOS keeps attributes of ``a.jpg`` in ``._a.jpg``.
+    """
     for name in IMAGE_FOLDERS:
-        paths = sorted(p for p in (folder / name).glob("*") if p.suffix.lower() in FORMATS)
+        paths = [path for path in (folder / name).glob("[!.]*") if path.suffix.lower() in FORMATS]
         if paths:
-            return paths
+            return sorted(paths, key=lambda path: (natural_key(path.stem), path.name))
     return []
 
 
-def numbered_images(folder: Path) -> dict[int, Path]:
-    """Return images by number: their name, else its last digits, else their order.
+def numbered_images(folder: Path, fps: float) -> dict[int, Path]:
+    """Return the images of a folder by number, at a frame rate in 1/s.
 
     Raises
     ------
     InputError
         If there are none, or two have one number.
     """
+    return number_images(_listed(folder), fps).images
+
+
+def _listed(folder: Path) -> list[Path]:
     paths = image_files(folder)
     if not paths:
         raise InputError(f"the folder {folder} has no images img/000001.jpg, ... (jpg or png)")
     for path in paths:
         if not path.is_file():
             raise InputError(f"the image {path} is not a regular file")
-    numbered = [path for path in paths if path.stem.isdecimal()] or paths
-    endings = [re.search(r"\d+$", path.stem) for path in numbered]
-    numbers = [int(end[0]) for end in endings if end]
-    if not all(endings):
-        numbers = list(range(1, len(numbered) + 1))
-    images: dict[int, Path] = {}
-    for number, path in zip(numbers, numbered, strict=True):
-        if number in images:
-            raise InputError(f"{path} and {images[number].name} have the same number")
-        images[number] = path
-    return dict(sorted(images.items()))
+    return paths
+
+
+def _stamps(named: NamedImages, stated: float | None) -> tuple[list[int], float]:
+    """Return the stamps of images in ns, and their frame rate in 1/s."""
+    times = named.times_ns
+    if times is None:
+        fps, first = stated or ASSUMED_FPS, min(named.images)
+        return [stamp_of(number - first, fps) for number in named.images], fps
+    origin = 0 if named.since_1970 else START_NS - times[0]
+    if times[-1] + origin > LAST_STAMP_NS:
+        raise InputError(f"{named.images[len(times)]} is later than the last time of ROS, 2^31 s")
+    steps = [after - before for before, after in pairwise(times)]
+    fps = 1e9 / statistics.median(steps) if steps else stated or ASSUMED_FPS
+    return [time + origin for time in times], fps
 
 
 def _frame_rate(folder: Path) -> float | None:

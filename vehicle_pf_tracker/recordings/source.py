@@ -13,6 +13,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.recordings.footage import Footage
 from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.truth_files import Beside
 from vehicle_pf_tracker.recordings.video import is_recording, open_footage
 
 Source: TypeAlias = Recording | Footage
@@ -26,6 +27,7 @@ def open_source(
     fps: float | None = None,
     truth: Path | None = None,
     identity: int | None = None,
+    beside: Beside = Beside.NEEDED,
 ) -> Source:
     """Open a recording, a video file, a folder of images, a camera or a stream.
 
@@ -41,6 +43,9 @@ def open_source(
         File of the truth of a folder or a video; None takes what lies beside a folder's images.
     identity : int or None
         Number of the target, where the truth has several.
+    beside : Beside
+        Use of the truth beside a folder's images: whether its faults are errors, or notices, or it
+        is not read.
 
     Raises
     ------
@@ -54,7 +59,7 @@ def open_source(
         if truth is not None or identity is not None:
             raise InputError(f"{path} is a recording, with its own truth; leave --truth, --id out")
         return Recording(path, topic)
-    footage = open_footage(source, truth=truth, fps=fps, identity=identity)
+    footage = open_footage(source, truth=truth, fps=fps, identity=identity, beside=beside)
     if topic is not None:
         raise InputError(f"{source} is not a recording and has no topics; leave --topic out")
     return footage

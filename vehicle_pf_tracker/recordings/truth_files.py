@@ -5,9 +5,11 @@
 
 from __future__ import annotations
 
+import glob
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from enum import Enum
 from pathlib import Path
 
 from vehicle_pf_tracker.core.box import Box
@@ -42,10 +44,27 @@ _PLACES = (
     "../../label_02/{name}.txt",  # KITTI: image_02/NAME
     "../../*/anno/{name}_gt.txt",  # UAVDT-S: UAV-benchmark-S/NAME, .../anno/NAME_gt.txt
     "../../*/GT/{name}_gt_whole.txt",  # UAVDT-M
-    "../../../anno/{parent}/{name}_[0-9].txt",  # UAV123's parts of a video
     *_ANYTHING,
 )
 """Where truth lies, from the folder of the images."""
+_PARTS = ("../anno/{name}_[0-9].txt", "../../../anno/{parent}/{name}_[0-9].txt")
+"""UAV123's truth of parts of a video. The images where they begin stand in its toolkit alone."""
+
+
+class SeveralVehiclesError(UnreadTruthError):
+    """Raised for truth of several vehicles of which none was chosen."""
+
+
+class NoSuchTargetError(InputError):
+    """Raised where the truth does not have the target that was asked for."""
+
+
+class Beside(Enum):
+    """Use of the truth that lies beside images."""
+
+    NEEDED = "a fault is an error"
+    NOTED = "a fault is a notice"
+    IGNORED = "it is not read"
 
 
 Table = dict[int, Truth]
@@ -53,7 +72,7 @@ Table = dict[int, Truth]
 
 
 def truth_beside(
-    folder: Path, images: Images, identity: int | None = None
+    folder: Path, images: Images, identity: int | None = None, use: Beside = Beside.NEEDED
 ) -> tuple[Table, list[str]]:
     """Read the truth that lies with the images in `folder`.
 
@@ -67,13 +86,15 @@ def truth_beside(
     Raises
     ------
     InputError
-        As `read_truth`, of a file that is named as truth, but no `UnreadTruthError`.
+        If truth is needed, and what is named as truth has a fault or several vehicles. A target
+        `identity` that is not there is always an error.
     """
+    if use is Beside.IGNORED:
+        return {}, []
     folder, notices = folder.resolve(), list[str]()
-    names = {"name": folder.name, "parent": folder.parent.name}
     seen: set[Path] = set()
     for pattern in _PLACES:
-        paths = sorted(set(folder.glob(pattern.format_map(names))) - seen)
+        paths = [path for path in _at(folder, pattern) if path not in seen]
         seen.update(paths)
         try:
             if paths:
@@ -81,11 +102,32 @@ def truth_beside(
                 read = [f"the truth is read from {paths[0]}"] if pattern != _OWN else []
                 return table, [*notices, *read, *said]
         except InputError as error:
-            is_unread = isinstance(error, UnreadTruthError) and pattern != _OWN
-            if not is_unread and pattern not in _ANYTHING:
+            if (use is Beside.NEEDED and _is_fault(error, pattern)) or isinstance(
+                error, NoSuchTargetError
+            ):
                 raise
             notices.append(str(error))
+    if parts := [path for pattern in _PARTS for path in _at(folder, pattern)]:
+        notices.append(
+            f"{parts[0]} is the truth of a part of a video, which does not state its first image, "
+            "and is not read; give the part a folder of its name"
+        )
     return {}, notices
+
+
+def _at(folder: Path, pattern: str) -> list[Path]:
+    """Return the files that a pattern of `_PLACES` names, but hidden ones."""
+    names = {"name": glob.escape(folder.name), "parent": glob.escape(folder.parent.name)}
+    paths = folder.glob(pattern.format_map(names))
+    return sorted(path for path in paths if not path.name.startswith("."))
+
+
+def _is_fault(error: InputError, pattern: str) -> bool:
+    """Return whether an error of the file at `pattern` is more than that it is no truth."""
+    if isinstance(error, SeveralVehiclesError):
+        return True
+    is_unread = isinstance(error, UnreadTruthError) and pattern != _OWN
+    return not is_unread and pattern not in _ANYTHING
 
 
 def read_truth(
@@ -121,18 +163,32 @@ def read_truth(
             if number in rows:
                 raise InputError(f"{label.where} names frame {number} a second time")
             rows[number] = row
+    table = _chosen(targets, paths[0], identity)
+    numbers = images.numbers if isinstance(images.numbers, range) else set(images.numbers)
+    if not any(number in numbers for number in table):
+        raise InputError(
+            f"no frame of the truth {paths[0]} has an image: it has frames {min(table)} to "
+            f"{max(table)}, the images are {min(numbers)} to {max(numbers)}"
+        )
+    return table, notices
+
+
+def _chosen(
+    targets: Mapping[int, Mapping[int, Truth | None]], path: Path, identity: int | None
+) -> Table:
+    """Return the rows of the target that was asked for, or the only one, where it is present."""
     listed = ", ".join([*map(str, sorted(targets)[:_IDS_SHOWN]), "..."][: len(targets)])
     if identity is None and len(targets) > 1:
-        raise UnreadTruthError(
-            f"{paths[0]} has the truth of {len(targets)} vehicles; choose one with --id: {listed}"
+        raise SeveralVehiclesError(
+            f"{path} has the truth of {len(targets)} vehicles; choose one with --id: {listed}"
         )
     if identity is not None and identity not in targets:
-        raise InputError(f"the truth {paths[0]} has no target {identity}; it has {listed}")
-    chosen = next(iter(targets.values()), {}) if identity is None else targets[identity]
-    table = {number: row for number, row in chosen.items() if row is not None}
+        raise NoSuchTargetError(f"the truth {path} has no target {identity}; it has {listed}")
+    rows = next(iter(targets.values()), {}) if identity is None else targets[identity]
+    table = {number: row for number, row in rows.items() if row is not None}
     if not table:
-        raise UnreadTruthError(f"the truth {paths[0]} holds no box")
-    return table, notices
+        raise UnreadTruthError(f"the truth {path} holds no box")
+    return table
 
 
 def _reader(path: Path, text: str) -> Reader:

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.recordings.footage import (
     stamp_of,
 )
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
-from vehicle_pf_tracker.recordings.truth_files import Table, read_truth
+from vehicle_pf_tracker.recordings.truth_files import Beside, Table, read_truth
 from vehicle_pf_tracker.recordings.truth_formats import Images
 
 _SILENT = 0
@@ -236,6 +236,7 @@ def open_footage(
     truth: Path | None = None,
     fps: float | None = None,
     identity: int | None = None,
+    beside: Beside = Beside.NEEDED,
 ) -> Footage:
     """Open a video file, a folder of images, a camera or a stream.
 
@@ -249,6 +250,8 @@ def open_footage(
         Frame rate of a folder or a video, 1/s; None takes what it states.
     identity : int or None
         Number of the target, where the truth has several.
+    beside : Beside
+        Use of the truth beside a folder's images.
 
     Raises
     ------
@@ -274,7 +277,7 @@ def open_footage(
     if not path.exists():
         raise InputError(f"there is no file or folder {path}")
     if path.is_dir():
-        return FrameFolder(path, fps, truth, identity)
+        return FrameFolder(path, fps, truth, identity, beside)
     if not path.is_file():
         raise InputError(f"{path} is not a regular file or a folder")
     return VideoFile(path, truth, fps, identity)

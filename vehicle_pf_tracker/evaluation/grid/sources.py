@@ -34,7 +34,7 @@ def find_recordings(locations: Sequence[str]) -> list[str]:
 def _at_path(path: Path) -> list[str]:
     if is_recording(path) or not path.is_dir():
         return [str(path)]
-    children = sorted(path.iterdir())
+    children = sorted(child for child in path.iterdir() if not child.name.startswith("."))
     inside = [child for child in children if is_recording(child)]
     if not inside and not image_files(path):
         inside = [child for child in children if image_files(child)]

@@ -63,7 +63,7 @@ class TrafficSequence:
 
     def frames(self) -> Iterator[Frame]:
         """Read the images, in order."""
-        images = numbered_images(self.folder)
+        images = numbered_images(self.folder, self.frame_rate)
         for number in range(1, self.frame_count + 1):
             if number not in images:
                 raise InputError(f"{self.folder} has no image {number}")
