@@ -19,8 +19,10 @@ KILTED := $(addprefix test/ros/,test_rclpy_internals.py test_transport.py node/t
 	node/test_several_nodes.py node/test_node_requests.py replay/test_replay_lockstep.py)
 # What each part of the tests but test-rest runs, which has the rest.
 test-ros := ros
-test-footage := scenes recordings reproduction
+test-footage := scenes recordings
 test-programs := test_programs.py
+# Folders beside the package have their tests beside themselves: a change of the package does not wait for them.
+RESEARCH := $(addsuffix /test,reproduction laboratory benchmarks)
 # Share of the package's branches and lines that the tests must run through.
 COVERED := 92
 
@@ -28,7 +30,7 @@ COVERED := 92
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
 # Each target that says of itself what it does, with two hashes, is listed by `make help`.
-.PHONY: help demo test test-all test-rest test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs dist clean
+.PHONY: help demo test test-all test-research test-rest test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs dist clean
 
 demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
@@ -51,7 +53,7 @@ test: .venv/installed kernels  ## the fast tests, or PYTEST_ARGS="test/core …"
 endif
 
 # Everything, with branch coverage; the slow tests try every way to install, colcon's too.
-test-all: .venv/installed .venv/colcon kernels  ## every test, with branch coverage
+test-all: .venv/installed .venv/colcon kernels  ## every test of the package, with branch coverage
 	$(BIN)/coverage erase
 	$(MAKE) --no-print-directory --jobs=2 --keep-going $(PARTS) test-programs RUN="$(BIN)/coverage run -m pytest"
 	$(BIN)/coverage combine --quiet
@@ -62,12 +64,15 @@ kernels: .venv/installed
 	$(BIN)/python -c "from vehicle_pf_tracker.image.kernels.interface import load_kernels; load_kernels('auto')"
 
 test-rest: .venv/installed
-	$(RUN) $(addprefix --ignore test/,$(test-ros) $(test-footage) $(test-programs))
+	$(RUN) test $(addprefix --ignore test/,$(test-ros) $(test-footage) $(test-programs))
 
 # Shown when they have ended, so that the parts do not mix.
 test-ros test-footage test-programs: .venv/installed
 	@log=$$(mktemp); $(RUN) $(addprefix test/,$($@)) > $$log 2>&1; \
 	status=$$?; cat $$log; rm -f $$log; exit $$status
+
+test-research: .venv/installed kernels  ## tests of reproduction, laboratory and benchmarks, slow ones too
+	$(BIN)/python -m pytest $(or $(PYTEST_ARGS),$(RESEARCH))
 
 test-noble: .venv-noble/installed  ## numbers, pixels and messages with the NumPy and OpenCV of Ubuntu 24.04
 	.venv-noble/bin/python -m pytest -m "not slow" $(PYTEST_ARGS) $(VERSIONED)

@@ -1,17 +1,12 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Settings of the whole suite, and a browser for tests of pages, where one is installed."""
+"""A browser for tests of pages, where one is installed."""
 
 import shutil
 import subprocess
 
-import hypothesis
 import pytest
-
-# No test depends on how fast the machine is.
-hypothesis.settings.register_profile("suite", deadline=None)
-hypothesis.settings.load_profile("suite")
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
 _OPTIONS = (

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.slow  # the copy compiles its kernels
 ROOT = Path(__file__).resolve().parents[2]
 COPIED = ["vehicle_pf_tracker", "laboratory", "tools", "config", "docs", "launch", "resource"]
 COPIED += ["test/trackers"]
-FILES = ["setup.py", "setup.cfg", "package.xml", "pyproject.toml", "README.md"]
+FILES = ["setup.py", "setup.cfg", "package.xml", "pyproject.toml", "README.md", "conftest.py"]
 FILES += [str(path.relative_to(ROOT)) for path in (ROOT / "test").glob("*.py")]
 
 TRACKER = '''"""`toy`: a colour particle filter that is sure of its speed."""
