@@ -51,7 +51,7 @@ seeds each, ratios of medians scatter by about a quarter."""
 _SYSTEMS = (*SIX, *BESIDE)
 _REMARKS = (
     "With their own `sigma_v` of 0.158 the rivals are less exact where nothing hides the vehicle, "
-    "and APF is ahead or close there. It makes no difference to occlusions.",
+    "and APF is ahead or close there. It makes no difference to occlusions. "
     "No option of the rivals' own papers brings one over total occlusions. Tried were HPFMS with "
     "50 particles, which makes 200 measurements a frame like the others (25 particles make 100), "
     "SAPF with `annealing.tied`, and PF with second-order `dynamics` and 1 px/frame of noise.",

@@ -111,7 +111,6 @@ def _verdict(ratios: dict[str, list[float]], size: ex.Size) -> ex.ExperimentVerd
         f"{len(size.seeds)} passes; the numbers of particles are the defaults (200; 25 with mean "
         "shift; four layers of 50). The paper gives minutes for the whole video, so only ratios "
         "compare.",
-        ("Times differ from run to run and from machine to machine.",),
     )  # fmt: skip
 
 

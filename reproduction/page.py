@@ -21,18 +21,15 @@ PAGE = "reproduction.md"
 _PICTURES = "images/reproduction"
 _HEAD = """# Reproduction of the papers' experiments
 
-`{command}` makes this page. It runs the trackers on synthetic scenes with
-exact truth; they stand for the papers' own videos, which are not public. `python -m reproduction
-NAME` repeats one experiment. `results/reproduce/NAME/` has the rest: `verdict.md` with the setting,
-all tables and further interpretations, `data.csv` with every cell, and the figure.
+`{command}` makes this page. It runs the trackers on synthetic scenes with exact truth, which stand
+for the papers' own videos; those are not public. `python -m reproduction NAME` repeats one
+experiment, and `results/reproduce/NAME/` has the rest of it: the setting, all tables and
+interpretations, every cell's data.
 
-A claim is judged under up to three interpretations; one that depends on none is judged once.
-
-- *The paper's rule* gives the verdict: the algorithm as it was meant. Misprints and gaps are filled
-  as [interpretations.md](interpretations.md) says. Values that the paper does not print were chosen
-  on seeds above 99, which are not reported here.
-- *Our interpretation* adds our extensions, or is the variant's default.
-- *As printed* follows the paper to the letter.
+A claim is judged under up to three interpretations. *The paper's rule* gives the verdict: the
+algorithm as it was meant, its misprints and gaps filled as [interpretations.md](interpretations.md)
+says, with values that were chosen on seeds above 99, which are not reported here. *Our
+interpretation* adds our extensions, or is the default; *as printed* is the paper to the letter.
 
 {overview}
 """

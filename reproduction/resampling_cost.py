@@ -110,7 +110,6 @@ def _verdict(ratios: dict[str, list[float]], size: ex.Size) -> ex.ExperimentVerd
         ),
         f"{resampling.SETTING} Processor time of one thread per step, all filters in turns on each "
         f"frame, {len(_timed(size))} seeds.",
-        ("Times differ from run to run and from machine to machine.",),
     )
 
 

@@ -161,6 +161,21 @@ def test_with_the_relative_rule_the_reference_follows_good_frames_only():
         assert np.array_equal(tracker.reference.histogram, followed)
 
 
+@pytest.mark.parametrize("rule", ["relative", "fixed"])
+def test_hidden_from_the_first_frame_on_it_is_in_the_occlusion_regime_and_learns_nothing(rule):
+    street = Street(speed=0.0, hidden=(1, 16))
+    tracker = make(**{"occlusion.rule": rule})
+    tracker.start(street.frame(0), street.box(0))
+    first = tracker.reference.histogram
+    estimates = [tracker.step(street.frame(time)) for time in range(1, 16)]
+    assert np.array_equal(tracker.reference.histogram, first)
+    estimates += [tracker.step(street.frame(time)) for time in range(16, 24)]
+    # The first step is taken with Pi_0 = 1 (step 2), the others with what it measured.
+    assert [e.regime for e in estimates[:16]] == ["regular"] + ["occlusion"] * 15
+    assert estimates[-1].regime == "regular"
+    assert error(estimates[-1], street, 23) < 8
+
+
 class Reversing(Street):
     """Drives to the right at 3 px a frame, and in the two frames before it is hidden back."""
 

@@ -17,13 +17,20 @@ def level_of(*similarities):
     return level
 
 
-def test_the_first_similarity_is_clear_and_becomes_the_level():
+def test_the_first_clear_similarity_becomes_the_level():
     level = ClearLevel()
-    level.judge(0.1, SETTINGS)
+    level.judge(0.7, SETTINGS)
     assert level.clear
-    level.add(0.1, SETTINGS.rate)
-    assert level.value == pytest.approx(0.1)
+    level.add(0.7, SETTINGS.rate)
+    assert level.value == pytest.approx(0.7)
     assert level.deviation == pytest.approx(0.05)
+
+
+def test_before_the_first_clear_frame_a_small_share_of_one_is_an_occlusion():
+    level = ClearLevel()  # Pi_0 = 1, certain 0.65
+    for similarity, clear in ((0.64, False), (0.3, False), (0.65, True)):
+        level.judge(similarity, SETTINGS)
+        assert level.clear is clear
 
 
 def test_a_slow_fall_does_not_widen_its_own_bound():

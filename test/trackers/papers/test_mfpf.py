@@ -23,6 +23,7 @@ from vehicle_pf_tracker.trackers.papers.sfpf import (
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 NAMES = ("color", "edge", "texture")
+SINGLE = VARIANTS["sfpf_color"]
 
 
 def make(**values):
@@ -142,6 +143,51 @@ def test_weights_are_the_earlier_ones_times_the_likelihoods_of_the_features_in_u
         expected = expected - (1 - rho) / (2 * 0.1**2)
     weights = np.exp(expected - expected.max())
     assert estimate.weights == pytest.approx(weights / weights.sum(), rel=1e-3, abs=1e-9)
+
+
+def test_interpretation_34_as_printed_the_reference_is_one_frame_older():
+    street = Street()
+    tracker = make(delayed_reference=True, reference_weight=0.25)
+    tracker.start(street.frame(0), street.box(0))
+    first = [reference.histogram for reference in tracker.references]
+    estimates = [tracker.step(street.frame(time)) for time in range(1, 5)]
+    at = np.array([estimates[-2].position])
+    for kind, began, reference in zip(
+        tracker.features.values(), first, tracker.references, strict=True
+    ):
+        before = kind.histograms(street.frame(3), at, tracker.window)[0]
+        assert reference.histogram == pytest.approx(0.25 * began + 0.75 * before)
+
+
+@pytest.mark.parametrize("recursion", [True, False])
+def test_interpretation_35_without_recursion_the_present_frame_alone_counts(recursion):
+    settings = {"num_particles": 50, "resample_below": 0.0, "weight_recursion": recursion}
+    tracker = SINGLE.tracker(from_mapping(SfpfColorParameters, settings))
+    street = Street()
+    before = follow(tracker, street, range(3))[-1].weights
+    reference = tracker.references[0]
+    estimate = tracker.step(street.frame(3))
+    feature = tracker.features["color"]
+    rho = feature.similarity(street.frame(3), estimate.particles, tracker.window, reference)
+    logs = (np.log(before) if recursion else 0.0) - (1 - rho) / (2 * 0.1**2)
+    weights = np.exp(logs - logs.max())
+    assert estimate.weights == pytest.approx(weights / weights.sum(), rel=1e-3, abs=1e-9)
+
+
+def test_interpretation_32_the_basic_filter_searches_no_wider_and_never_predicts():
+    street = Street(speed=0.0, hidden=(10, 30))
+    runs = {}
+    for extended in (True, False):
+        tracker = SINGLE.tracker(from_mapping(SfpfColorParameters, {"extended": extended}))
+        runs[extended] = follow(tracker, street, range(20))
+    start = street.box(0).centre
+    reach = {e: np.hypot(*(run[0].particles - start).T).max() for e, run in runs.items()}
+    assert reach[True] > 20
+    assert reach[False] <= 14
+    assert {e.regime for e in runs[True][10:]} == {"prediction"}
+    assert {e.regime for e in runs[False][1:]} == {"estimation"}
+    # What it sees where the vehicle was becomes a part of its reference.
+    assert runs[False][-1].similarities["used_color"] == 1.0
 
 
 def test_the_evidence_is_the_median_of_the_features(monkeypatch):

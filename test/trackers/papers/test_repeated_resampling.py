@@ -130,6 +130,29 @@ def test_interpretation_23_copies_are_jittered_by_a_share_of_sigma():
     assert np.std(after.cloud.positions - positions) == pytest.approx(6.0, rel=0.05)
 
 
+@pytest.mark.parametrize("recursion", [True, False])
+def test_interpretation_40_a_frame_without_a_pass_goes_on_with_its_weights_or_without(recursion):
+    street, tracker = Street(), adaptive(criterion=0.0, weight_recursion=recursion)
+    before = follow(tracker, street, range(4))[-1]
+    estimate = tracker.step(street.frame(4))
+    assert estimate.resampling_passes == before.resampling_passes == 0
+    rho = tracker.similarity(street.frame(4), estimate.particles)
+    # Of sigma_v 0.2: (1 - rho) / (2 * 0.04).
+    logs = (np.log(before.weights) if recursion else 0.0) - (1 - rho) / 0.08
+    weights = np.exp(logs - logs.max())
+    assert estimate.weights == pytest.approx(weights / weights.sum(), rel=1e-3, abs=1e-9)
+
+
+def test_interpretation_40_without_a_pass_the_printed_measurement_has_no_effect_at_all():
+    street, blind = Street(hidden=(1, 99)), Street()
+    settings = {"criterion": 0.0, "weighted_mean": False}
+    positions = [
+        [e.position for e in follow(adaptive(**settings), one, range(12))]
+        for one in (street, blind)
+    ]
+    assert positions[0] == positions[1]
+
+
 def test_the_plain_mean_as_printed():
     estimate = follow(adaptive(weighted_mean=False), Street(), range(5))[-1]
     assert estimate.position == pytest.approx(tuple(estimate.particles.mean(axis=0)))

@@ -55,7 +55,11 @@ class ClearLevel(RunningLevel):
 
     def judge(self, similarity: float, parameters: ClearLevelParameters) -> None:
         """Compare `similarity` with the level, which sets `clear`; the level stays."""
-        if self.count > 0:
+        if self.count == 0:
+            # Of a vehicle that has not been seen clear yet no deviation is known: only a fall to a
+            # small share of Pi_0 = 1 (step 2) counts.
+            self.clear = similarity >= parameters.certain
+        else:
             multiple = parameters.enter if self.clear else parameters.leave
             least = self.value - multiple * max(self.deviation, _LEAST_DEVIATION)
             # An occlusion in the first frames meets a deviation that is still wide.

@@ -83,6 +83,12 @@ def weigh_features(averages: Array, initial: Array, threshold: float) -> Feature
     )
 
 
+def unweighted(averages: Array) -> FeatureWeighting:
+    """Use every feature alike, whatever its average similarity: the basic filter of section III."""
+    alike = np.ones(len(averages))
+    return FeatureWeighting(averages, alike, alike / len(averages))
+
+
 def common_survivors(sets: Sequence[Ancestors], count: int, otherwise: Ancestors) -> Ancestors:
     """Keep the particles that survive in every feature's own resampling, as printed.
 

@@ -35,6 +35,7 @@ from vehicle_pf_tracker.trackers.papers.feature_weighting import (
     FeatureWeighting,
     average_similarities,
     common_survivors,
+    unweighted,
     weigh_features,
 )
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
@@ -54,6 +55,8 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         self.features: Mapping[str, WindowFeature] = {}
         self._first: list[Histograms] = []
         """Histogram of each feature in the first frame, hist(0)."""
+        self._latest: list[Histograms] = []
+        """Histogram of each feature at the last estimate, hist(k - 1)."""
         self.references: list[Reference] = []
         """Reference of each feature, hist_ref."""
         self._initial: Array | None = None
@@ -88,6 +91,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             feature.histograms(self.target.patch, centre, self.window)[0]
             for feature in self.features.values()
         ]
+        self._latest = list(self._first)
         self.references = [Reference(first) for first in self._first]
         if self._initial is not None:
             # The frame after the start is no longer available; the start itself is closest to it.
@@ -97,12 +101,11 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
     def _scatter(self, centre: tuple[float, float]) -> Array:
         """Disperse the first particles (step 1)."""
         self._velocity, self._position = MeanVelocity(self._settings.velocity_window), centre
-        self._searching, self._predicted_for, self._age = True, 0.0, 0.0
+        self._searching, self._predicted_for, self._age = self._settings.extended, 0.0, 0.0
         self._initial = self._ancestors = None
         return centre + self._noise(self._search_radius(1.0))
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        settings = self._settings
         particles, prior, left_image = self._disperse(frame, elapsed)
         rho = self._compare(frame, particles)  # step 2
         averages = self._averages(rho)
@@ -111,8 +114,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         # Step 3: the object's position by equation 5 with the last increments.
         moved = np.asarray(self._position) + np.asarray(self._velocity.value) * elapsed
         x, y = keep_inside(frame, moved).tolist()
-        threshold = settings.confidence.threshold
-        weighting = weigh_features(averages, self._initial, threshold)  # step 4, to its update
+        weighting = self._weigh_features(averages, self._initial)  # step 4, to its update
         is_hidden, passes = weighting.full_occlusion, 0
         weights, cloud = self.weigh(particles, prior, rho, weighting)
         position = (x, y) if is_hidden else self._locate(particles, weights, weighting)
@@ -150,13 +152,15 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         # The first step is a search anyway.
         is_starting = 0 < self._age < dispersion.start
         radius = dispersion.radius * elapsed
-        radius *= dispersion.uncertain_factor if is_starting else 1.0
+        radius *= settings.search_factor if is_starting else 1.0
         self._age += elapsed
         if self._searching:
             cloud = Cloud.uniform(np.tile(self._position, (settings.num_particles, 1)))
             radius = self._search_radius(elapsed)
         elif self._ancestors is not None:
             cloud = Cloud.uniform(cloud.positions[self._ancestors])
+        elif not settings.weight_recursion:
+            cloud = Cloud.uniform(cloud.positions)
         self._ancestors = None
         moves = np.asarray(self._velocity.value) * elapsed + self._noise(radius)
         particles, left_image = self._move(frame, cloud.positions, moves)
@@ -171,7 +175,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
     def _search_radius(self, elapsed: float) -> float:
         dispersion = self._settings.dispersion
-        nominal = dispersion.uncertain_factor * dispersion.radius * elapsed
+        nominal = self._settings.search_factor * dispersion.radius * elapsed
         grown = nominal + dispersion.growth * self._predicted_for
         return min(grown, max(nominal, dispersion.largest))
 
@@ -189,6 +193,11 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         """Average similarity of each feature (F,) (eq. 16)."""
         best_share = self._settings.confidence.best_share
         return average_similarities(hellinger_distance(rho), best_share)
+
+    def _weigh_features(self, averages: Array, initial: Array) -> FeatureWeighting:
+        if not self._settings.extended:
+            return unweighted(averages)
+        return weigh_features(averages, initial, self._settings.confidence.threshold)
 
     def weigh(
         self, particles: Array, prior: Array, rho: Array, weighting: FeatureWeighting
@@ -236,7 +245,9 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             for number, (first, found) in enumerate(zip(self._first, histograms, strict=True)):
                 if weighting.factors[number] > 0 or settings.update_unused:
                     weight = settings.reference_weight
-                    self.references[number] = Reference(weight * first + (1 - weight) * found)
+                    last = self._latest[number] if settings.delayed_reference else found
+                    self.references[number] = Reference(weight * first + (1 - weight) * last)
+                    self._latest[number] = found
         self._searching = weighting.full_occlusion
         self._position = position
 

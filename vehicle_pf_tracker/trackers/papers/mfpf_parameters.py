@@ -18,6 +18,8 @@ from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
     as_printed_switch,
     resampling_parameter,
+    sigma_v_parameter,
+    squared_distance_parameter,
 )
 from vehicle_pf_tracker.trackers.parameters import ParticleParameters, share
 
@@ -38,12 +40,21 @@ texture_parameter = functools.partial(
 
 
 @dataclass(frozen=True, slots=True)
+class FeatureLikelihoodParameters(LikelihoodParameters):
+    """Decrease of the weights with the distance of the histograms, as P2 has it."""
+
+    sigma_v: float = sigma_v_parameter(0.1, source="P2 eq. 10, interpretation 31 (printed: 1.5)")
+    squared_distance: bool = squared_distance_parameter(source="P2 eq. 10 (printed squared)")
+
+
+@dataclass(frozen=True, slots=True)
 class DispersionParameters:
     """Dispersion of the particles."""
 
     radius: float = parameter(
         14.0, "Larger: follows faster changes of speed, and more similar vehicles.",
-        bounds=(0.01, 1000.0), unit="px/frame", source="P2 section IV, DR", tuned=True,
+        bounds=(0.01, 1000.0), unit="px/frame", source="P2 section IV, interpretation 36",
+        tuned=True,
     )  # fmt: skip
     noise: str = parameter(
         "disc",
@@ -59,7 +70,7 @@ class DispersionParameters:
         1.0,
         "Longer: the wider search around the start lasts until the speed is known, which a radius "
         "of about the speed needs; 1 is the first step alone, as printed.",
-        bounds=(1.0, 1000.0), unit="frames", source="P2 section IV, DR0, interpretation 30",
+        bounds=(1.0, 1000.0), unit="frames", source="P2 section IV, interpretations 30 and 36",
     )  # fmt: skip
     growth: float = parameter(
         1.0, "Larger: the search around predictions widens faster during an occlusion.",
@@ -132,10 +143,17 @@ FilterParametersT = TypeVar("FilterParametersT", bound="FeatureFilterParameters"
 class FeatureFilterParameters(ParticleParameters):
     """Common parameters of `mfpf` and its single-feature filters."""
 
-    as_printed: bool = as_printed_switch(source="interpretations 1, 12 to 19, 25, 26 and 30")
+    as_printed: bool = as_printed_switch(
+        source="interpretations 12 to 19, 25, 26, 30 to 32, 34 and 35"
+    )
     reference_weight: float = share(
         0.7, "Higher: the reference keeps more of the first frame and follows the last one less.",
         source="P2 eq. 9, interpretation 15 (no value printed)", tuned=True,
+    )  # fmt: skip
+    delayed_reference: bool = parameter(
+        False, "On: the reference takes the histogram of the frame before the last, as printed; "
+        "off that of the last.",
+        source="P2 eq. 8 and 9, interpretation 34",
     )  # fmt: skip
     velocity_window: int = parameter(
         5, "Longer: a steadier speed that follows turns later; 1 takes the last move, as printed.",
@@ -150,23 +168,37 @@ class FeatureFilterParameters(ParticleParameters):
         0.5, "Higher: resamples at larger effective sample sizes; 1 always.",
         unit="share of the particles", source="P2 eq. 14, interpretation 16",
     )  # fmt: skip
-    likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.1)
+    weight_recursion: bool = parameter(
+        True, "A particle's previous weight is a factor of its next where nothing was resampled "
+        "between; off takes the present frame's alone.",
+        source="P2 eq. 3, 10 and 11, interpretation 35",
+    )  # fmt: skip
+    likelihood: FeatureLikelihoodParameters = group(FeatureLikelihoodParameters)
     dispersion: DispersionParameters = group(DispersionParameters)
     confidence: ConfidenceParameters = group(ConfidenceParameters)
 
+    # Parameter of `sfpf_*`: `mfpf` is the extension.
+    extended = True
     # Parameters of `mfpf`: one feature has no other to be joined with, or to drop out beside.
     update_unused = False
     joint_resampling = True
+
+    @property
+    def search_factor(self) -> float:
+        """Radii that are searched at the start and in predictions, which only section IV has."""
+        return self.dispersion.uncertain_factor if self.extended else 1.0
 
     def printed(self: FilterParametersT) -> FilterParametersT:
         """Return the parameters as printed; see `CommonParameters.printed`."""
         return replace(
             self,
+            delayed_reference=True,
             velocity_window=1,
             estimate="best",
             resampling="multinomial",
             resample_below=1.0,
-            likelihood=LikelihoodParameters(sigma_v=1.5),
+            weight_recursion=True,
+            likelihood=FeatureLikelihoodParameters(sigma_v=1.5),
             dispersion=replace(self.dispersion, noise="gaussian", uncertain_factor=2.0, start=1.0),
             confidence=ConfidenceParameters(best_share=1.0, threshold=0.8),
         )

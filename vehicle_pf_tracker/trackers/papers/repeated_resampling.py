@@ -7,8 +7,9 @@ Particles are weighted, and while their effective sample size is too small they 
 weighted again. `conventional` (Table I) replaces every particle by a jittered copy drawn from the
 weighted ones. `adaptive` (Table II) replaces only the particles of low weight; under occlusion all
 but the best one, by copies around it. Step numbers are those of the tables. Equation 6 has a
-particle's previous weight as a factor, the tables have not; as in the tables, the next frame starts
-without it also where no pass has run (interpretation 28).
+particle's previous weight as a factor, the tables have not (interpretation 28). As in the tables,
+the next frame starts without it also where no pass has run: what was measured in such a frame
+counts for its own estimate alone (interpretation 40).
 """
 
 from __future__ import annotations
@@ -33,7 +34,11 @@ from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracke
 from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
     as_printed_switch,
+    histogram_bits_parameter,
     log_likelihood,
+    resampling_parameter,
+    sigma_v_parameter,
+    squared_distance_parameter,
 )
 from vehicle_pf_tracker.trackers.parameters import share
 
@@ -41,10 +46,22 @@ RepeatedParametersT = TypeVar("RepeatedParametersT", bound="RepeatedResamplingPa
 
 
 @dataclass(frozen=True, slots=True)
+class RepeatedLikelihoodParameters(LikelihoodParameters):
+    """Decrease of the weights with the distance of the histograms, as P3 has it."""
+
+    sigma_v: float = sigma_v_parameter(
+        0.2, source="P3 eq. 10, interpretation 23 (no value printed)"
+    )
+    squared_distance: bool = squared_distance_parameter(source="P3 eq. 10 (printed squared)")
+
+
+@dataclass(frozen=True, slots=True)
 class RepeatedResamplingParameters(ColourParameters):
     """Parameters of both filters of P3."""
 
-    as_printed: bool = as_printed_switch(source="interpretations 21, 22 and 29")
+    as_printed: bool = as_printed_switch(source="interpretations 21, 22, 28, 29 and 40")
+    histogram_bits: int = histogram_bits_parameter(source="P3 section III-B", tuned=True)
+    resampling: str = resampling_parameter(source="P3 section IV-B (four are named)")
     sigma: float = parameter(
         14.0,
         "About 1.75 times the speed: less loses fast vehicles, more follows similar vehicles.",
@@ -70,7 +87,12 @@ class RepeatedResamplingParameters(ColourParameters):
         True, "Weigh particles in the estimate; off takes their plain mean, as printed.",
         source="P3 section V, interpretation 29",
     )  # fmt: skip
-    likelihood: LikelihoodParameters = group(LikelihoodParameters, sigma_v=0.2)
+    weight_recursion: bool = parameter(
+        False, "On: a particle's previous weight is a factor of its next, so that frames without "
+        "a pass count too; off as in the tables.",
+        source="P3 eq. 6, interpretations 28 and 40",
+    )  # fmt: skip
+    likelihood: RepeatedLikelihoodParameters = group(RepeatedLikelihoodParameters)
 
     def printed(self: RepeatedParametersT) -> RepeatedParametersT:
         """Return the parameters as printed; see `CommonParameters.printed`."""
@@ -80,6 +102,7 @@ class RepeatedResamplingParameters(ColourParameters):
             criterion=1.0,
             most_passes=20,
             weighted_mean=False,
+            weight_recursion=False,
             likelihood=replace(self.likelihood, squared_distance=True),
         )
 
@@ -107,7 +130,8 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
         settings = self._settings
         parents = self._cloud.positions
         moved, left_image = self._diffuse(frame, parents, settings.sigma * elapsed)  # steps 3 to 7
-        particles = self.weigh(moved, self.similarity(frame, moved))  # steps 8 to 11
+        prior = self._cloud.weights if settings.weight_recursion else None  # eq. 6
+        particles = self.weigh(moved, self.similarity(frame, moved), prior)  # steps 8 to 11
         passes, replaced, regime = 0, 0, "regular"
         while passes < settings.most_passes and self._is_degenerate(particles):  # steps 12 and 13
             particles, count, regime = self.resample_once(frame, particles, elapsed)
@@ -125,10 +149,14 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
             resampled_particles=replaced,
         )
 
-    def weigh(self, positions: Array, coefficients: Array) -> WeighedParticles:
-        """Weigh particles by their Bhattacharyya coefficients, (N,)."""
-        weights = from_log(log_likelihood(coefficients, self._settings.likelihood))
-        return WeighedParticles(coefficients, Cloud(positions, *weights))
+    def weigh(
+        self, positions: Array, coefficients: Array, prior: Array | None = None
+    ) -> WeighedParticles:
+        """Weigh particles by their Bhattacharyya coefficients, and by `prior`; each (N,)."""
+        logs = log_likelihood(coefficients, self._settings.likelihood)
+        if prior is not None:
+            logs = logs + np.log(np.maximum(prior, np.finfo(np.float64).tiny))
+        return WeighedParticles(coefficients, Cloud(positions, *from_log(logs)))
 
     def _is_degenerate(self, particles: WeighedParticles) -> bool:
         limit = self._settings.criterion * len(particles.cloud.positions)

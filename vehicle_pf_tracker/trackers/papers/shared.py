@@ -24,18 +24,26 @@ Vector: TypeAlias = tuple[float, float]
 _Move: TypeAlias = tuple[float, float, float]
 
 
+sigma_v_parameter = functools.partial(
+    parameter,
+    doc="Smaller: weights fall faster as a particle's histogram departs from the reference.",
+    bounds=(1e-3, 100.0), tuned=True,
+)  # fmt: skip
+"""Make the spread of the distance; `source` is the equation of the paper that has it."""
+squared_distance_parameter = functools.partial(
+    parameter, True, "False takes the distance unsquared; the weights are then almost flat."
+)
+"""Make the switch of the distance's square; `source` is the equation, and what it prints."""
+
+
 @dataclass(frozen=True, slots=True)
 class LikelihoodParameters:
     """Decrease of the weights with the distance of the histograms."""
 
-    sigma_v: float = parameter(
-        0.1, "Smaller: weights fall faster as a particle's histogram departs from the reference.",
-        bounds=(1e-3, 100.0), source="P1 eq. 25, interpretation 1 (printed: 1.5)", tuned=True,
-    )  # fmt: skip
-    squared_distance: bool = parameter(
-        True, "False takes the distance unsquared, as printed; the weights are then almost flat.",
-        source="P1 eq. 25, interpretation 1",
-    )  # fmt: skip
+    sigma_v: float = sigma_v_parameter(0.1, source="P1 eq. 25, interpretation 1 (printed: 1.5)")
+    squared_distance: bool = squared_distance_parameter(
+        source="P1 eq. 25, interpretation 1 (printed unsquared)"
+    )
 
 
 def log_likelihood(coefficients: Array, parameters: LikelihoodParameters) -> Weights:
