@@ -94,3 +94,38 @@ def test_what_is_no_text_or_not_there_is_one_sentence(read, tmp_path):
         DetectionFile(tmp_path / "none.txt")
     with pytest.raises(InputError, match="is not a regular file"):
         DetectionFile(tmp_path)
+
+
+MISFITS = {
+    "shares": ("1,-1,0.03,0.5,0.13,0.1,0.9\n2,-1,0.04,0.5,0.13,0.1,0.9\n", "all 2 boxes are below"),
+    "one share": ("1,-1,0,0,1,1\n", "all 1 boxes are below one px"),
+    "another size": ("1,-1,700,100,40,24\n2,-1,10,300,40,24\n", "no box lies in the image of 320x"),
+    "left of it": ("1,-1,-90,100,40,24\n", "no box lies in the image of 320x240 px"),
+    "corners": ("1,-1,10,100,50,124\n2,-1,200,160,240,184\n3,-1,204,160,244,184\n",
+                "2 of 3 boxes reach beyond the image of 320x240 px"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", MISFITS)
+def test_boxes_that_do_not_fit_the_images_are_said(tmp_path, case):
+    text, said = MISFITS[case]
+    path = tmp_path / "det.txt"
+    path.write_text(text)
+    assert said in DetectionFile(path).misfit((320, 240))
+
+
+def test_boxes_that_leave_the_image_fit_it(tmp_path):
+    path = tmp_path / "det.txt"
+    path.write_text("1,-1,10,100,40,24\n2,-1,300,100,40,24\n3,-1,279.5,215.5,41,25\n")
+    assert DetectionFile(path).misfit((320, 240)) == ""
+
+
+def test_decimal_commas_and_quotes_are_read(tmp_path):
+    path = tmp_path / "det.txt"
+    path.write_text('1;-1;10,5;100;40;24;0,9\n"2","-1","11.5","100","40","24","0.9"\n')
+    detections = DetectionFile(path)
+    assert detections.of(1).boxes.tolist() == [[10.5, 100, 40, 24]]
+    assert detections.of(2).boxes.tolist() == [[11.5, 100, 40, 24]]
+    path.write_text("1 -1 10,5 100 40 24 0,9\n")
+    with pytest.raises(InputError, match="line 1 of"):
+        DetectionFile(path)

@@ -136,6 +136,86 @@ def test_faulty_truth_is_named(frame_folder, tmp_path, truth, said):
     assert not (tmp_path / "bag").exists()
 
 
+TABLE = [[1, 10.5, 2, 7, 5], [2, 11.5, 2, 7, 5], [3, 12.5, 2, 7, 5]]
+NAMES = ["frame", "x", "y", "w", "h"]
+
+
+def table(delimiter=",", decimal=".", quoted="", names=NAMES, rows=TABLE):
+    def line(cells):
+        shown = [str(cell).replace(".", decimal) for cell in cells]
+        strings = [f'"{cell}"' if quoted in {"all", "names"} else cell for cell in shown]
+        return delimiter.join(strings if cells is names or quoted == "all" else shown)
+
+    return "".join(line(cells) + "\n" for cells in [names, *rows])
+
+
+NUMBERED = [[n, *row] for n, row in enumerate(TABLE, start=1)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        table(quoted="names"),  # as of R's write.csv without row names
+        table(quoted="all"),  # as of pandas with QUOTE_ALL
+        table(quoted="all").replace("\n", "\r\n"),
+        table(quoted="names", names=["", *NAMES], rows=NUMBERED),  # as of R's write.csv
+        table(names=["", *NAMES], rows=NUMBERED),  # as of pandas with its index
+        table(names=[*NAMES, "note"], rows=[[*row, "a"] for row in TABLE]),
+        table(names=[name.upper() for name in NAMES]),
+        table(";"),
+        table(";", ","),  # as of a spreadsheet in German
+        table(";", ",", "all"),
+        table("\t", ","),
+        table("\t"),
+        table(" "),
+        table(", "),
+        "# made by hand\n" + table(),
+    ],
+)
+def test_our_table_is_read_however_its_cells_are_written(frame_folder, tmp_path, text):
+    import_recording(frame_folder(truth=text), tmp_path / "bag")
+    boxes = [truth.box for truth in Recording(tmp_path / "bag").truth()]
+    assert boxes == [Box(10.5, 2, 7, 5), Box(11.5, 2, 7, 5), Box(12.5, 2, 7, 5)]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (table(" ", ",").replace('"', ""), "line 2 of"),  # 1 10,5 2 7 5: two meanings
+        ("frame x y w h\n1 1 10.5 2 7 5\n", "line 2 of .* has 6 cells, the first line names 5"),
+        (table().replace("10.5", "10;5"), "line 2 of"),
+        (table(";").replace("10.5", "1.010,5"), "line 2 of .* '1.010,5' as x"),
+        (table().replace("10.5", '"1,010"'), "line 2 of .* '1,010' as x"),
+    ],
+)
+def test_cells_that_may_be_other_numbers_are_refused(frame_folder, tmp_path, text, said):
+    with pytest.raises(InputError, match=said):
+        import_recording(frame_folder(truth=text), tmp_path / "bag")
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ("1,0.3,0.1,0.2,0.2", "all 1 boxes are below one px; are they shares"),
+        ("1,320,100,70,50", "no box lies in the image of 32x24 px; are they of another"),
+        ("1,-20,2,7,5", "no box lies in the image"),
+    ],
+)
+def test_truth_that_fits_no_image_is_refused(frame_folder, tmp_path, rows, said):
+    with pytest.raises(InputError, match=said):
+        import_recording(frame_folder(truth=f"frame,x,y,w,h\n{rows}\n"), tmp_path / "bag")
+
+
+def test_corners_that_are_taken_for_sizes_are_said(frame_folder, tmp_path):
+    corners = "frame,x,y,w,h\n1,2,2,9,7\n2,20,2,27,7\n3,22,2,29,7\n"
+    _, notices = import_recording(frame_folder(truth=corners), tmp_path / "bag")
+    assert any("2 of 3 boxes reach beyond the image of 32x24 px" in one for one in notices)
+    edge = "frame,x,y,w,h\n1,2,2,9,7\n2,20,2,13,7\n3,25,2,8,7\n"
+    shutil.rmtree(tmp_path / "frames")
+    shutil.rmtree(tmp_path / "bag")
+    assert not import_recording(frame_folder(truth=edge), tmp_path / "bag")[1]
+
+
 def test_truth_that_is_no_text_is_named(frame_folder, tmp_path):
     folder = frame_folder()
     (folder / "groundtruth.csv").write_bytes(b"\xff\xfe\x00\x80")

@@ -354,6 +354,86 @@ def test_truth_of_several_vehicles_asks_which(lay, tmp_path, capsys, name, conte
     assert main(["import", folder, str(tmp_path / "bag"), "--id", "8"]) == 0
 
 
+def test_the_end_of_a_track_may_be_written_twice(lay):
+    ends = cvat_box(12, frame=2, outside=1) * 2
+    track = cvat_box(8, frame=0, outside=0) + cvat_box(10, frame=1, outside=0)
+    text = f"<annotations><track id='1'>{track}{ends}</track></annotations>"
+    assert list(FrameFolder(lay(files={"annotations.xml": text}), fps=10).truths) == [1, 2]
+
+
+@pytest.mark.parametrize("second", [cvat_box(10, frame=0, outside=0),
+                                    cvat_box(8, frame=0, outside=1)])  # fmt: skip
+def test_two_states_in_one_frame_are_a_contradiction(lay, second):
+    text = f"<annotations><track id='1'>{cvat_box(8, frame=0)}{second}</track></annotations>"
+    with pytest.raises(InputError, match="frame 1 a second time"):
+        FrameFolder(lay(files={"annotations.xml": text}))
+
+
+POLYGON = '<polygon frame="1" outside="0" points="1,2;3,4;5,6"/>'
+ROTATED_STUDIO = STUDIO_VIDEO.replace('"rotation": 0', '"rotation": 3')
+UPRIGHT_AND_ROTATED = cvat_box(8, frame=0) + cvat_box(10, frame=1, rotation=30.5)
+UNREAD = {
+    "CVAT": (
+        "annotations.xml",
+        f"<annotations><track id='1'>{UPRIGHT_AND_ROTATED}</track></annotations>",
+        "track 1 of .* is rotated; only upright boxes"),
+    "CVAT, image": (
+        "annotations.xml",
+        f"<annotations><image id='0'>{cvat_box(8, rotation=-30)}</image></annotations>",
+        "image 0 of .* is rotated; only upright boxes"),
+    "CVAT, polygon": (
+        "annotations.xml", f"<annotations><track id='1'>{POLYGON}</track></annotations>",
+        "track 1 of .* is a polygon; only upright boxes"),
+    "Label Studio": ("project-1.json", ROTATED_STUDIO, "region 1 of .* is rotated; only upright"),
+    "Label Studio, polygon": (
+        "project-1.json", studio(({"video": "a.mp4"}, [{"type": "polygonlabels", "value": {}}])),
+        "is a polygon; only upright boxes"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", UNREAD)
+def test_what_is_no_upright_box_is_refused_by_every_reader(lay, case):
+    name, text, said = UNREAD[case]
+    with pytest.raises(InputError, match=said):
+        FrameFolder(lay(files={name: text}))
+
+
+def test_other_shapes_beside_the_target_are_said(lay):
+    box = f"<track id='1'>{cvat_box(8, frame=0, outside=0)}</track>"
+    rotated = f"<track id='2'>{cvat_box(8, frame=0, outside=0, rotation=9)}</track>"
+    others = f"<track id='3'>{POLYGON}</track><image id='1'>{POLYGON}</image>{rotated}"
+    place = lay(files={"annotations.xml": f"<annotations>{box}{others}</annotations>"})
+    folder = FrameFolder(place, fps=10)
+    assert list(folder.truths) == [1]
+    assert "3 targets or shapes are not read: track 3 of" in folder.notices[-1]
+    with pytest.raises(InputError, match=r"track 2 of .* is rotated"):
+        FrameFolder(place, fps=10, identity=2)
+
+
+@pytest.mark.parametrize("turn", ["0.0", "360", "-360.00"])
+def test_a_full_turn_is_upright(lay, turn):
+    box = cvat_box(8, frame=0, outside=0, rotation=turn)
+    text = f"<annotations><track id='1'>{box}</track></annotations>"
+    assert list(FrameFolder(lay(files={"annotations.xml": text})).truths) == [1]
+
+
+def test_mot_of_eight_columns_is_no_polygon(lay):
+    folder = FrameFolder(lay(files={"gt/gt.txt": "1,3,9,25,16,12,1,1\n"}), fps=10)
+    assert folder.truths[1].box.x == 8
+
+
+def test_the_truth_of_other_frames_of_a_video_is_refused(tmp_path):
+    video = write_video(tmp_path / "clip.avi", map(frame_of, range(4)))
+    truth = tmp_path / "t.csv"
+    truth.write_text("frame,x,y,w,h\n5,8,24,16,12\n900,8,24,16,12\n")
+    with pytest.raises(InputError, match="it has frames 5 to 900, the images are 1 to 4"):
+        open_source(video, truth=truth)
+    truth.write_text("frame,x,y,w,h\n0,8,24,16,12\n1,8,24,16,12\n")
+    assert (
+        "has frame 0; frames of a video count from 1" in open_source(video, truth=truth).notices[0]
+    )
+
+
 def test_fewer_rows_than_images_are_said(lay):
     folder = FrameFolder(lay(files={"groundtruth.txt": FROM_1[:2]}), fps=10)
     assert any("has 2 rows for 4 images; its first is taken for image 1" in one

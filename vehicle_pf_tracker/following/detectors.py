@@ -27,7 +27,8 @@ from vehicle_pf_tracker.detection.network import Network
 from vehicle_pf_tracker.detection.network_detector import NetworkDetector
 from vehicle_pf_tracker.detection.parameters import MODEL, MOTION, DetectorParameters
 from vehicle_pf_tracker.following.model_files import Progress, model_file, silent
-from vehicle_pf_tracker.recordings.truth_formats import numbers_in, table_rows
+from vehicle_pf_tracker.recordings.box_sizes import misfit
+from vehicle_pf_tracker.recordings.text_tables import numbers_in, table_rows
 
 
 def open_network(model: str, progress: Progress = silent) -> Network:
@@ -198,7 +199,13 @@ class DetectionFile:
                 f"{np.count_nonzero(~usable)} of {len(rows)} detections in {path} have no area, or "
                 "numbers that are not finite, and are left out"
             )
+        self._path = path
         self._frames, self._rows = rows[usable, 0], rows[usable, 1:]
+
+    def misfit(self, size: tuple[int, int]) -> str:
+        """Return why the boxes do not fit images of a size (px); empty where they do."""
+        found = misfit(self._rows[:, :4], size)
+        return f"the detections {self._path}: {found.sentence}" if found else ""
 
     def of(self, frame: int) -> Detections:
         """Return the detections of a frame; one without rows is one without vehicles."""

@@ -59,6 +59,7 @@ class TrafficRun(CountedVehicles):
         self._more_notices = 0
         self._last_events: list[str] = []
         self._detections = detections
+        self._misfit = ""
         self._targets: dict[str, dict[int, Box]] = {}
         self._by_name: dict[str, int] = {}
 
@@ -116,8 +117,7 @@ class TrafficRun(CountedVehicles):
                 if found.frame is None or crossings is None:
                     continue
                 if not self.summary.frames:
-                    for name in self.counter.plan.outside(*frame_size(found.frame)):
-                        self._note(f"{name!r} is outside the image, so that nothing counts there")
+                    self._check_plan_and_detections(frame_size(found.frame))
                 estimates = self.estimates
                 files.write(number, found.stamp_ns, estimates, crossings)
                 self.summary.add(estimates)
@@ -155,6 +155,8 @@ class TrafficRun(CountedVehicles):
                 MOTION: "nothing moves in them",
                 MODEL: "the network finds no vehicle; try --set detector.min_score=0.1",
             }.get(detector, f"{detector} has no box in them")
+        elif self._misfit:
+            why = self._misfit
         elif not inside:
             why = f"all {found.boxes} detections are outside the regions of interest"
         else:
@@ -183,6 +185,14 @@ class TrafficRun(CountedVehicles):
         self._last_events = list(self.session.events)
         self._add_targets(found.frame, number)
         return crossings
+
+    def _check_plan_and_detections(self, size: tuple[int, int]) -> None:
+        for name in self.counter.plan.outside(*size):
+            self._note(f"{name!r} is outside the image, so that nothing counts there")
+        if self._detections is not None:
+            self._misfit = self._detections.misfit(size)
+        if self._misfit:
+            self._note(self._misfit)
 
     def _begin_anew(self) -> None:
         super()._begin_anew()

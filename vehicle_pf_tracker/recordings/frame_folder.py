@@ -29,7 +29,7 @@ from vehicle_pf_tracker.recordings.footage import (
 )
 from vehicle_pf_tracker.recordings.image_names import NamedImages, natural_key, number_images
 from vehicle_pf_tracker.recordings.truth_files import Beside, read_truth, truth_beside
-from vehicle_pf_tracker.recordings.truth_formats import Images
+from vehicle_pf_tracker.recordings.truth_labels import Images
 
 FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
 """The image files that are read, and what a CompressedImage calls them."""

@@ -7,26 +7,25 @@ from __future__ import annotations
 
 import glob
 import math
-import re
 from collections.abc import Mapping, Sequence
 from enum import Enum
 from pathlib import Path
 
+import numpy as np
+
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.recordings.box_sizes import misfit
+from vehicle_pf_tracker.recordings.data_set_truth import in_order
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
-from vehicle_pf_tracker.recordings.truth_formats import (
-    FORMATS,
-    Images,
-    Label,
-    Reader,
-    UnreadTruthError,
-    in_order,
-)
+from vehicle_pf_tracker.recordings.truth_formats import reader_of
+from vehicle_pf_tracker.recordings.truth_labels import OTHER_SHAPES, Images, Label, UnreadTruthError
 
 _IDS_SHOWN = 20
 """Identities that an error lists: more are hard to read on a terminal."""
+_LARGEST_INTEGER = 2**53
+"""Largest integer up to which a float tells all apart; frames and targets are read as floats."""
 _OWN = "groundtruth.csv"
 _ANYTHING = ("*groundtruth*", "*annotation*")
 """Files that may hold truth; those that do are read."""
@@ -144,70 +143,104 @@ def read_truth(
         `identity`.
     InputError
         If a file cannot be read, names a frame twice, or has a cell that is not a number; or if
-        there is no target `identity`.
+        there is no target `identity`, or it is not an upright box; or if none of its frames has an
+        image, or none of its boxes lies in them.
     """
     targets: dict[int, dict[int, Truth | None]] = {}
+    faults: dict[int, str] = {}
     notices = []
     for path in paths:
         text = read_text(path, "the truth")
-        reader = _reader(path, text)
+        reader = reader_of(path, text)
         labels = list(reader(path, text, images))
-        if reader is in_order and len(labels) < len(images.names):
+        if reader is in_order and labels and len(labels) < len(images.names):
             notices.append(
                 f"{path} has {len(labels)} rows for {len(images.names)} images; its first is "
                 f"taken for image {labels[0].number:g}"
             )
         for label in labels:
-            number, target, row = _row(label)
-            rows = targets.setdefault(target, {})
-            if number in rows:
-                raise InputError(f"{label.where} names frame {number} a second time")
-            rows[number] = row
-    table = _chosen(targets, paths[0], identity)
-    numbers = images.numbers if isinstance(images.numbers, range) else set(images.numbers)
-    if not any(number in numbers for number in table):
-        raise InputError(
-            f"no frame of the truth {paths[0]} has an image: it has frames {min(table)} to "
-            f"{max(table)}, the images are {min(numbers)} to {max(numbers)}"
-        )
-    return table, notices
+            _put(label, targets, faults)
+    chosen = _chosen(targets, faults, paths[0], identity)
+    if fault := faults.pop(chosen, ""):
+        raise InputError(fault)
+    if faults:
+        first = next(iter(faults.values()))
+        notices.append(f"of the truth {len(faults)} targets or shapes are not read: {first}")
+    table = {number: row for number, row in targets[chosen].items() if row is not None}
+    if not table:
+        raise UnreadTruthError(f"the truth {paths[0]} holds no box")
+    return table, [*notices, *_check_fit(table, paths[0], images)]
+
+
+def _put(label: Label, targets: dict[int, dict[int, Truth | None]], faults: dict[int, str]) -> None:
+    """Add a label to the rows of its target; one that is not read to the faults."""
+    if label.fault:
+        faults.setdefault(_whole(label, label.identity, "target"), f"{label.where} {label.fault}")
+        return
+    number, target, row = _row(label)
+    rows = targets.setdefault(target, {})
+    # The end of a track may be written twice: absent and absent is no contradiction.
+    if number in rows and not (row is None and rows[number] is None):
+        raise InputError(f"{label.where} names frame {number} a second time")
+    rows[number] = row
 
 
 def _chosen(
-    targets: Mapping[int, Mapping[int, Truth | None]], path: Path, identity: int | None
-) -> Table:
-    """Return the rows of the target that was asked for, or the only one, where it is present."""
-    listed = ", ".join([*map(str, sorted(targets)[:_IDS_SHOWN]), "..."][: len(targets)])
-    if identity is None and len(targets) > 1:
+    targets: Mapping[int, object], faults: Mapping[int, str], path: Path, identity: int | None
+) -> int:
+    """Return the target that was asked for, or the only one."""
+    known = {*targets, *faults} - {OTHER_SHAPES} if identity is not None else {*targets}
+    listed = ", ".join([*map(str, sorted(known)[:_IDS_SHOWN]), "..."][: len(known)])
+    if identity is None and len(known) > 1:
         raise SeveralVehiclesError(
-            f"{path} has the truth of {len(targets)} vehicles; choose one with --id: {listed}"
+            f"{path} has the truth of {len(known)} vehicles; choose one with --id: {listed}"
         )
-    if identity is not None and identity not in targets:
+    if identity is not None and identity not in known:
         raise NoSuchTargetError(f"the truth {path} has no target {identity}; it has {listed}")
-    rows = next(iter(targets.values()), {}) if identity is None else targets[identity]
-    table = {number: row for number, row in rows.items() if row is not None}
-    if not table:
+    if not known and faults:
+        raise InputError(next(iter(faults.values())))
+    if not known:
         raise UnreadTruthError(f"the truth {path} holds no box")
-    return table
+    return next(iter(known)) if identity is None else identity
 
 
-def _reader(path: Path, text: str) -> Reader:
-    first = next((line.strip() for line in text.splitlines() if line.strip()), None)
-    if first is None:
-        raise InputError(f"the truth {path} is empty")
-    for pattern, reader in FORMATS.items():
-        if re.fullmatch(pattern, first, re.IGNORECASE):
-            return reader
-    raise UnreadTruthError(f"{path} looks like truth, but is in no format that is read")
+def _check_fit(table: Table, path: Path, images: Images) -> list[str]:
+    """Refuse truth of other images: of none that is there, or none of whose boxes lies in them."""
+    numbers = images.numbers if isinstance(images.numbers, range) else set(images.numbers)
+    if not any(number in numbers for number in table):
+        raise InputError(
+            f"no frame of the truth {path} has an image: it has frames {min(table)} to "
+            f"{max(table)}, the images are {min(numbers)} to {max(numbers)}"
+        )
+    notices = []
+    if isinstance(images.numbers, range) and min(table) < images.numbers[0]:
+        notices.append(f"the truth {path} has frame {min(table)}; frames of a video count from 1")
+    try:
+        size = images.size()
+    except InputError:  # of an image that cannot be read, which is said elsewhere
+        return notices
+    boxes = np.array([[row.box.x, row.box.y, row.box.width, row.box.height]
+                      for row in table.values()])  # fmt: skip
+    found = misfit(boxes, size)
+    if found is None:
+        return notices
+    if found.is_fatal:
+        raise InputError(f"the truth {path} does not fit the images: {found.sentence}")
+    return [*notices, f"the truth {path} may not fit the images: {found.sentence}"]
 
 
 def _row(label: Label) -> tuple[int, int, Truth | None]:
     """Return frame and target of a label, and its row; None where the target is absent."""
-    for value, name in ((label.number, "frame"), (label.identity, "target")):
-        if not float(value).is_integer():
-            raise InputError(f"{label.where} has no integer as its {name}")
+    number = _whole(label, label.number, "frame")
+    target = _whole(label, label.identity, "target")
     if any(abs(value) > LARGEST_PX for value in label.sides if math.isfinite(value)):
         raise InputError(f"{label.where} has a box beyond {LARGEST_PX:.0f} px")
     is_box = all(map(math.isfinite, label.sides)) and min(label.sides[2:]) > 0
     row = Truth(0, Box(*label.sides), label.occlusion) if is_box else None
-    return int(label.number), int(label.identity), row
+    return number, target, row
+
+
+def _whole(label: Label, value: float, name: str) -> int:
+    if not float(value).is_integer() or abs(value) > _LARGEST_INTEGER:
+        raise InputError(f"{label.where} has no integer as its {name}")
+    return int(value)

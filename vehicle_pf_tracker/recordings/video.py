@@ -32,7 +32,7 @@ from vehicle_pf_tracker.recordings.footage import (
 )
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
 from vehicle_pf_tracker.recordings.truth_files import Beside, Table, read_truth
-from vehicle_pf_tracker.recordings.truth_formats import Images
+from vehicle_pf_tracker.recordings.truth_labels import Images
 
 _SILENT = 0
 """OpenCV's level at which it logs nothing."""
@@ -55,8 +55,8 @@ def quiet_opencv() -> Iterator[None]:
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
 
 
-_MOST_FRAMES = 10_000_000
-"""Frames that truth may name in a video that states no number: four days of 30 frames/s."""
+_MOST_FRAMES = 1_000_000
+"""Frames that truth may name in a video that states no number: nine hours of 30 frames/s."""
 _ROUNDING_NS = 1_000_000
 """Largest difference of a stated time from an even rate that is rounding: containers keep ms."""
 
@@ -102,7 +102,7 @@ class VideoFile(Footage):
         if not math.isfinite(self.fps) or self.fps <= 0:
             raise InputError(f"the video {path} states no frame rate; give it with --fps")
         check_fps(self.fps, path)
-        images = Images(range(1, (self.frame_count or _MOST_FRAMES) + 1), lambda: size, {})
+        images = Images(range(1, self._most_frames() + 1), lambda: size, {})
         table: Table = {}
         self._found: list[str] = []
         if truth is not None:
@@ -137,6 +137,12 @@ class VideoFile(Footage):
     def truth(self) -> list[Truth]:
         """Return the truth, at even stamps where its frames are not read yet."""
         return [one for number, one in sorted(self._truth.items()) if number >= 1]
+
+    def _most_frames(self) -> int:
+        """Return the number of frames that there may be; a number stated may be any."""
+        path = Path(self._path)
+        size = path.stat().st_size if path.is_file() else _MOST_FRAMES  # a frame has a byte or more
+        return max(min(self.frame_count or _MOST_FRAMES, size), 1)
 
     def _stamp(self, video: cv2.VideoCapture, index: int, last: int) -> int | None:
         """Return the stamp of the frame just read, in ns; None if it is not after `last`."""

@@ -19,7 +19,7 @@ from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import TOTAL_BELOW
 from vehicle_pf_tracker.recordings.frame_folder import numbered_images, read_picture
-from vehicle_pf_tracker.recordings.truth_formats import numbers_in, table_rows
+from vehicle_pf_tracker.recordings.text_tables import numbers_in, table_rows
 
 EVERY_FRAME = 0
 """Frame number of a region to ignore in all frames."""
