@@ -168,6 +168,8 @@ class BaseTracker(ABC, Generic[ParametersT]):
         self.kernels = load_kernels(parameters.kernels)
         self._target: Target | None = None
         self._window: Window | None = None
+        self._first_frame: Frame | None = None
+        """Copy of the first frame, until the next one comes."""
         self._judge = EvidenceJudge()
         self._cloud = Cloud.uniform(np.zeros((1, 2)))
 
@@ -205,6 +207,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         began = time.perf_counter()
         check_target(box, *frame_size(check_frame(frame)))
         self._target = Target(frame, box)
+        self._first_frame = frame.copy()
         self._window = self._target.window(self.parameters.window)
         self._rng = np.random.default_rng(self.seed)
         self._judge = EvidenceJudge()
@@ -218,6 +221,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         """Find the target in the next frame, `elapsed` nominal frame periods later."""
         began = time.perf_counter()
         outcome = self._advance(check_frame(frame), elapsed)
+        self._first_frame = None
         self._cloud = outcome.cloud
         seconds, left_image = elapsed * self.frame_period, outcome.left_image
         mode = self._judge.judge(outcome.evidence, seconds, self.parameters, left_image=left_image)
@@ -225,17 +229,25 @@ class BaseTracker(ABC, Generic[ParametersT]):
         return self._estimate(outcome, mode, confidence, began)
 
     def reconfigure(self, parameters: ParametersT) -> None:
-        """Take new parameters between two frames; the track goes on."""
-        before, table = to_mapping(self.parameters), specs(type(parameters))
-        new = to_mapping(parameters)
+        """Take new parameters between two frames; the track goes on.
+
+        Before the second frame nothing has been followed yet, and the tracker starts with them.
+        """
+        table = specs(type(parameters))
+        # What is in effect counts: a switch such as `as_printed` changes others unseen.
+        before = to_mapping(self._settings)
+        new = to_mapping(parameters.effective())
         changed = {table[name].effect for name in new if before[name] != new[name]}
         self.parameters = parameters
         self.kernels = load_kernels(parameters.kernels)
         if "restarts" in changed:
             self.seed = drawn_seed(parameters.seed)
             self._rng = np.random.default_rng(self.seed)
-        if self._target is not None and "relearns" in changed:
+        if self._first_frame is not None:
+            self.start(self._first_frame, self.target.box)
+        elif self._target is not None and "relearns" in changed:
             self._window = self._target.window(parameters.window)
+            self._judge.measures_anew()
             self._learn()
 
     @abstractmethod

@@ -65,6 +65,14 @@ class EvidenceJudge:
         """Running level of the similarity in clear frames, 0 to 1."""
         return self._level.value
 
+    def measures_anew(self) -> None:
+        """Find the clear level again, as another reference has another one.
+
+        It stays where the target is not visible now: the level would be that of its occluder.
+        """
+        if self.mode is Mode.TRACKING:
+            self._level = RunningLevel()
+
     def judge(
         self, similarity: float, seconds: float, parameters: CommonParameters, *, left_image: bool
     ) -> Mode:

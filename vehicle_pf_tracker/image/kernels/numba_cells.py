@@ -151,6 +151,10 @@ def _normalise(
 
 @compiled(_CELLS(_IMAGE, _BYTES, numba.intp))
 def _features(grey: Grey, direction_of: npt.NDArray[np.uint8], channels: int) -> CellFeatures:
+    if len(direction_of) < 511 * 511 or direction_of.max() >= DIRECTIONS:
+        raise IndexError("the table of directions is too short")
+    if channels < DIRECTIONS + _HALF + 4:
+        raise IndexError("there are fewer channels than features")
     # In this order of memory rows are transformed without a copy.
     features = np.empty((grey.shape[0] // CELL, channels, grey.shape[1] // CELL), np.float32)
     cells = _direction_histograms(grey, direction_of)

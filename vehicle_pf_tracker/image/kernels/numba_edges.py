@@ -174,6 +174,14 @@ def count_edges(
     """
     (gx, gy), (across, up) = gradients, half
     height, width = gx.shape
+    (table, tangents, _), cells = directions, counts.shape[1]
+    if len(table) < 4 * (len(tangents) + 1) or (len(table) and table.max() >= cells):
+        raise IndexError("the reference has fewer bins than the feature")
+    if len(middles) == 0 or len(counts) < len(middles) or gy.shape != gx.shape:
+        raise IndexError("there is no window, or no room for its counts")
+    for x, y in middles:
+        if not (0 <= x < width and 0 <= y < height):
+            raise IndexError("a window is not among the gradients")
     strengths = np.empty((height, width), np.int32)
     for y in range(height):
         for x in range(width):

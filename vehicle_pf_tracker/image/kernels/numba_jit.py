@@ -83,7 +83,9 @@ RECTANGLES = types.int64[:, ::1]
 @compiled(CELLS(FRAME, types.int64, TABLE))
 def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
     """Cells of each channel's own bins, a plane each; channel `c` has bins from ``c * levels``."""
-    height, width, _ = pixels.shape
+    height, width, channels = pixels.shape
+    if channels != 3 or not 0 <= 3 * levels <= len(table):
+        raise IndexError("the reference has fewer bins than the feature")
     cells = np.empty((3, height, width), np.uint16)
     for y in range(height):
         for x in range(width):
@@ -97,6 +99,8 @@ def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
 def pair_cells(grey: Grey, table: Table) -> Cells:
     """Cells of the 8 x 8 grey levels of each pixel and the next one in its row, one plane."""
     height, width = grey.shape[0], max(grey.shape[1] - 1, 0)
+    if len(table) < 64:
+        raise IndexError("the reference has fewer bins than the feature")
     cells = np.empty((1, height, width), np.uint16)
     for y in range(height):
         for x in range(width):

@@ -49,6 +49,17 @@ def _weigh_cells(
     return total
 
 
+@inlined
+def _check(cells: Cells, pixels: Pixels, offsets: Offsets, profile: Reals, values: Reals) -> None:
+    """Raise an error where a cell has no value, or an array is too short."""
+    if cells.size and cells.max() >= len(values):
+        raise IndexError("a cell is not among those of the reference")
+    if len(cells) == 0 or pixels.shape[1] != 2 or offsets.shape[1] != 2:
+        raise IndexError("there is no plane of cells, or no pair of coordinates")
+    if len(profile) < len(offsets):
+        raise IndexError("the profile is shorter than the ellipse")
+
+
 @compiled(types.float64[::1](*_ARGUMENTS))
 def compare_kernels(
     cells: Cells, pixels: Pixels, offsets: Offsets, profile: Reals, values: Reals
@@ -73,6 +84,7 @@ def compare_kernels(
     (N,) array
         Bhattacharyya coefficients.
     """
+    _check(cells, pixels, offsets, profile, values)
     masses = np.empty(len(values))
     result = np.empty(len(pixels))
     for i in range(len(pixels)):
@@ -96,6 +108,7 @@ def shift_kernels(
     (N, 2) array
         Not a number where the ellipse has no colour of the reference.
     """
+    _check(cells, pixels, offsets, profile, values)
     height, width = cells.shape[1:]
     masses = np.empty(len(values))
     weights = np.empty(len(values))

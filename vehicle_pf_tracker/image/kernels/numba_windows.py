@@ -88,6 +88,8 @@ def place_windows(
         Left, top, right, bottom of the part, as far as the frame goes.
     """
     (width, height), (beside, above) = size, half
+    if len(positions) == 0 or positions.shape[1] != 2 or min(width, height) < 1:
+        raise IndexError("there is no window, or no pixel")
     pixels = np.empty((len(positions), 2), np.int64)
     for i in range(len(positions)):
         pixels[i, 0] = min(max(np.int64(np.rint(positions[i, 0] - 0.5)), 0), width - 1)
@@ -104,7 +106,9 @@ def place_windows(
 @compiled(CELLS(FRAME, types.int64, TABLE))
 def joint_cells(pixels: Frame, bits: int, table: Table) -> Cells:
     """Cells of joint RGB bins, one plane."""
-    height, width, _ = pixels.shape
+    height, width, channels = pixels.shape
+    if channels != 3 or not 1 <= bits <= 8 or len(table) < 1 << (3 * bits):
+        raise IndexError("the reference has fewer bins than the feature")
     cells = np.empty((1, height, width), np.uint16)
     drop = 8 - bits
     for y in range(height):
@@ -113,6 +117,18 @@ def joint_cells(pixels: Frame, bits: int, table: Table) -> Cells:
             number = ((red >> drop) << (2 * bits)) | ((green >> drop) << bits) | (blue >> drop)
             cells[0, y, x] = table[number]
     return cells
+
+
+@inlined
+def _check_cells(cells: Cells, values: Reals) -> None:
+    """Raise an error where a cell has no value; one pass, a hundredth of what follows."""
+    largest = np.uint16(0)
+    for plane in range(cells.shape[0]):
+        for y in range(cells.shape[1]):
+            for x in range(cells.shape[2]):
+                largest = max(largest, cells[plane, y, x])
+    if largest >= len(values):
+        raise IndexError("a cell is not among those of the reference")
 
 
 @inlined
@@ -213,8 +229,12 @@ def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Sc
 def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
     """Compare windows that are counted already; `totals` are those of all bins, shape (N,)."""
     values, roots = scale
+    if counts.shape[1] != len(values) or len(totals) != len(counts):
+        raise IndexError("the counts are not those of the reference's cells")
     result = np.empty(len(counts))
     for i in range(len(counts)):
+        if counts[i].min() < 0 or counts[i].max() > totals[i]:
+            raise IndexError("more of a bin are counted than of all together")
         result[i] = _overlap(counts[i], values, totals[i], roots)
     return result
 
@@ -222,12 +242,15 @@ def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
 @compiled(types.float64[::1](CELLS, RECTANGLES, _SCALE))
 def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale) -> Reals:
     """Compare windows one after the other; parameters as for `compare_windows`."""
-    planes = cells.shape[0]
+    planes, height, width = cells.shape
     values, roots = scale
+    _check_cells(cells, values)
     sums = np.zeros(len(values), np.int32)
     result = np.empty(len(rectangles))
     for i in range(len(rectangles)):
         left, top, right, bottom = rectangles[i]
+        if left < 0 or top < 0 or right > width or bottom > height:
+            raise IndexError("a window is not among the cells")
         sums[:] = 0
         for plane in range(planes):
             for y in range(top, bottom):
@@ -270,11 +293,17 @@ def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) ->
     (N,) array
         Bhattacharyya coefficients.
     """
-    extent = _extent(pixels)
-    if _is_sliding_worthwhile(cells, len(pixels), extent, reach, len(scale[0])):
-        return _slide(cells, pixels, extent, reach, scale)
     _, height, width = cells.shape
     left, right, up = reach
+    if len(pixels) == 0 or min(left, right, up) < 0:
+        raise IndexError("there is no window, or no pixel")
+    extent = _extent(pixels)
+    # Pairs of pixels have a column less than their windows: a middle may stand behind the last one.
+    if min(extent) < 0 or extent[2] > width or extent[3] >= height:
+        raise IndexError("a window is not among the cells")
+    _check_cells(cells, scale[0])
+    if _is_sliding_worthwhile(cells, len(pixels), extent, reach, len(scale[0])):
+        return _slide(cells, pixels, extent, reach, scale)
     rectangles = np.empty((len(pixels), 4), np.int64)
     for i in range(len(pixels)):
         x, y = pixels[i]
@@ -293,6 +322,8 @@ def compare_joint(
     """
     height, width, _ = frame.shape
     beside, above = half
+    if min(beside, above) < 0:
+        raise IndexError("there is no window, or no pixel")
     pixels, (left, top, right, bottom) = place_windows(positions, (width, height), half, 0)
     if (right - left) * (bottom - top) <= len(pixels) * (2 * beside + 1) * (2 * above + 1):
         cells = joint_cells(frame[top:bottom, left:right], bits, table)

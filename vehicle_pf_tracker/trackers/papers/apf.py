@@ -180,12 +180,17 @@ class ApfTracker(ParticleTracker[ApfParameters]):
 
     def reconfigure(self, parameters: ApfParameters) -> None:
         """Take new parameters; a new velocity window applies to the same history."""
-        settings = parameters.effective()
+        before, settings = self._settings, parameters.effective()
         self._velocity = self._velocity.resized(settings.velocity.window, settings.drift_delay)
+        if before.occlusion.raw_histogram != settings.occlusion.raw_histogram:
+            # Blended histograms are the more similar ones: no raw one would reach their level.
+            self._levels = ClearLevel(), ClearLevel()
         super().reconfigure(parameters)
 
     def _learn(self) -> None:
         bits = self._settings.histogram_bits
+        if self._is_clear(self._settings):  # else the new levels would be those of the occluder
+            self._levels = ClearLevel(), ClearLevel()
         self._first = self.target.joint_histogram(self.window, bits)
         self.reference = Reference(self._first)
 

@@ -95,7 +95,10 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         self.references = [Reference(first) for first in self._first]
         if self._initial is not None:
             # The frame after the start is no longer available; the start itself is closest to it.
+            # Predictions since widen the search, but not the one that gave this similarity.
+            self._predicted_for, predicted_for = 0.0, self._predicted_for
             around = centre + self._noise(self._search_radius(1.0))
+            self._predicted_for = predicted_for
             self._initial = self._averages(self._compare(self.target.patch, around))
 
     def _scatter(self, centre: tuple[float, float]) -> Array:

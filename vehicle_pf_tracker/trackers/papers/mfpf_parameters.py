@@ -92,6 +92,7 @@ class ConfidenceParameters:
         "Higher: the average similarity takes in particles further from the vehicle; 1 takes all, "
         "as printed.",
         unit="share of the particles", source="P2 section IV, interpretation 19",
+        effect="relearns",
     )  # fmt: skip
     threshold: float = share(
         0.7, "Higher: features drop out at smaller losses of similarity (printed: 0.8).",
