@@ -102,7 +102,7 @@ def slow(*values):
         slow("/dev/null", {}, "/dev/null is not a regular file or a folder"),
         slow(__file__, {}, "is not a video file that can be decoded"),
         slow("rec.mcap", {}, "rec.mcap is a recording; `bag_replay rec.mcap` plays it"),
-        slow("http://127.0.0.1:9/stream", {}, "/stream cannot be opened"),
+        slow("http://u:hunter2@127.0.0.1:9/stream", {}, "http://***@127.0.0.1:9/stream cannot"),
         slow("FOLDER", {"frame_id": 5}, "frame_id must be"),
         ("FOLDER", {"fps": "quick"}, "fps must be a number, got 'quick'"),
         slow("FOLDER", {"fps": -2}, "fps must be"),

@@ -11,6 +11,8 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeAlias
 
+from vehicle_pf_tracker.core.addresses import without_passwords
+
 if TYPE_CHECKING:
     from vehicle_pf_tracker.following.processes import OnProgress
 
@@ -27,12 +29,13 @@ class UsageError(Exception):
 
 def tell_error(sentence: str, program: str = PROGRAM) -> None:
     """Print an error as one line on stderr."""
-    print(f"{program}: error: {' '.join(sentence.split())}", file=sys.stderr, flush=True)
+    words = " ".join(without_passwords(sentence).split())
+    print(f"{program}: error: {words}", file=sys.stderr, flush=True)
 
 
 def tell_notice(sentence: str) -> None:
     """Print a notice as one line on stderr."""
-    print(f"{PROGRAM}: note: {sentence}", file=sys.stderr, flush=True)
+    print(f"{PROGRAM}: note: {without_passwords(sentence)}", file=sys.stderr, flush=True)
 
 
 def tell_notices(sentences: Iterable[str]) -> None:

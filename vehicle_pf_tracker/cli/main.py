@@ -19,6 +19,7 @@ from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.cli import console
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
+from vehicle_pf_tracker.core.addresses import shown
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 EXTRAS: Mapping[str, str] = {
@@ -149,7 +150,7 @@ def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
             _check_extra(name)
             module = importlib.import_module(f"vehicle_pf_tracker.cli.{module_name}")
             add_options(verb, module.Request)
-            verb.set_defaults(module=module, command=[console.PROGRAM, *(words or ())])
+            verb.set_defaults(module=module, command=[console.PROGRAM, *map(shown, words or ())])
     return parser
 
 

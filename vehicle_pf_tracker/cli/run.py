@@ -13,6 +13,7 @@ from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, counting, print_
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, Names, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.stopping import Stop, cut_short, numbered_part, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
+from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.clock import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.columns import COLUMNS, number_text
@@ -66,7 +67,7 @@ def run(request: Request) -> int:
         identity=request.id,
         beside=Beside.NOTED,
     )
-    path = request.output or Path("results", Path(request.source).stem or "run")
+    path = request.output or Path("results", short_name(request.source) or "run")
     outputs = (Products(path, PRODUCTS), request.video, request.recording)
     stop = Stop()
     with claimed(outputs, (*request.inputs, request.truth), overwrite=request.overwrite):

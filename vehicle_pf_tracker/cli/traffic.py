@@ -16,6 +16,7 @@ from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress,
 from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, cut_short, numbered_part, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
+from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.detection.parameters import MODEL, MOTION, NONE, TOPIC
@@ -71,7 +72,7 @@ def run(request: Request) -> int:
     configuration = _configuration(request)
     stop = Stop()
     source = request.open_source()
-    folder = request.output or Path("results", f"{Path(request.source).stem or 'run'}_traffic")
+    folder = request.output or Path("results", f"{short_name(request.source) or 'run'}_traffic")
     pictures = Pictures(request.video)
     overview = TrafficPictures(pictures.side)
     outputs = (Products(folder, PRODUCTS), request.video)

@@ -9,13 +9,19 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from pathlib import Path
 
+from vehicle_pf_tracker.core.addresses import without_passwords
+
 
 class InputError(ValueError):
     """User's mistake, described in one sentence that names the thing and the remedy.
 
     Raised by every room for bad files, targets, parameters and names. The command line prints the
-    sentence on one line and ends with status 1; the node logs it and lives on.
+    sentence on one line and ends with status 1; the node logs it and lives on. Passwords in
+    addresses are left out of it.
     """
+
+    def __init__(self, sentence: str = "") -> None:
+        super().__init__(without_passwords(sentence))
 
 
 def read_text(path: Path, what: str) -> str:

@@ -17,6 +17,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker import __version__
+from vehicle_pf_tracker.core.addresses import shown_values
 from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.results.estimates import EstimateRow, write_estimates
@@ -50,7 +51,7 @@ def describe_run(
 def describe(
     command: Sequence[str], source: str, topic: str, notices: Sequence[str], **facts: Any
 ) -> dict[str, Any]:
-    """Make the part of `run.json` that every run has.
+    """Make the part of `run.json` that every run has, without passwords of addresses.
 
     Parameters
     ----------
@@ -63,7 +64,7 @@ def describe(
     **facts : Any
         What ran, with its seed and parameters.
     """
-    return {
+    document: dict[str, Any] = {
         "command": list(command),
         "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
         "recording": source,
@@ -72,6 +73,7 @@ def describe(
         "versions": versions(),
         "notices": list(notices),
     }
+    return {name: shown_values(value) for name, value in document.items()}
 
 
 def versions() -> dict[str, str | None]:

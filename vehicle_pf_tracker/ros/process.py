@@ -29,6 +29,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
+from vehicle_pf_tracker.core.addresses import shown
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
 from vehicle_pf_tracker.ros.node.kernel_loading import is_loading
@@ -98,7 +99,8 @@ def answer_usage(name: str, words: Sequence[str], usage: str) -> int:
     """Print how a program is called, and which of `words` it does not know; return its status."""
     is_asked = set(words) <= {"-h", "--help"}
     if not is_asked:
-        print(f"{name}: unknown arguments: {' '.join(words)}", file=sys.stderr)
+        unknown = " ".join(map(shown, words))
+        print(f"{name}: unknown arguments: {unknown}", file=sys.stderr)
     print(usage, file=sys.stdout if is_asked else sys.stderr)
     return 0 if is_asked else 2
 

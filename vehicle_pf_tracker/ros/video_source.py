@@ -20,6 +20,7 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
+from vehicle_pf_tracker.core.addresses import without_passwords
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs
@@ -254,7 +255,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         for notice in source.notices:
             if notice not in self._told:
                 self._told.add(notice)
-                self.get_logger().warning(notice)
+                self.get_logger().warning(without_passwords(notice))
         if not self._goes_on:
             self.get_logger().info(f"the source has ended after {self._shown} images")
 

@@ -19,6 +19,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import CompressedImage, Image
 
+from vehicle_pf_tracker.core.addresses import shown_values
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors
@@ -104,7 +105,9 @@ class IncidentRecorder:
         messages = [(_TOPICS[kind], stamp, data) for _, stamp, kind, data, _ in self._kept]
         name = self._name
         first = next(((stamp, box) for _, stamp, _, _, box in self._kept if box is not None), None)
-        text = to_yaml(configuration.specs(), configuration.to_mapping(), f"{name}'s.")
+        text = to_yaml(
+            configuration.specs(), shown_values(configuration.to_mapping()), f"{name}'s."
+        )
 
         def write() -> None:
             try:
