@@ -7,7 +7,7 @@ import json
 import socket
 import threading
 import time
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager, suppress
 from urllib.error import HTTPError
 from urllib.request import ProxyHandler, build_opener
 
@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.showing import page_server
 from vehicle_pf_tracker.showing.page_server import LivePage
 
 GREY = np.full((48, 64, 3), 120, np.uint8)
@@ -72,3 +73,49 @@ def test_a_port_that_is_taken_is_one_sentence():
         port = taken.getsockname()[1]
         with pytest.raises(InputError, match=f"cannot serve at port {port}: "):
             LivePage(port)
+
+
+def connection(page):
+    return closing(socket.create_connection(("127.0.0.1", page.server_port), timeout=20))
+
+
+@pytest.mark.parametrize(
+    "drip", [b"", b"GET / HT", b"GET /x HTTP/1.1\r\nHost: a\r\n"], ids=["silent", "begun", "slow"]
+)
+def test_a_connection_that_does_not_ask_for_the_page_is_closed(monkeypatch, drip):
+    monkeypatch.setattr(page_server, "_STRANGER_SECONDS", 0.5)
+    with closing(LivePage(0)) as page, connection(page) as stranger:
+        began = time.monotonic()
+        with suppress(OSError):
+            while time.monotonic() - began < 15:
+                stranger.sendall(drip[:1] or b"")
+                drip = drip[1:] or drip  # one byte at a time keeps no connection open
+                stranger.settimeout(0.1)
+                with suppress(TimeoutError):
+                    if stranger.recv(100) == b"":
+                        break
+        assert time.monotonic() - began < 10
+
+
+def test_strangers_leave_the_page_to_its_user(monkeypatch):
+    monkeypatch.setattr(page_server, "_MOST_STRANGERS", 4)
+    monkeypatch.setattr(page_server, "_STRANGER_SECONDS", 0.5)
+    with closing(LivePage(0)) as page, ExitStack() as strangers:
+        for _ in range(12):
+            strangers.enter_context(connection(page))
+        until = time.monotonic() + 20
+        while True:
+            try:
+                assert b"picture.jpg" in get(page.url).read()
+                break
+            except OSError:
+                assert time.monotonic() < until
+                time.sleep(0.1)
+    assert threading.active_count() < 12
+
+
+def test_who_knows_the_address_may_take_longer(monkeypatch):
+    monkeypatch.setattr(page_server, "_STRANGER_SECONDS", 0.3)
+    monkeypatch.setattr(page_server, "_SECONDS", 1.5)
+    with closing(LivePage(0)) as page, pytest.raises(HTTPError, match="404"):
+        get(f"{page.url}picture.jpg")  # waits for a picture that does not come

@@ -7,10 +7,13 @@ from __future__ import annotations
 
 import json
 import secrets
+import socket
 import sys
 import threading
+import time
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib import resources
@@ -26,10 +29,18 @@ Content = tuple[str, bytes]
 """Media type and bytes of an answer."""
 
 
+_STRANGER_SECONDS = 10.0
+"""Time that a connection has to ask under the secret path, s: browsers open some ahead, and open
+others when these are closed."""
+_MOST_STRANGERS = 64
+"""Connections that have not asked under the secret path yet, which cost a thread each."""
+
+
 class PageServer(ThreadingHTTPServer):
     """Serves a page to this machine, under a path that nobody can guess.
 
-    Each connection has a thread: browsers open some ahead and leave them idle.
+    Each connection has a thread: browsers open some ahead and leave them idle. One that does not
+    ask under the path in time is closed.
 
     Parameters
     ----------
@@ -59,12 +70,42 @@ class PageServer(ThreadingHTTPServer):
             super().__init__(("127.0.0.1", port), handler)
         except OSError as error:
             raise InputError(f"cannot serve at port {port}: {error.strerror}") from None
+        self._strangers: dict[Any, float] = {}
+        self._lock = threading.Lock()
         self.base = f"/{secrets.token_urlsafe(16)}/"
         self.url = f"http://127.0.0.1:{self.server_port}{self.base}"
 
     @abstractmethod
     def content(self, what: str) -> Content | None:
         """Return what is at a path below `base`; None where there is nothing."""
+
+    def verify_request(self, request: Any, client_address: Any) -> bool:
+        """Take a connection, unless too many wait that have not asked for anything yet."""
+        with self._lock:
+            if len(self._strangers) >= _MOST_STRANGERS:
+                return False
+            self._strangers[request] = time.monotonic() + _STRANGER_SECONDS
+        return True
+
+    def admit(self, request: Any) -> None:
+        """Let a connection that knows the path take its time."""
+        with self._lock:
+            self._strangers.pop(request, None)
+
+    def shutdown_request(self, request: Any) -> None:
+        """Close a connection."""
+        self.admit(request)
+        super().shutdown_request(request)
+
+    def service_actions(self) -> None:
+        """Close the connections whose time is over; called several times per s."""
+        now = time.monotonic()
+        with self._lock:
+            late = [request for request, until in self._strangers.items() if until < now]
+        for request in late:
+            with suppress(OSError):  # its thread closes it at this moment
+                request.shutdown(socket.SHUT_RDWR)
+            self.admit(request)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Pass over browsers that hang up, as they do when another frame is asked for."""
@@ -88,7 +129,10 @@ class PageHandler(BaseHTTPRequestHandler):
     def asked(self) -> str | None:
         """Return the path below the secret one; None for all others."""
         base = self.server.base
-        return self.path[len(base) :] if self.path.startswith(base) else None
+        if not self.path.startswith(base):
+            return None
+        self.server.admit(self.connection)
+        return self.path[len(base) :]
 
     def answer(self, content: Content | None, status: HTTPStatus = HTTPStatus.OK) -> None:
         """Send content; None is not found."""

@@ -327,7 +327,10 @@ def test_a_road_gives_counts_in_kmh_and_may_change_without_losing_them(bench, tm
     assert dict(rig.vehicles.counter.totals) == totals
 
 
-def test_a_page_shows_picture_and_counts_until_the_node_is_cleaned_up(bench):
+def test_a_page_shows_picture_and_counts_until_the_node_is_cleaned_up(
+    bench, tmp_path, monkeypatch, capfd
+):
+    monkeypatch.setenv("ROS_HOME", str(tmp_path))
     rig, answers = TrafficRig(bench, overrides(page_port=0)), []
     url, get = rig.node.stream.page.url, build_opener(ProxyHandler({})).open
 
@@ -341,6 +344,10 @@ def test_a_page_shows_picture_and_counts_until_the_node_is_cleaned_up(bench):
     asking.join()
     assert answers[0].startswith(b"\xff\xd8")
     assert b'"vehicles"' in get(f"{url}counts.json").read()
+    # Its address is for the user alone: not in the log, which others read, nor on /rosout.
+    assert url not in capfd.readouterr().err
+    (file,) = tmp_path.glob("**/*.url")
+    assert file.read_text().strip() == url and file.stat().st_mode & 0o777 == 0o600
     rig.node.cleanup()
     with pytest.raises(URLError):
         get(url)

@@ -1,12 +1,10 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Incidents of a node: its last seconds as a recording, and its target kept."""
+"""Incidents of a node: its last seconds as a recording."""
 
 from __future__ import annotations
 
-import json
-import os
 import threading
 import time
 from collections import deque
@@ -27,6 +25,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.ros.messages import stamp_ns
+from vehicle_pf_tracker.ros.own_files import ros_folder
 
 _LENGTH = 10.0
 """Seconds that are kept: an occlusion and what led to it."""
@@ -35,14 +34,6 @@ _TOPICS = {
     CompressedImage: ("/camera/image_raw/compressed", "sensor_msgs/msg/CompressedImage"),
     DiagnosticArray: ("/{}/mode", "diagnostic_msgs/msg/DiagnosticArray"),
 }
-_SAVE_EVERY = 1.0
-_FRESH = 30.0
-"""Age in s up to which a target is taken up again: a respawn takes seconds, an operator longer."""
-
-
-def ros_folder() -> Path:
-    """Return our folder in that of ROS."""
-    return Path(os.environ.get("ROS_HOME") or Path.home() / ".ros", "vehicle_pf_tracker")
 
 
 class IncidentRecorder:
@@ -125,36 +116,3 @@ class IncidentRecorder:
         self._writing = threading.Thread(target=write)
         self._writing.start()
         return folder
-
-
-class KeptTarget:
-    """Box of a node's target in a file, from which a node that was killed takes it up again.
-
-    Parameters
-    ----------
-    name : str
-        Full name of the node.
-    """
-
-    def __init__(self, name: str) -> None:
-        self._path = ros_folder() / f"{name.strip('/').replace('/', '.')}.target.json"
-        self._saved = 0.0
-
-    def save(self, box: Box | None) -> None:
-        """Write the box, once a second at most."""
-        if box is None or time.monotonic() - self._saved < _SAVE_EVERY:
-            return
-        self._saved = time.monotonic()
-        partial = self._path.with_suffix(".partial")
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        partial.write_text(json.dumps([box.x, box.y, box.width, box.height]), encoding="utf-8")
-        partial.replace(self._path)
-
-    def load(self) -> Box | None:
-        """Return the box that was written a moment ago; None where there is none."""
-        try:
-            if time.time() - self._path.stat().st_mtime > _FRESH:
-                return None
-            return Box(*map(float, json.loads(self._path.read_text(encoding="utf-8"))))
-        except (OSError, ValueError, TypeError):
-            return None

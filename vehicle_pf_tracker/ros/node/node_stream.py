@@ -25,7 +25,8 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import REJECTED, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.image_input import read_image
-from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder, KeptTarget
+from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder
+from vehicle_pf_tracker.ros.node.kept_target import KeptTarget
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
 
@@ -104,7 +105,15 @@ class NodeStream(ABC):
         memory = own.incident_memory * 10**6
         self.incidents = IncidentRecorder(name, memory) if memory else None
         self._kept = KeptTarget(node.get_fully_qualified_name()) if own.keep_target else None
-        box = self._kept.load() if self._kept else None
+        self._go_on_with_kept()
+
+    def _go_on_with_kept(self) -> None:
+        """Start on the target of a node that was killed a moment ago, if it can be used."""
+        try:
+            box = self._kept.load() if self._kept else None
+        except InputError as error:
+            self.log.warning(f"the kept target is left out: {error}")
+            return
         if box is not None:
             self.log.info(f"going on with the target {box} of before")
             self.start_on(box)

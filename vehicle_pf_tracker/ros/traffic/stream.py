@@ -30,6 +30,7 @@ from vehicle_pf_tracker.ros.messages import WAITING, detections_type, image_mess
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
 from vehicle_pf_tracker.ros.node.outputs import RELIABLE, Outputs, in_pixels
+from vehicle_pf_tracker.ros.own_files import own_file, write_private
 from vehicle_pf_tracker.ros.traffic import messages
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
@@ -133,16 +134,27 @@ class TrafficStream(NodeStream):
         port = configuration.tracker.page_port
         self.page: LivePage | None = None
         if port >= 0:
-            self._open_page(port)
+            self._open_page(node, port)
 
-    def _open_page(self, port: int) -> None:
+    def _open_page(self, node: Node, port: int) -> None:
         """Serve the page; a port that cannot be had costs the page only."""
         try:
             self.page = LivePage(port)
         except InputError as error:
             self.log.error(f"{error}; all vehicles are followed without the page")
         else:
-            self.log.info(f"picture and counts are at {self.page.url}")
+            self._tell_address(node.get_fully_qualified_name(), self.page.url)
+
+    def _tell_address(self, node: str, url: str) -> None:
+        """Say where the address of the page is: logs and /rosout are read by others too."""
+        path = own_file(node, "page.url")
+        try:
+            write_private(path, f"{url}\n")
+        except OSError as error:
+            words = f"its address cannot be written to {path}: {error.strerror or error}"
+            self.log.error(f"picture and counts are on a page, but {words}")
+            return
+        self.log.info(f"picture and counts are at the address in {path}, which only you can read")
 
     @property
     def facts(self) -> Mapping[str, object]:
