@@ -27,8 +27,8 @@ def in_this_process(cells):
 def _quick(request, monkeypatch):
     """Start no processes, but in the test that is about them."""
     if request.function is not test_a_folder_of_recordings_is_evaluated:
-        name = "vehicle_pf_tracker.cli.evaluate.on_this_machine"
-        monkeypatch.setattr(name, lambda workers: in_this_process)
+        name = "vehicle_pf_tracker.cli.evaluate.runner_of"
+        monkeypatch.setattr(name, lambda request: in_this_process)
 
 
 def evaluate(out, *words):

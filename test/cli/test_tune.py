@@ -22,7 +22,7 @@ def _in_this_process(monkeypatch):
         for cell in cells:
             yield cell, run_cell(cell)
 
-    monkeypatch.setattr("vehicle_pf_tracker.cli.tune.on_this_machine", lambda workers: runner)
+    monkeypatch.setattr("vehicle_pf_tracker.cli.tune.runner_of", lambda request: runner)
 
 
 @pytest.fixture
@@ -98,8 +98,8 @@ def test_what_is_tuned_on_cannot_be_held_out(bags, tmp_path, capsys):
 
 def test_a_search_that_no_trial_ends_well_is_told(bags, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(
-        "vehicle_pf_tracker.cli.tune.on_this_machine",
-        lambda workers: lambda cells: ((cell, CellResult(reason="so")) for cell in cells),
+        "vehicle_pf_tracker.cli.tune.runner_of",
+        lambda request: lambda cells: ((cell, CellResult(reason="so")) for cell in cells),
     )
     assert tune(tmp_path / "out", bags[0], *QUICK) == 1
     assert "no trial could be scored" in capsys.readouterr().err

@@ -43,8 +43,6 @@ def test_every_page_can_be_found():
 
 MOST_WORDS = 40
 """Words of a sentence that a reader follows at the first reading."""
-MOST_LINES = 2600
-"""Lines of all pages in docs/: one person reads and maintains them."""
 
 
 def sentences(page: Path) -> list[str]:
@@ -55,7 +53,7 @@ def sentences(page: Path) -> list[str]:
     return re.split(r"(?<=[.!?])\s+", text)
 
 
-def test_pages_are_short():
+def test_sentences_are_short():
     long = {
         f"{page.name}: {sentence}"
         for page in PAGES
@@ -63,9 +61,6 @@ def test_pages_are_short():
         if len(sentence.split()) > MOST_WORDS
     }
     assert not long
-    docs = [page for page in PAGES if page.parent.name == "docs"]
-    lines = [len(page.read_text(encoding="utf-8").splitlines()) for page in docs]
-    assert sum(lines) <= MOST_LINES
 
 
 def rows_of(page: str, first: str) -> list[list[str]]:

@@ -18,32 +18,47 @@ from vehicle_pf_tracker.cli.report import ReportParts
 from vehicle_pf_tracker.cli.requests import (
     IdOption,
     MaxDiffOption,
+    SchedulerOption,
     TopicOption,
     names_in,
     option,
     switch,
 )
-from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, SEEDS, EvaluationRequest, chosen
+from vehicle_pf_tracker.cli.system_options import (
+    FEW_SEEDS,
+    SEEDS,
+    EvaluationRequest,
+    chosen,
+    runner_of,
+)
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.grid.cells import Plan
-from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
+from vehicle_pf_tracker.evaluation.grid.cells import ALL_CELLS, Part, Plan
+from vehicle_pf_tracker.evaluation.grid.running import complete
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.report.writing import Report
 
-_GRID_ONLY = ("params", "baseline_model", "max_rmse", "topic", "id", "figures")
+_GRID_ONLY = (
+    "params", "baseline_model", "max_rmse", "topic", "id", "figures", "part", "scheduler",
+)  # fmt: skip
 """Options of the grid that do not apply."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(EvaluationRequest, ReportParts, TopicOption, IdOption, MaxDiffOption):
+class Request(
+    EvaluationRequest, SchedulerOption, ReportParts, TopicOption, IdOption, MaxDiffOption
+):
     """Request of `evaluate`."""
 
     max_rmse: float | None = option(
         metavar="PX",
         help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
+    )  # fmt: skip
+    part: Part | None = option(
+        type=Part.parse, metavar="K/N",
+        help="run only part K of N, each on a machine of its own; `merge` joins their folders",
     )  # fmt: skip
     traffic: bool = switch(
         help="compare `traffic` with SORT, ByteTrack, OC-SORT and C-BIoU instead; REC are folders "
@@ -128,9 +143,13 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
         recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)
     console.tell_notices(notes)
     seeds, command = request.some_seeds(SEEDS), list(request.command)
-    plan = Plan(dict(recordings), systems, seeds, command, request.max_diff)
+    part = request.part or ALL_CELLS
+    plan = Plan(dict(recordings), systems, seeds, command, request.max_diff, part)
     with console.counting("evaluated", "runs") as on_progress:
-        complete(plan, request.output, on_this_machine(request.workers), on_progress)
+        complete(plan, request.output, runner_of(request), on_progress)
+    if request.part is not None:
+        print(f"part {part.number} of {part.total} is in {request.output}; `merge` joins the parts")
+        return 0
     return _judge(report.write(request.output, request), request.max_rmse)
 
 

@@ -57,6 +57,7 @@ VERBS: Mapping[str, tuple[str, str]] = {
     "traffic": ("traffic", "follow every vehicle in view, and count them at lines"),
     "pick": ("pick", "draw vehicles, counting lines and zones on a page, for run and traffic"),
     "evaluate": ("evaluate", "compare variants on recordings with truth, over seeds"),
+    "merge": ("merge", "join the parts of an evaluation that ran on several machines"),
     "tune": ("tune", "search a variant's parameters on recordings, and validate them on others"),
     "report": ("report", "write the report of an evaluation again"),
     "replay": ("replay", "feed a recording to ROS nodes"),
@@ -65,7 +66,7 @@ VERBS: Mapping[str, tuple[str, str]] = {
 }
 """Module in this package and one line of help, by verb."""
 
-EVALUATING = frozenset({"evaluate", "tune", "report"})
+EVALUATING = frozenset({"evaluate", "tune", "merge", "report"})
 """Verbs that need the extra `evaluation`: nodes, `replay`, `run` and `import` do without it."""
 
 EVALUATION_MODULES = ("matplotlib", "scipy", "jinja2")

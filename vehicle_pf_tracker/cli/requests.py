@@ -222,3 +222,13 @@ class WorkersOption(VerbRequest):
         type=positive, default=os.cpu_count() or 1, metavar="N",
         help="processes; results do not depend on it (default: one per processor)",
     )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class SchedulerOption(WorkersOption):
+    """Request for work in processes here, or on the machines of a cluster."""
+
+    scheduler: str | None = option(
+        metavar="tcp://HOST:8786",
+        help="run on the workers of this Dask scheduler instead; docs/scale.md",
+    )  # fmt: skip

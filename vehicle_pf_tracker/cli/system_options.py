@@ -8,10 +8,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.requests import WorkersOption, natural, option, positional, positive
+from vehicle_pf_tracker.cli.console import UsageError, tell_notice
+from vehicle_pf_tracker.cli.requests import (
+    SchedulerOption,
+    WorkersOption,
+    natural,
+    option,
+    positional,
+    positive,
+)
 from vehicle_pf_tracker.cli.tracking_options import configure
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines import MODELS, Baseline, unknown_baseline
@@ -25,6 +32,9 @@ from vehicle_pf_tracker.parameters.table import (
     unknown_name,
 )
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.evaluation.grid.running import Runner
 
 SEEDS, FEW_SEEDS = 5, 1
 """Runs of each system; few where the cases vary more than the seeds of one case do."""
@@ -56,6 +66,15 @@ def parameter_sets(
         else:
             everywhere.append(word)
     return everywhere, sets
+
+
+def runner_of(request: SchedulerOption) -> Runner:
+    """Return what runs cells where the request says: processes here, or a cluster's workers."""
+    from vehicle_pf_tracker.evaluation.grid.running import on_cluster, on_this_machine
+
+    if request.scheduler is None:
+        return on_this_machine(request.workers)
+    return on_cluster(request.scheduler, tell_notice)
 
 
 def settable(variant: Variant) -> dict[str, ParameterSpec]:

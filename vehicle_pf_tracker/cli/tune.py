@@ -20,13 +20,13 @@ from vehicle_pf_tracker.cli.console import (
 from vehicle_pf_tracker.cli.requests import (
     MaxDiffOption,
     Names,
+    SchedulerOption,
     TopicOption,
-    WorkersOption,
     option,
     positional,
     positive,
 )
-from vehicle_pf_tracker.cli.system_options import make_system, settable
+from vehicle_pf_tracker.cli.system_options import make_system, runner_of, settable
 from vehicle_pf_tracker.cli.tracking_options import StartOptions, configure
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -34,7 +34,7 @@ from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation import tuning
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import Plan
-from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
+from vehicle_pf_tracker.evaluation.grid.running import complete
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
 from vehicle_pf_tracker.evaluation.report.writing import write_report
 from vehicle_pf_tracker.evaluation.tables import markdown
@@ -50,7 +50,7 @@ Recordings = Sequence[tuple[Source, dict[int, Truth]]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(StartOptions, TopicOption, MaxDiffOption, WorkersOption):
+class Request(StartOptions, TopicOption, MaxDiffOption, SchedulerOption):
     """Request of `tune`."""
 
     sources: Sequence[str] = positional(
@@ -125,9 +125,7 @@ def _tune(
     folder, variant = make_folder(request.output), what.base.kind
     study = tuning.open_study(what, folder / "study.log")
     with counting("tuned", "runs") as on_progress:
-        trials = tuning.search(
-            what, request.trials, study, on_this_machine(request.workers), on_progress
-        )
+        trials = tuning.search(what, request.trials, study, runner_of(request), on_progress)
     header = ["trial", what.objective, *what.space]
     rows = ([one.number, one.value, *(one.params[name] for name in what.space)] for one in trials)
     write_csv(folder / "trials.csv", header, rows)
@@ -161,7 +159,7 @@ def _judge(
     plan = Plan(dict(recordings), systems, seeds, list(request.command), request.max_diff)
     folder = request.output / EVALUATION
     with counting("compared", "runs") as on_progress:
-        complete(plan, folder, on_this_machine(request.workers), on_progress)
+        complete(plan, folder, runner_of(request), on_progress)
     report = write_report(folder)
     tell_notices(report.failures)
     if report.evaluation.failed:

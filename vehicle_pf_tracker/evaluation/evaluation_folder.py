@@ -62,6 +62,7 @@ class Source:
 FORMAT = 2
 """Format of the folder; folders of another format are refused."""
 PLAN, FAILED = "evaluation.json", "failed.json"
+CELLS, RECORDINGS = "cells", "recordings"
 TRUTH = "truth.csv"
 
 COLUMNS = ("frame", "stamp_ns", "x", "y", "width", "height", "occlusion")
@@ -145,7 +146,7 @@ class EvaluationFolder:
 
     def truth(self, recording: str) -> dict[int, Truth]:
         """Return the truths of a recording by the number of their frame; empty without any."""
-        path = self.path / "recordings" / recording / TRUTH
+        path = self.path / RECORDINGS / recording / TRUTH
         return read_truth(path) if path.is_file() else {}
 
     def cell(
@@ -168,7 +169,7 @@ class EvaluationFolder:
 
 def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:
     """Return the folder of one cell of the evaluation in `folder`."""
-    return folder / "cells" / recording / safe_name(system) / f"seed-{seed}"
+    return folder / CELLS / recording / safe_name(system) / f"seed-{seed}"
 
 
 def safe_name(label: str) -> str:

@@ -67,6 +67,7 @@ def describe(
     document: dict[str, Any] = {
         "command": list(command),
         "made": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        "host": platform.node(),
         "recording": source,
         "image_topic": topic,
         **facts,

@@ -9,6 +9,7 @@ import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from vehicle_pf_tracker.core.clock import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError
@@ -17,6 +18,7 @@ from vehicle_pf_tracker.evaluation.cache_key import result_key, variant_modules
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     FORMAT,
     PLAN,
+    RECORDINGS,
     TRUTH,
     Source,
     cell_folder,
@@ -67,6 +69,30 @@ class GridCell:
         return cell_folder(evaluation, self.source.name, self.system.label, self.seed)
 
 
+class Part(NamedTuple):
+    """One of several equal parts of the cells, from 1."""
+
+    number: int
+    total: int
+
+    @classmethod
+    def parse(cls, text: str) -> Part:
+        """Read ``2/4``.
+
+        Raises
+        ------
+        InputError
+            If it is no part.
+        """
+        number, _, total = text.partition("/")
+        if number.isdecimal() and total.isdecimal() and 1 <= int(number) <= int(total):
+            return cls(int(number), int(total))
+        raise InputError(f"{text!r} is no part: 2/4 is the second of four")
+
+
+ALL_CELLS = Part(1, 1)
+
+
 @dataclass(frozen=True, slots=True)
 class Plan:
     """Recordings, systems and seeds of an evaluation.
@@ -83,6 +109,8 @@ class Plan:
         Command line that repeats the evaluation.
     max_diff : float
         Largest difference of stamps that belong together, in s.
+    part : Part
+        Share of the cells that is run.
 
     Raises
     ------
@@ -95,6 +123,7 @@ class Plan:
     seeds: Sequence[int]
     command: list[str]
     max_diff: float = MAX_DIFF
+    part: Part = ALL_CELLS
 
     def __post_init__(self) -> None:
         taken: set[str] = set()
@@ -105,19 +134,21 @@ class Plan:
             taken.add(name)
 
     def cells(self) -> list[GridCell]:
-        """Return all cells, recording by recording."""
+        """Return the cells of this part, recording by recording."""
         # Baselines are slow: begun last, they would be waited for.
         ordered = sorted(self.systems, key=lambda system: not system.is_baseline)
-        return [
+        whole = [
             GridCell(source, system, seed, self.max_diff)
             for source, system in itertools.product(self.recordings, ordered)
             for seed in system.seeds(self.seeds)
         ]
+        # One in so many, so that every part has its share of the slow systems and recordings.
+        return whole[self.part.number - 1 :: self.part.total]
 
     def write(self, folder: Path) -> None:
         """Write `evaluation.json` and the truth of every recording."""
         for source, truths in self.recordings.items():
-            write_truth(make_folder(folder / "recordings" / source.name) / TRUTH, truths)
+            write_truth(make_folder(folder / RECORDINGS / source.name) / TRUTH, truths)
         plan = {
             "format": FORMAT,
             "command": self.command,

@@ -21,6 +21,7 @@ from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.systems import BASELINE
+from vehicle_pf_tracker.following.cluster import run_on_cluster
 from vehicle_pf_tracker.following.driver import OfflineTracker
 from vehicle_pf_tracker.following.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.results import run_folder
@@ -111,6 +112,18 @@ Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[tuple[GridCell, Cell
 def on_this_machine(workers: int) -> Runner:
     """Return what runs cells in `workers` processes; results do not depend on how many."""
     return functools.partial(run_in_processes, run_cell, workers=workers)
+
+
+def on_cluster(address: str, on_notice: Callable[[str], object] = lambda _: None) -> Runner:
+    """Return what runs cells on the workers of the Dask scheduler at `address`."""
+    return functools.partial(
+        run_on_cluster, run_cell, address=address, key=_key_on_cluster, on_notice=on_notice
+    )
+
+
+def _key_on_cluster(cell: GridCell) -> str:
+    # The names are for the dashboard, where a digest says nothing.
+    return f"{cell.source.name}-{cell.system.label}-{cell.seed}-{cell.key()}".replace(" ", "-")
 
 
 def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) -> int:

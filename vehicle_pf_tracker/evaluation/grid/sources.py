@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from pathlib import Path
+from pathlib import Path, PurePosixPath
+from urllib.parse import urlsplit
 
 from vehicle_pf_tracker.core.clock import associate
 from vehicle_pf_tracker.core.errors import InputError
@@ -19,6 +20,7 @@ from vehicle_pf_tracker.recordings.footage import Footage as RecordedFootage
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder, image_files
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.source import open_source
+from vehicle_pf_tracker.recordings.url_copies import is_url, local_copy, recordings_at
 from vehicle_pf_tracker.recordings.video import is_recording
 
 
@@ -27,8 +29,16 @@ def find_recordings(locations: Sequence[str]) -> list[str]:
 
     What is none is left for `describe` to refuse.
     """
-    found = [recording for location in locations for recording in _at_path(Path(location))]
-    return list(dict.fromkeys(found))
+    recordings = [
+        recording
+        for location in locations
+        for recording in (recordings_at(location) if is_url(location) else _at_path(Path(location)))
+    ]
+    return list(dict.fromkeys(recordings))
+
+
+def _local(location: str) -> Path:
+    return local_copy(location) if is_url(location) else Path(location)
 
 
 def _at_path(path: Path) -> list[str]:
@@ -59,7 +69,7 @@ class Footage:
     """
 
     def __init__(self, source: Source) -> None:
-        path = Path(source.path)
+        path = _local(source.path)
         self.recording = open_source(path, topic=source.topic or None, identity=source.identity)
         if _digest(self.recording, path) != source.digest:
             raise InputError(f"the recording {source.path} has changed since it was planned")
@@ -112,7 +122,7 @@ def describe(
     names, described = _names(locations), []
     for location in locations:
         on_stage(f"reading {location}")
-        path = Path(location)
+        path = _local(location)
         recording = open_source(path, topic=topic, identity=identity)
         truth = recording.truth()
         if not truth:
@@ -127,7 +137,7 @@ def describe(
                 "a larger --max-diff may help"
             )
         facts = len(stamps), *_size(recording, location), _digest(recording, path)
-        place = str(path.absolute())
+        place = location if is_url(location) else str(path.absolute())
         source = Source(names[location], place, recording.image_topic, *facts, identity)
         described.append((source, {index + 1: truth[at] for index, at in pairs.items()}))
     return described
@@ -177,6 +187,6 @@ def _names(locations: Sequence[str]) -> Mapping[str, str]:
 
 
 def _name(location: str, parts: int) -> str:
-    path = Path(location).absolute()
+    path = PurePosixPath(urlsplit(location).path) if is_url(location) else Path(location).absolute()
     words = [*path.parts[-parts:-1], path.name.removesuffix(".mcap")]
     return safe_name("-".join(words))
