@@ -55,7 +55,8 @@ RELATIVE = System.of("APF, relative", "apf", {"occlusion.rule": "relative", **_L
 AS_PRINTED = System.of("APF as printed", "apf", {"as_printed": True})
 INTERPRETATIONS = {PAPER: APF, OURS: RELATIVE, PRINTED: AS_PRINTED}
 INTERPRETATIONS_NOTE = (
-    "The paper's rule is step 4 of its algorithm with its tau of 0.8. The paper prints no alpha; "
+    "The paper's rule is step 4 of its algorithm with a tau of 0.8, which the paper prints for its "
+    "artificial videos alone; `video01` to `video20` have the same. The paper prints no alpha; "
     "0.01 was chosen among 0.003, 0.01, 0.03 and 0.1 on `video01` to `video18`, seeds 100 to 104 "
     "(23.4, 23.7, 26.5 and 27.9 px). Our interpretation is the default of `apf`: the extension "
     "`occlusion.rule: relative` compares the similarities with their own running level. As "

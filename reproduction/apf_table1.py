@@ -141,13 +141,16 @@ def _claim(fits: Sequence[bool]) -> ex.Claim:
     return ex.Claim(
         "our counterparts have the paper's kinds of vehicle and occlusion, and its resolutions",
         _PLACE,
-        (
-            ex.Finding(
-                ex.PAPER,
-                ex.Holds.share(share(fits), yes=1.0),
-                f"{counted(fits)} scenes (videos times seeds) fit their row by their truth",
-            ),
-        ),
+        (_all_fit(fits),),
+        "yes: all scenes; partly: half",
+    )
+
+
+def _all_fit(fits: Sequence[bool]) -> ex.Finding:
+    return ex.Finding(
+        ex.PAPER,
+        ex.Holds.share(share(fits), yes=1.0),
+        f"{counted(fits)} scenes (videos times seeds) fit their row by their truth",
     )
 
 

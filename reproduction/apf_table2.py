@@ -153,34 +153,41 @@ def _claims(videos: Errors, recovered: Mapping[str, Sequence[bool]]) -> tuple[ex
             "over all videos APF has the smallest average RMSE",
             _PLACE,
             tuple(_first(videos, found["average"], one, 1.0) for one in COMPARISONS),
+            "yes: its mean is at most the best rival's; partly: it is with half of the seeds",
         ),
         ex.Claim(
             "on the videos with total occlusions it is far ahead: at most half of the best rival's "
             "average (in the paper about a quarter)",
             _PLACE,
             tuple(_first(videos, found["total occlusion"], one, _AT_MOST) for one in COMPARISONS),
+            "yes: at most half of it; partly: it is below the rival's with half of the seeds",
         ),
         ex.Claim(
             "it is ahead on every video with a partial or total occlusion",
             _PLACE,
             tuple(_everywhere(videos, one) for one in COMPARISONS),
+            "yes: on 95 % of them by the median over the seeds; partly: on half",
         ),
         ex.Claim(
             "after the occlusion APF resumes tracking, the others do not",
             _PLACE,
             tuple(_resumes(recovered, one) for one in COMPARISONS),
+            "yes: APF recovers from 90 % of them, each other from less than half; partly: APF "
+            "recovers most often",
         ),
         ex.Claim(
             "without occlusion (videos 19 and 20) APF is a little behind the best rival: 1.12 and "
             f"1.39 times its RMSE (within a factor of {_ALIKE:g})",
             _PLACE,
             tuple(_unoccluded(videos, one) for one in COMPARISONS),
+            "yes: both ratios of medians are within that factor; partly: one is",
         ),
         ex.Claim(
             "(not a claim of the paper's) our scenes are hard where its videos are: over the "
             "videos each tracker's RMSE has a rank correlation of at least 0.7 with the paper's",
             _PLACE,
-            (_alike(videos),),
+            (_alike(rank_correlations(videos)),),
+            "yes: for each; partly: their median is at least 0.4",
         ),
     )
 
@@ -195,9 +202,10 @@ def _first(videos: Errors, names: Sequence[str], one: Comparison, at_most: float
     own = averages(videos, names, one.apf.label)
     label, best = _best(videos, names, one)
     ratio = fmean(own) / fmean(best)
+    ahead = [ours < theirs for ours, theirs in zip(own, best, strict=True)]
     return ex.Finding(
         one.name,
-        ex.Holds.of(ratio <= at_most, ratio < 1),
+        ex.Holds.of(ratio <= at_most, share(ahead) >= 0.5),
         f"{mean_and_spread(own)} px against {mean_and_spread(best)} px of {label}, the best rival: "
         f"{ratio:.2f} times; by seed {median_and_range(own)} px",
     )
@@ -242,8 +250,7 @@ def _unoccluded(videos: Errors, one: Comparison) -> ex.Finding:
     )
 
 
-def _alike(videos: Errors) -> ex.Finding:
-    found = rank_correlations(videos)
+def _alike(found: Mapping[str, float]) -> ex.Finding:
     parts = ", ".join(f"{label} {rank:.2f}" for label, rank in found.items())
     return ex.Finding(
         ex.PAPER, ex.Holds.of(min(found.values()) >= 0.7, median(found.values()) >= 0.4), parts

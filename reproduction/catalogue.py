@@ -30,6 +30,7 @@ from reproduction import (
     mfpf_table1,
     mfpf_table2,
     mfpf_table3,
+    mfpf_timing,
     resampling_cost,
     resampling_fig4,
     resampling_fig5,
@@ -45,7 +46,7 @@ _APF = (
 )  # fmt: skip
 _MFPF = (
     mfpf_table1, mfpf_table2, mfpf_table3, mfpf_similarities, mfpf_errors, mfpf_frames,
-    mfpf_histograms, mfpf_fig2,
+    mfpf_histograms, mfpf_fig2, mfpf_timing,
 )  # fmt: skip
 _RESAMPLING = resampling_fig4, resampling_fig5, resampling_frames, resampling_cost
 

@@ -20,6 +20,9 @@ Entry: TypeAlias = float | int | str | None
 
 PAPER = "the paper's rule"
 """The paper's algorithm as it was meant: misprints and gaps filled by docs/interpretations.md."""
+BASIC = "the paper's rule, basic rivals"
+"""The other open reading of P2: MFPF by the paper's rule beside single-feature filters that have
+nothing of what its section IV adds (interpretation 32)."""
 OURS = "our interpretation"
 """The variant's defaults, or what we add to the paper's rule, named in the setting."""
 PRINTED = "as printed"
@@ -102,11 +105,29 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """One claim in our words, its place in the paper, and the findings: the first one decides."""
+    """One claim, and how it is judged.
+
+    Attributes
+    ----------
+    claim : str
+        The claim in our words.
+    place : str
+        Its place in the paper.
+    findings : tuple of Finding
+        Results under each interpretation: the first one decides.
+    rule : str
+        Conditions of "yes" and "partly"; the verdict is "no" where neither is met.
+    """
 
     claim: str
     place: str
     findings: tuple[Finding, ...]
+    rule: str
+
+    @property
+    def judged(self) -> str:
+        """The rule as a sentence."""
+        return f"{self.rule}; no otherwise"
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +173,7 @@ class ExperimentVerdict:
 
     def to_json(self) -> dict[str, Any]:
         """Return plain values for JSON."""
-        others = {name: self.under(name) for name in (OURS, PRINTED)}
+        others = {name: self.under(name) for name in (BASIC, OURS, PRINTED)}
         under = {name: None if found is None else found.value for name, found in others.items()}
         return {"holds": self.holds.value, "under": under, **asdict(self)}
 
@@ -165,7 +186,8 @@ class ExperimentVerdict:
                 f"| {f.interpretation} | **{f.holds.value}** | {f.numbers} |"
                 for f in claim.findings
             ]
-            parts += [f"Claim ({claim.place}): {claim.claim}", "\n".join(rows)]
+            text = f"Claim ({claim.place}): {claim.claim}. Judged: {claim.judged}."
+            parts += [text, "\n".join(rows)]
         return "\n\n".join([*parts, *self.remarks]) + "\n"
 
 
@@ -209,12 +231,15 @@ class Report:
         Verdicts on the claims.
     tables : mapping of str to DataTable
         Summaries to be read, by title.
+    seeds : range or None
+        Seeds that count here; None: those of the size.
     """
 
     data: DataTable
     figure: Figure
     verdict: ExperimentVerdict
     tables: Mapping[str, DataTable] = field(default_factory=dict)
+    seeds: range | None = None
 
 
 @dataclass(frozen=True, slots=True)

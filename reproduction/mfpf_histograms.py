@@ -233,24 +233,29 @@ def _claims(found: dict[str, dict[str, dict[str, list[float]]]]) -> tuple[ex.Cla
             "the most, texture is in between",
             _PLACE,
             tuple(_order(interpretation, of) for interpretation, of in found.items()),
+            "yes: in this order by the means, in both; partly: the edge histogram changes the "
+            "least in one of them",
         ),
         ex.Claim(
             "under a full occlusion no histogram is informative",
             _PLACE,
             tuple(_empty(interpretation, of) for interpretation, of in found.items()),
+            "yes: all mean distances from the first are at least 0.6; partly: one is",
         ),
     )
 
 
 def _order(interpretation: str, of: dict[str, dict[str, list[float]]]) -> ex.Finding:
-    holds, parts = [], []
+    ordered, edges, parts = [], [], []
     for situation in ("shadow", "partial"):
         means = {name: fmean(values) for name, values in of[situation].items()}
         order = sorted(means, key=means.__getitem__)
-        holds.append(ex.Holds.of(order == ["edge", "texture", "color"], order[0] == "edge"))
+        ordered.append(order == ["edge", "texture", "color"])
+        edges.append(order[0] == "edge")
         values = " < ".join(f"{FEATURES[name]} {means[name]:.2f}" for name in order)
         parts.append(f"{_TITLES[situation]}: {values}")
-    return ex.Finding(interpretation, ex.Holds.all(holds), f"mean distances, {'; '.join(parts)}")
+    holds = ex.Holds.of(all(ordered), any(edges))
+    return ex.Finding(interpretation, holds, f"mean distances, {'; '.join(parts)}")
 
 
 def _empty(interpretation: str, of: dict[str, dict[str, list[float]]]) -> ex.Finding:

@@ -50,8 +50,8 @@ def cells(size: ex.Size) -> list[RunCell]:
 
 def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Make the tables, and judge them."""
-    errors = {name: _errors(results, size, name) for name in mfpf.INTERPRETATIONS}
-    followed = {name: _followed(results, size, name) for name in mfpf.INTERPRETATIONS}
+    errors = {name: _errors(results, size, name) for name in mfpf.RIVALRIES}
+    followed = {name: _followed(results, size, name) for name in mfpf.RIVALRIES}
     tables = {
         "RMS in px, mean ± standard deviation over the seeds:": _rms_table(errors, size),
         f"Runs that end with {mfpf.LAST_FRAMES} frames below {CLOSE_PX:g} px, "
@@ -172,17 +172,20 @@ def _claims(errors: Mapping[str, Errors]) -> tuple[ex.Claim, ...]:
             "MFPF has the least RMS in all cases",
             _PLACE,
             tuple(_least(interpretation, found) for interpretation, found in errors.items()),
+            "yes: its mean over the seeds is, in all cases; partly: in one",
         ),
         ex.Claim(
             "its RMS is always 10 to 25 % below the least of the single-feature filters (3 to 23 % "
             "by the paper's own table)",
             _PLACE,
             tuple(_saving(interpretation, found) for interpretation, found in errors.items()),
+            "yes: at least 10 % in all cases; partly: in one",
         ),
         ex.Claim(
-            "no single feature is the best in all cases",
+            "no single feature is the best in all cases: each of them is in some",
             _PLACE,
             tuple(_no_single(interpretation, found) for interpretation, found in errors.items()),
+            "yes: by the mean RMS each of the three is the best somewhere; partly: two are",
         ),
     )
 
@@ -221,9 +224,8 @@ def _saving(interpretation: str, found: Errors) -> ex.Finding:
 def _no_single(interpretation: str, found: Errors) -> ex.Finding:
     best = {case: _best_single(of_case) for case, of_case in found.items()}
     parts = ", ".join(f"case {_short(case)} {label}" for case, label in best.items())
-    return ex.Finding(
-        interpretation, ex.Holds.of(len(set(best.values())) > 1), f"the best: {parts}"
-    )
+    kinds = len(set(best.values()))
+    return ex.Finding(interpretation, ex.Holds.of(kinds == 3, kinds == 2), f"the best: {parts}")
 
 
 def _further(
@@ -246,12 +248,15 @@ def _further(
                     errors[mfpf.DEFAULTS],
                 ),
             ),
+            "yes: its mean is below, and so it is with 80 % of the seeds; partly: one of the two",
         ),
         ex.Claim(
             "(not in the paper in numbers) MFPF follows to the end: in 8 of 10 runs where the "
             "vehicle is never hidden, and otherwise as often as the best single feature",
             "section V, cases 1 to 6",
             tuple(_to_the_end(interpretation, found) for interpretation, found in followed.items()),
+            f"yes: {mfpf.LAST_FRAMES} last frames below {CLOSE_PX:g} px so often in all cases; "
+            "partly: in one, by one run at least",
         ),
     )
 
@@ -261,9 +266,10 @@ def _over_all(interpretation: str, found: Errors, rivals: Errors) -> ex.Finding:
     singles = {single.label: _over_cases(rivals, single.label) for single in mfpf.SINGLES}
     best = _best_single(singles)
     wins = [a < b for a, b in zip(own, singles[best], strict=True)]
+    is_below, is_often = fmean(own) < fmean(singles[best]), share(wins) >= _FOLLOWS
     return ex.Finding(
         interpretation,
-        ex.Holds.of(fmean(own) < fmean(singles[best])),
+        ex.Holds.of(is_below and is_often, is_below or is_often),
         f"{mean_and_spread(own)} px against {mean_and_spread(singles[best])} px of {best}: "
         f"{fmean(own) / fmean(singles[best]):.2f} times; below it with {sum(wins)} of "
         f"{len(wins)} seeds",
@@ -276,7 +282,8 @@ def _to_the_end(interpretation: str, found: Followed) -> ex.Finding:
         own = of_case[mfpf.MFPF.label]
         best = max((single.label for single in mfpf.SINGLES), key=lambda label: sum(of_case[label]))
         needed = _FOLLOWS if case in mfpf.WITHOUT_HIDING else share(of_case[best])
-        enough.append(share(own) >= needed)
+        # As often as a rival that never does is not often enough.
+        enough.append(any(own) and share(own) >= needed)
         parts.append(f"case {_short(case)} {sum(own)} ({best} {sum(of_case[best])})")
     runs = len(next(iter(next(iter(found.values())).values())))
     return ex.Finding(

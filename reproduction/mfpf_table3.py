@@ -12,7 +12,7 @@ from reproduction import mfpf_systems as mfpf
 from reproduction.case_figure import Values
 from reproduction.experiment import Claim, Experiment, Finding, Holds, Report, Results, Size
 from reproduction.mfpf_share import ShareWords, share_report
-from reproduction.numbers import mean_and_spread
+from reproduction.numbers import mean_and_spread, share
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 
 _PLACE = "section V, table III"
@@ -24,11 +24,14 @@ _PAPER = {
 }
 
 
+_OFTEN = 0.8
+"""Share of the seeds that a mean has to be carried by."""
+
+
 def report(results: Results, size: Size) -> Report:
     """Take the shares, and judge them."""
     shares = {
-        interpretation: _shares(results, size, interpretation)
-        for interpretation in mfpf.INTERPRETATIONS
+        interpretation: _shares(results, size, interpretation) for interpretation in mfpf.RIVALRIES
     }
     words = ShareWords(
         f"Percent of the frames with an error below {CLOSE_PX:g} px, mean ± standard deviation "
@@ -44,8 +47,8 @@ def _shares(results: Results, size: Size, interpretation: str) -> dict[str, dict
     return {
         case: {
             system.label: [
-                100 * share
-                for share in mfpf.per_seed(
+                100 * value
+                for value in mfpf.per_seed(
                     results, size, case, system, interpretation, "p_error_lt_15px"
                 )
             ]
@@ -62,12 +65,14 @@ def _claims(shares: Mapping[str, Values]) -> tuple[Claim, ...]:
             "paper in five cases of six)",
             _PLACE,
             tuple(_first(interpretation, found) for interpretation, found in shares.items()),
+            "yes: by the means, in all cases but one; partly: in one",
         ),
         Claim(
             "(taken together) over all cases MFPF's share is above the best single-feature "
             "filter's",
             _PLACE,
             tuple(_over_all(interpretation, found) for interpretation, found in shares.items()),
+            "yes: its mean is above, and so it is with 80 % of the seeds; partly: one of the two",
         ),
     )
 
@@ -92,9 +97,12 @@ def _over_all(interpretation: str, found: Values) -> Finding:
         for system in mfpf.FOUR
     }  # fmt: skip
     best = max((s.label for s in mfpf.SINGLES), key=lambda label: fmean(means[label]))
+    own = means[mfpf.MFPF.label]
+    is_above = fmean(own) > fmean(means[best])
+    is_often = share([a > b for a, b in zip(own, means[best], strict=True)]) >= _OFTEN
     return Finding(
         interpretation,
-        Holds.of(fmean(means[mfpf.MFPF.label]) > fmean(means[best])),
+        Holds.of(is_above and is_often, is_above or is_often),
         f"{mean_and_spread(means[mfpf.MFPF.label])} % against {mean_and_spread(means[best])} % of "
         f"{best}",
     )

@@ -30,7 +30,7 @@ def write_report(folder: Path, experiment: ex.Experiment, report: ex.Report, siz
     facts = {
         "name": experiment.name,
         "title": experiment.title,
-        "seeds": list(size.seeds),
+        "seeds": list(report.seeds or size.seeds),
         "versions": versions(),
     }
     write_json(folder / f"{VERDICT}.json", {**facts, **report.verdict.to_json()})

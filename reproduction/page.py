@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from reproduction.catalogue import Paper
-from reproduction.experiment import OURS, PAPER, PRINTED, Experiment
+from reproduction.experiment import BASIC, OURS, PAPER, PRINTED, Experiment
 from reproduction.output import FIGURE, VERDICT
 from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.results.output_files import make_folder, write_text
@@ -30,6 +30,8 @@ A claim is judged under up to three interpretations. *The paper's rule* gives th
 algorithm as it was meant, its misprints and gaps filled as [interpretations.md](interpretations.md)
 says, with values that were chosen on seeds above 99, which are not reported here. *Our
 interpretation* adds our extensions, or is the default; *as printed* is the paper to the letter.
+
+A claim's row ends with the rule of its verdict: what is neither yes nor partly is no.
 
 {overview}
 """
@@ -83,7 +85,9 @@ def _overview_row(experiment: Experiment, verdict: Mapping[str, Any]) -> str:
     others = [verdict["under"][name] or "–" for name in (OURS, PRINTED)]
     link = f"[`{experiment.name}`](#{experiment.name})"
     seeds = _seeds(verdict["seeds"])
-    return _row([link, experiment.title, f"**{verdict['holds']}**", *others, seeds])
+    basic = verdict["under"].get(BASIC)
+    holds = f"**{verdict['holds']}**" + (f"; basic rivals: **{basic}**" if basic else "")
+    return _row([link, experiment.title, holds, *others, seeds])
 
 
 def _seeds(seeds: Sequence[int]) -> str:
@@ -102,14 +106,14 @@ def _section(experiment: Experiment, verdict: Mapping[str, Any], picture: str) -
 def _claims(claims: Sequence[Mapping[str, Any]]) -> str:
     """Give each claim a row: the deciding finding, then those of the other interpretations."""
     found = {finding["interpretation"] for claim in claims for finding in claim["findings"][1:]}
-    others = [name for name in (OURS, PRINTED) if name in found]
-    head = ["claim", PAPER if others else "result", *others]
+    others = [name for name in (BASIC, OURS, PRINTED) if name in found]
+    head = ["claim", PAPER if others else "result", *others, "verdict"]
     rows = [_row(head), _row(["---"] * len(head))]
     for claim in claims:
         first, *rest = claim["findings"]
         by_name = {finding["interpretation"]: _result(finding) for finding in rest}
         results = [_result(first), *(by_name.get(name, "–") for name in others)]
-        rows.append(_row([f"{claim['claim']} ({claim['place']})", *results]))
+        rows.append(_row([f"{claim['claim']} ({claim['place']})", *results, claim["rule"]]))
     return "\n".join(rows)
 
 

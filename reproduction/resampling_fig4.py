@@ -105,11 +105,14 @@ def _claims(errors: dict[str, Errors]) -> tuple[ex.Claim, ...]:
                 _both_low(interpretation, found, "before")
                 for interpretation, found in errors.items()
             ),
+            f"yes: both medians are below {_LOW:g} px; partly: one is",
         ),
         ex.Claim(
             "while it is partly hidden both have almost the same, low error",
             f"{_PLACE}, case II",
             tuple(_alike(interpretation, found) for interpretation, found in errors.items()),
+            f"yes: the medians are within a factor of {_ALIKE:g} and below {_LOW:g} px; partly: "
+            "within that factor",
         ),
         ex.Claim(
             "while it is hidden the conventional filter's error is much higher than the adaptive "
@@ -118,18 +121,23 @@ def _claims(errors: dict[str, Errors]) -> tuple[ex.Claim, ...]:
             tuple(
                 _worse(interpretation, found, "full") for interpretation, found in errors.items()
             ),
+            f"yes: its median is at least {_HIGHER:g} times the adaptive one's; partly: above "
+            f"{_ALIKE:g} times",
         ),
         ex.Claim(
             "after the occlusion the adaptive filter has the vehicle again, the conventional one "
             "has lost it",
             f"{_PLACE}, case IV",
             tuple(_lost(interpretation, found) for interpretation, found in errors.items()),
+            f"yes: below {_LOW:g} px in 80 % of the adaptive one's runs, and in at most 20 % of "
+            "the other's; partly: in more of its runs",
         ),
         ex.Claim(
             f"(not in the paper in numbers) the adaptive filter's median RMSE is at most "
             f"{_AT_MOST:g} times the conventional one's",
             _PLACE,
             tuple(_no_worse(interpretation, found) for interpretation, found in errors.items()),
+            f"yes: it is; partly: at most {_ALIKE:g} times",
         ),
     )
 
@@ -185,7 +193,8 @@ def _lost(interpretation: str, found: Errors) -> ex.Finding:
 def _no_worse(interpretation: str, found: Errors) -> ex.Finding:
     conventional, adaptive = _medians(found, "all")
     return ex.Finding(
-        interpretation, ex.Holds.of(adaptive <= _AT_MOST * conventional),
+        interpretation,
+        ex.Holds.of(adaptive <= _AT_MOST * conventional, adaptive <= _ALIKE * conventional),
         f"{_numbers_text(found, 'all')}: {adaptive / conventional:.2f} times",
     )  # fmt: skip
 

@@ -35,10 +35,11 @@ def test_one_experiment_writes_its_folder_and_its_section_of_the_page(tmp_path, 
     assert "| 100 |" in page  # the seed
     assert f"apf-fig4: {verdict['holds']}  (" in capsys.readouterr().out
     section = page.partition("\n### apf-fig4")[2]
-    assert "| claim | the paper's rule | our interpretation | as printed |" in section
+    assert "| claim | the paper's rule | our interpretation | as printed | verdict |" in section
     for claim in verdict["claims"]:
         cells = [f"**{f['holds']}**: {f['numbers']}" for f in claim["findings"]]
-        assert f"| {claim['claim']} ({claim['place']}) | {' | '.join(cells)} |" in section
+        row = [f"{claim['claim']} ({claim['place']})", *cells, claim["rule"]]
+        assert f"| {' | '.join(row)} |" in section
 
 
 @pytest.mark.slow
@@ -51,7 +52,9 @@ def test_the_page_has_what_was_made_before_too_and_a_second_time_nothing_changes
         page.index("\n## Scharcanski") < page.index("\n### apf-fig2") < page.index("\n### apf-fig4")
     )
     assert "Khong" not in page  # nothing of it was made
-    assert "| claim | result |" in page.partition("\n### apf-fig2")[2]  # no interpretations
+    assert (
+        "| claim | result | verdict |" in page.partition("\n### apf-fig2")[2]
+    )  # no interpretations
     files = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     reproduce(out, "apf-fig2", "apf-fig4", "--docs", str(docs))
     assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == files

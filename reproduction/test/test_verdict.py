@@ -34,7 +34,7 @@ def test_shares_are_judged(value, holds):
 def verdict():
     findings = ex.Finding("our interpretation", YES, "3 px"), ex.Finding("as printed", NO, "300 px")
     return ex.ExperimentVerdict(
-        (ex.Claim("it follows", "figure 1", findings),), "A bar.", ("Mind the gap.",)
+        (ex.Claim("it follows", "figure 1", findings, "yes: 5 px"),), "A bar.", ("Mind the gap.",)
     )
 
 
@@ -45,15 +45,15 @@ def test_the_first_finding_decides():
 def test_claims_are_joined_under_each_interpretation():
     claims = (
         ex.Claim(
-            "one", "figure 1", (ex.Finding(ex.PAPER, YES, ""), ex.Finding(ex.PRINTED, NO, ""))
+            "one", "figure 1", (ex.Finding(ex.PAPER, YES, ""), ex.Finding(ex.PRINTED, NO, "")), ""
         ),
-        ex.Claim("two", "figure 1", (ex.Finding("their defaults", NO, ""),)),
+        ex.Claim("two", "figure 1", (ex.Finding("their defaults", NO, ""),), ""),
     )
     found = ex.ExperimentVerdict(claims, "")
     assert found.holds is PARTLY
     assert found.under(ex.PRINTED) is NO
     assert found.under(ex.OURS) is None
-    assert found.to_json()["under"] == {ex.OURS: None, ex.PRINTED: "no"}
+    assert found.to_json()["under"] == {ex.BASIC: None, ex.OURS: None, ex.PRINTED: "no"}
 
 
 def test_a_verdict_is_plain_json():
@@ -66,7 +66,8 @@ def test_a_verdict_is_plain_json():
 
 def test_a_verdict_is_a_text_with_a_table_for_each_claim():
     assert verdict().to_markdown() == (
-        "**Verdict: yes.**\n\nA bar.\n\nClaim (figure 1): it follows\n\n"
+        "**Verdict: yes.**\n\nA bar.\n\nClaim (figure 1): it follows. Judged: "
+        "yes: 5 px; no otherwise.\n\n"
         "| interpretation | holds | result |\n|---|---|---|\n"
         "| our interpretation | **yes** | 3 px |\n| as printed | **no** | 300 px |\n\nMind the "
         "gap.\n"

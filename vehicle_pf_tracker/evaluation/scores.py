@@ -33,7 +33,7 @@ FEWEST_JUDGED = 5
 """Fewest frames that a recovery is judged by: the mean of fewer says more of noise."""
 CLOSE_PX = 15.0
 """Error in px that counts as on the vehicle, however small it is: the threshold of
-Scharcanski et al. 2011, section IV, P(error < 15 px)."""
+Abdulla et al. 2022, section V, table III, P(error < 15 px)."""
 
 
 @dataclass(frozen=True, slots=True)
