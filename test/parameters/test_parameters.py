@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -172,3 +173,24 @@ def test_no_mapping_does_anything_but_fit_or_be_refused(values):
     except InputError:
         return
     assert 0.5 <= made.inner.sigma <= 9.0
+
+
+@pytest.mark.parametrize("kind", [np.int8, np.uint8, np.int32, np.int64, np.float32, np.float64])
+def test_numbers_of_numpy_are_numbers(kind):
+    values = to_mapping(from_mapping(Outer, {"inner.sigma": kind(4)}))
+    assert values["inner.sigma"] == 4.0
+    assert type(values["inner.sigma"]) is float
+    if np.issubdtype(kind, np.integer):
+        assert type(from_mapping(Outer, {"count": kind(7)}).count) is int
+
+
+def test_the_other_scalars_of_numpy_are_as_those_of_python():
+    made = from_mapping(Outer, {"quick": np.bool_(False), "inner.scheme": np.str_("two")})
+    assert (made.quick, made.inner.scheme) == (False, "two")
+    assert type(made.quick) is bool
+    assert from_mapping(Outer, {"inner.sigma": np.array(3.0)}).inner.sigma == 3.0
+    for value in (np.float64(7), np.bool_(True), np.array([7])):
+        with pytest.raises(InputError, match="count must be an integer"):
+            from_mapping(Outer, {"count": value})
+    with pytest.raises(InputError, match="finite"):
+        from_mapping(Outer, {"inner.sigma": np.float32(np.nan)})

@@ -5,7 +5,7 @@
 
 import pytest
 
-from vehicle_pf_tracker.results.estimates import EstimateRow, clock_words, summary
+from vehicle_pf_tracker.results.estimates import EstimateRow, clock_words, start_of_clock, summary
 
 
 def rows(modes, period=100_000_000):
@@ -42,3 +42,16 @@ def test_a_summary_in_one_sentence(modes, words):
 )
 def test_clock_words(nanoseconds, words):
     assert clock_words(nanoseconds) == words
+
+
+def test_times_begin_when_the_camera_has_a_clock():
+    first = [EstimateRow.without(number, 0, "TRACKING") for number in (1, 2)]
+    start = 1_700_000_000 * 10**9
+    later = [EstimateRow.without(number, start + number * 10**8, "LOST") for number in (3, 4)]
+    words = summary([*first, *later])
+    assert words == "TRACKING 0:00.0-0:00.0, LOST from 0:00.0; 2 of 4 frames tracked"
+
+
+def test_a_pause_of_hours_is_no_other_clock():
+    assert start_of_clock(5, 5 + 3600 * 10**9) == 5
+    assert start_of_clock(None, 7) == 7

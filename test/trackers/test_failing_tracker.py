@@ -3,6 +3,8 @@
 
 """Trackers that fail on good images, in both sessions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from failing import ERROR, failing
@@ -165,3 +167,20 @@ def test_broken_traffic_says_so(traffic):
     fail(traffic, "step", range(100))
     found = outcomes(traffic, map(scene, range(6, 10)), 6)
     assert [raised.persists for raised in found] == [False, True, True, True]
+
+
+@pytest.mark.parametrize("part", ["positions", "weights"])
+def test_numbers_that_are_not_finite_are_an_error_of_the_tracker(street, tracking, part):
+    good = tracking.tracker._advance
+
+    def broken(frame, elapsed):
+        outcome = good(frame, elapsed)
+        values = getattr(outcome.cloud, part).copy()
+        values[0] = np.nan
+        return replace(outcome, cloud=replace(outcome.cloud, **{part: values}))
+
+    tracking.tracker._advance = broken
+    first = outcome(tracking, street.frame(10), 11 * PERIOD_NS)
+    assert "ApfTracker gave particles, weights or a position that are not finite" in str(first)
+    tracking.tracker._advance = good
+    assert error(outcome(tracking, street.frame(11), 12 * PERIOD_NS), street, 11) < 10

@@ -5,13 +5,14 @@
 
 import subprocess
 import sys
+import types
 
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import specs
 from vehicle_pf_tracker.trackers.base import BaseTracker
-from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
+from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 MODULES = {f"vehicle_pf_tracker.trackers{one.classes.split(':')[0]}" for one in VARIANTS.values()}
 
@@ -71,3 +72,11 @@ def test_a_node_imports_its_own_variant_only():
 def test_an_unknown_name_is_answered_with_the_known_ones():
     with pytest.raises(InputError, match=r"no variant 'kalman'; choose one of apf, pf, "):
         find_variant("kalman")
+
+
+def test_parameters_that_are_no_dataclass_are_named(monkeypatch):
+    module = types.ModuleType("odd_plug_in")
+    module.OddTracker, module.OddParameters = object, type("OddParameters", (), {})
+    monkeypatch.setitem(sys.modules, "odd_plug_in", module)
+    with pytest.raises(InputError, match="OddParameters is not a dataclass"):
+        _ = Variant("odd", "odd_plug_in:Odd", "plug-in of odd 1.0", "").parameters

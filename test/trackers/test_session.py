@@ -367,3 +367,29 @@ def test_a_target_outside_every_image_is_refused(x, y):
             SessionParameters,
             {"target.x": x, "target.y": y, "target.width": 24.0, "target.height": 30.0},
         )
+
+
+@pytest.mark.parametrize("stamp", [1720000000.04, np.float64(2.0), "12", None])
+def test_a_stamp_that_is_no_integer_is_refused_by_name(stamp):
+    street = Street()
+    with pytest.raises(InputError, match="stamp_ns is in nanoseconds; give round"):
+        session(street.box(0)).feed(street.frame(0), stamp)
+
+
+def test_integers_of_numpy_are_stamps():
+    street = Street()
+    of = session(street.box(0))
+    estimates = [of.feed(street.frame(t), np.int64((t + 1) * PERIOD_NS)) for t in range(3)]
+    expected = feed(session(street.box(0)), street, range(3))
+    assert positions(estimates) == positions(expected)
+
+
+@pytest.mark.parametrize("unit", [1, 10**3], ids=["ms", "µs"])
+def test_stamps_in_another_unit_are_noticed(unit):
+    street = Street()
+    of = session(street.box(0))
+    notices = []
+    for time in range(3):
+        of.feed(street.frame(time), 5 + 40 * time * unit)
+        notices.append([event for event in of.events if "they are taken as ns" in event])
+    assert [len(found) for found in notices] == [0, 1, 1]

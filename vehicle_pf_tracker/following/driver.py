@@ -21,7 +21,12 @@ from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.results.estimates import (
+    REJECTED,
+    WAITING,
+    EstimateRow,
+    start_of_clock,
+)
 from vehicle_pf_tracker.showing.drawing import Annotator, annotated
 from vehicle_pf_tracker.showing.estimates_recording import OnFrame
 from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
@@ -235,7 +240,7 @@ def follow(
     with pictures.drawing(frames) as (take, all_frames):
         for (number, found), later in with_next(all_frames):
             following, is_first = later and later[1], start_ns is None
-            start_ns = found.stamp_ns if start_ns is None else start_ns
+            start_ns = start_of_clock(start_ns, found.stamp_ns)
             of_frame, states = {}, []
             for name, tracker in trackers.items():
                 of_frame[name] = row = tracker.row(number, found, following, is_first=is_first)

@@ -21,7 +21,12 @@ from vehicle_pf_tracker.following.driver import OfflineTracker
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.recordings.source import frame_at, open_source
 from vehicle_pf_tracker.recordings.truth_files import Beside
-from vehicle_pf_tracker.results.estimates import EstimateRow, summary, write_estimates
+from vehicle_pf_tracker.results.estimates import (
+    EstimateRow,
+    start_of_clock,
+    summary,
+    write_estimates,
+)
 from vehicle_pf_tracker.showing.drawing import Annotator, annotated
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import find_variant
@@ -107,7 +112,10 @@ class Estimates(Sequence[EstimateRow]):
         for estimate in self._estimates[:number]:
             annotator.follow(estimate)
         states = [(annotator, row, self._estimates[number - 1])]
-        elapsed_ns = row.stamp_ns - self.rows[0].stamp_ns
+        start_ns = self.rows[0].stamp_ns
+        for earlier in self.rows[:number]:
+            start_ns = start_of_clock(start_ns, earlier.stamp_ns)
+        elapsed_ns = row.stamp_ns - start_ns
         return ShownEstimate(row, annotated(frame, elapsed_ns, states))
 
     def _repr_html_(self) -> str:

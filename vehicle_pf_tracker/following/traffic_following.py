@@ -19,7 +19,7 @@ from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles
 from vehicle_pf_tracker.following.detectors import DetectionFile
 from vehicle_pf_tracker.following.driver import unreached
 from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.results.estimates import clock_words
+from vehicle_pf_tracker.results.estimates import clock_words, start_of_clock
 from vehicle_pf_tracker.results.traffic_results import TrackFiles
 from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.showing.page_server import PAGE, LivePage
@@ -112,7 +112,7 @@ class TrafficRun(CountedVehicles):
         start_ns: int | None = None
         with pictures.drawing(frames) as (take, all_frames):
             for number, found in all_frames:
-                start_ns = found.stamp_ns if start_ns is None else start_ns
+                start_ns = start_of_clock(start_ns, found.stamp_ns)
                 crossings = self._step(number, found)
                 if found.frame is None or crossings is None:
                     continue

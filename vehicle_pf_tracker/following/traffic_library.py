@@ -24,6 +24,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import unknown_name
 from vehicle_pf_tracker.recordings.footage import check_fps
 from vehicle_pf_tracker.results.traffic_results import mot_numbers
+from vehicle_pf_tracker.trackers.image_stream import checked_stamp
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
@@ -108,15 +109,16 @@ class TrafficTracker(CountedVehicles):
         Raises
         ------
         InputError
-            If the image is not usable.
+            If the image is not usable, or the stamp is no integer.
         ValueError
             If a box has not four numbers, or there are not as many scores or labels as boxes.
         """
         if boxes is not None and np.ndim(boxes) > 1 and np.shape(boxes)[-1] not in {0, 4}:
             raise ValueError("a box is left, top, width and height in px")
         check_frame(np.asarray(frame))
+        stamp_ns = self._stamp_ns + self._period_ns if stamp_ns is None else stamp_ns
+        self._stamp_ns = checked_stamp(stamp_ns)
         self._images += 1
-        self._stamp_ns = self._stamp_ns + self._period_ns if stamp_ns is None else stamp_ns
         detections = None if boxes is None else Detections.make(boxes, scores, labels)
         self.crossings = self.follow(frame, self._stamp_ns, detections)
         return tuple(one for one in self.estimates if one.id and one.mode is not TrackMode.LOST)

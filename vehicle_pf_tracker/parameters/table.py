@@ -40,6 +40,16 @@ _BOOLEANS = {"true": True, "1": True, "yes": True, "false": False, "0": False, "
 _TYPE_NAMES = {bool: "true or false", int: "an integer", float: "a number", str: "a string"}
 
 
+def plain_number(value: object) -> object:
+    """Return a number of numpy, or of a library like it, as Python's own; all else as it is.
+
+    This room does not import numpy, which has a type for each size of number.
+    """
+    if getattr(value, "shape", None) == () and callable(item := getattr(value, "item", None)):
+        return item()
+    return value
+
+
 @dataclass(frozen=True, slots=True)
 class ParameterSpec:
     """Full description of one parameter.
@@ -92,6 +102,7 @@ class ParameterSpec:
             If the type is wrong, the number is not finite or out of bounds, or the string is not
             allowed.
         """
+        value = plain_number(value)
         if self.kind is float and isinstance(value, int) and not isinstance(value, bool):
             try:
                 value = float(value)

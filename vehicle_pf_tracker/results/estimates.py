@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from types import MappingProxyType
 
@@ -164,8 +165,12 @@ def summary(rows: Sequence[EstimateRow]) -> str:
     """Return the modes of a run in one sentence, times in min:s after its first frame."""
     if not rows:
         return "no frames"
-    spans = [list(group) for _, group in groupby(rows, key=lambda row: row.mode)]
-    words = [_words(span, rows[0].stamp_ns, is_last=span is spans[-1]) for span in spans]
+    start_ns, timed = rows[0].stamp_ns, []
+    for row in rows:
+        start_ns = start_of_clock(start_ns, row.stamp_ns)
+        timed.append((row.mode, clock_words(row.stamp_ns - start_ns)))
+    spans = [list(group) for _, group in groupby(timed, key=itemgetter(0))]
+    words = [_words(span, is_last=span is spans[-1]) for span in spans]
     if len(spans) > _MOST_SPANS:
         words[_MOST_SPANS:] = [f"and {len(spans) - _MOST_SPANS} more changes of the mode"]
     tracked = sum(row.mode == Mode.TRACKING.value for row in rows)
@@ -178,8 +183,22 @@ def clock_words(nanoseconds: int) -> str:
     return f"{tenths // 600}:{tenths // 10 % 60:02d}.{tenths % 10}"
 
 
-def _words(span: Sequence[EstimateRow], start: int, *, is_last: bool) -> str:
-    """Return mode and times of consecutive rows of one mode."""
-    mode = span[0].mode
-    first, last = (clock_words(row.stamp_ns - start) for row in (span[0], span[-1]))
+_ANOTHER_CLOCK_NS = 86_400 * 1_000_000_000
+"""Distance of stamps, a day, at which they are not of one clock: a camera without a time yet stamps
+its first images with zero."""
+
+
+def start_of_clock(start_ns: int | None, stamp_ns: int) -> int:
+    """Return the stamp in ns that times of `stamp_ns` count from.
+
+    It is `start_ns`, that of the images before, unless the stamp is of another clock than that.
+    """
+    if start_ns is None or abs(stamp_ns - start_ns) > _ANOTHER_CLOCK_NS:
+        return stamp_ns
+    return start_ns
+
+
+def _words(span: Sequence[tuple[str, str]], *, is_last: bool) -> str:
+    """Return mode and times of consecutive rows of one mode, each a mode and a time in words."""
+    (mode, first), (_, last) = span[0], span[-1]
     return f"LOST from {first}" if is_last and mode == Mode.LOST.value else f"{mode} {first}-{last}"

@@ -215,6 +215,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         self._learn()
         x, y = keep_inside(frame, np.asarray(box.centre))
         outcome = Outcome(self._cloud, (float(x), float(y)), (0.0, 0.0), START, 1.0, {})
+        self._check_finite(outcome)
         return self._estimate(outcome, Mode.TRACKING, 1.0, began)
 
     def step(self, frame: Frame, elapsed: float = 1.0) -> Estimate:
@@ -222,6 +223,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         began = time.perf_counter()
         outcome = self._advance(check_frame(frame), elapsed)
         self._first_frame = None
+        self._check_finite(outcome)
         self._cloud = outcome.cloud
         seconds, left_image = elapsed * self.frame_period, outcome.left_image
         mode = self._judge.judge(outcome.evidence, seconds, self.parameters, left_image=left_image)
@@ -249,6 +251,14 @@ class BaseTracker(ABC, Generic[ParametersT]):
             self._window = self._target.window(parameters.window)
             self._judge.measures_anew()
             self._learn()
+
+    def _check_finite(self, outcome: Outcome) -> None:
+        # One sum of each: a number that is not finite makes it so.
+        numbers = *outcome.position, outcome.cloud.positions.sum(), outcome.cloud.weights.sum()
+        if not all(map(math.isfinite, numbers)):
+            raise ArithmeticError(
+                f"{type(self).__name__} gave particles, weights or a position that are not finite"
+            )
 
     @abstractmethod
     def _learn(self) -> None:

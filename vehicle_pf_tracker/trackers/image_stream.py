@@ -15,6 +15,7 @@ The same for one target and for many vehicles, offline and in the nodes.
 from __future__ import annotations
 
 import copy
+import operator
 from collections import deque
 from contextlib import suppress
 from dataclasses import dataclass
@@ -42,6 +43,11 @@ comes two intervals after the image before, is at least two late; half a one all
 
 _REMEMBERED = 10
 """Intervals whose smallest is the usual one: it survives a run of dropped images."""
+
+_SHORTEST_NS = 100_000
+"""Interval in ns below which stamps are in another unit: ten times the highest rate that can be
+set. Of an ordinary camera, it is one of seconds, ms or µs that were taken for ns."""
+_OTHER_UNIT = "stamps less than 0.1 ms apart: they are taken as ns; are they in seconds, ms or µs?"
 
 PATIENCE = 10
 """Odd stamps in a row after which a camera is taken to have no usable clock."""
@@ -229,6 +235,7 @@ class ImageStream:
         self._continuity = Continuity()
         self._aside: tuple[Frame | CodedImage, int] | None = None
         self._last_size: Size | None = None
+        self._last_ns: int | None = None
 
     def reconfigure(self, frame_rate: float, reset_on_time_jump: bool) -> None:
         """Take new settings between two images."""
@@ -257,8 +264,9 @@ class ImageStream:
         StrayImageError
             If the image does not continue the stream.
         InputError
-            If it is not usable.
+            If it is not usable, or its stamp is no integer.
         """
+        stamp_ns = checked_stamp(stamp_ns)
         aside, self._aside = self._aside, None
         if isinstance(image, np.ndarray):
             check_frame(image)
@@ -291,6 +299,9 @@ class ImageStream:
         self._clock_before = copy.deepcopy(self._clock) if leaps else None
         is_timed = continuation is not Continuation.UNTIMED
         tick = self._clock.tick(stamp_ns) if is_timed else Tick(1.0, StampEvent.UNUSABLE)
+        if self._last_ns is not None and 0 < stamp_ns - self._last_ns < _SHORTEST_NS:
+            events.append(_OTHER_UNIT)
+        self._last_ns = stamp_ns
         begins_anew = tick.event is StampEvent.JUMP_BACK and self._resets
         if tick.event is not None:
             events.append(tick.event.value)
@@ -305,6 +316,23 @@ class ImageStream:
             begins_anew = True
         period = self._clock.period or DEFAULT_PERIOD
         return Turn(frame, tick.elapsed, period, tuple(events), begins_anew, leaps, corrects)
+
+
+def checked_stamp(stamp_ns: object) -> int:
+    """Return a stamp in ns as an integer of Python.
+
+    Raises
+    ------
+    InputError
+        If it is not an integer, as one in seconds would be.
+    """
+    try:
+        return operator.index(stamp_ns)  # type: ignore[arg-type]
+    except TypeError:
+        raise InputError(
+            f"the stamp {stamp_ns!r} is not an integer: stamp_ns is in nanoseconds; "
+            "give round(1e9 * seconds)"
+        ) from None
 
 
 def _size(image: Frame | CodedImage) -> Size:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from functools import cache
 from importlib import import_module
 from types import MappingProxyType
@@ -67,7 +67,14 @@ class Variant:
     @property
     def parameters(self) -> type[Any]:
         """Parameter dataclass, all of whose fields have defaults; imported now."""
-        return cast("type[Any]", self._load("Parameters"))
+        parameters = cast("type[Any]", self._load("Parameters"))
+        if not is_dataclass(parameters):
+            raise InputError(
+                f"{self.name}, a {self.summary}, cannot be used: its {parameters.__name__} is not "
+                "a dataclass; derive it from CommonParameters and decorate it with "
+                "@dataclass(frozen=True, slots=True)"
+            )
+        return parameters
 
     def _load(self, role: str) -> object:
         module, _, prefix = self.classes.partition(":")
