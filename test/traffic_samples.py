@@ -3,14 +3,19 @@
 
 """Estimates and tracks of vehicles for tests, without a tracker."""
 
+import functools
 import math
 
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
-from vehicle_pf_tracker.trackers.traffic.track import Track
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Drive, VehicleState
+from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
+from vehicle_pf_tracker.trackers.traffic.rows import Rows
+from vehicle_pf_tracker.trackers.traffic.state import Step
+from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Gaussians, Motion
 
 MODES = {
     "t": TrackMode.TENTATIVE,
@@ -18,7 +23,7 @@ MODES = {
     "O": TrackMode.OCCLUDED,
     "L": TrackMode.LOST,
 }
-DRIVE = Drive(0.1, 1.0, 300.0)
+MOTION = Motion(0.1, 1.0, 300.0)
 """Motion of these vehicles."""
 
 
@@ -40,7 +45,50 @@ def vehicle(identity, x, bottom, mode=TrackMode.TRACKING, *, label="car", size=(
 
 
 def track(number, left, top=100.0, *, confirmed=False, **facts):
-    """Make the track of a vehicle of 40 x 30 px that stands under a far horizon."""
-    edges = np.array([left, top, left + 40.0, top + 30.0])
-    state = VehicleState(edges, np.ones(4), -1000.0, DRIVE)
-    return Track(number, state, number if confirmed else 0, **facts)
+    """Make the track of a vehicle of 40 x 30 px that stands under a far horizon, one row."""
+    edges = np.array([[left, top, left + 40.0, top + 30.0]])
+    gaussians = Gaussians.around(edges, np.ones((1, 4)), np.array([-1000.0]), MOTION)
+    return track_of(gaussians, number, confirmed=confirmed, **facts)
+
+
+def track_of(gaussians, number=1, *, confirmed=False, matches=None, **facts):
+    """Make the track of a vehicle in this state of one row."""
+    tracks = Tracks.begun(gaussians, np.array([number]), np.zeros((1, 4)))
+    if matches is not None:
+        facts["sums"] = np.array([matches] + [0.0] * 7)
+    return changed(tracks, identity=number if confirmed else 0, **facts)
+
+
+def together(*tracks):
+    """Put tracks of one row each below each other."""
+    return functools.reduce(lambda above, below: above.extended(below), tracks)
+
+
+def changed(rows, **facts):
+    """Set fields of rows, all alike, by their names wherever they are."""
+    values = {}
+    for name in type(rows).__dataclass_fields__:
+        value = getattr(rows, name)
+        if isinstance(value, Rows):
+            values[name] = changed(value, **facts)
+        elif name in facts and not (name == "sums" and value.shape[1] != 8):
+            values[name] = value.copy()
+            values[name][:] = facts[name]
+        else:
+            values[name] = value
+    return type(rows)(**values)
+
+
+def step_of(size=(320, 240), *, elapsed=1.0, period=1 / 30, parameters=None):
+    """Make a step whose image is black."""
+    width, height = size
+    return Step(
+        size=size,
+        grey=np.zeros((height, width), np.uint8),
+        colours=ColourBins(np.zeros((height, width, 3), np.uint8)),
+        parameters=parameters or TrafficParameters(),
+        road=None,
+        period=period,
+        elapsed=elapsed,
+        normals=np.zeros((50, 3)),
+    )

@@ -16,12 +16,13 @@ from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingZone
 from vehicle_pf_tracker.road.motion import KMH
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import LITTLE
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
 _LEAST_MARGIN = 1.0
 """Distance from a line in px at which the smallest box is clearly on one side: detections are
 rounded to whole pixels."""
+_SEEMS_TO_MOVE = 0.1
+"""Distance, of its height, over which a standing vehicle may seem to move; see `Place.margin`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,7 @@ class Place:
         Of two detectors on a real highway, the lower edges of nine boxes in ten lay within 9 and
         12 % of the height around the true ones.
         """
-        return max(_LEAST_MARGIN, LITTLE * self.height)
+        return max(_LEAST_MARGIN, _SEEMS_TO_MOVE * self.height)
 
     def towards(self, other: Place, share: float) -> Place:
         """Return the place that lies `share` of the way to `other`, with the mode of that one."""

@@ -6,27 +6,32 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
+    DetectionEvidence,
+    Sample,
+    places_of,
+)
 
 SIZE = (320, 240)
 ROAD, TREE = np.array([100.0, 100, 140, 130]), np.array([10.0, 10, 20, 20])
 
 
 def sample(edges, score):
-    return DetectionEvidence().samples(edges[np.newaxis], np.array([score]), SIZE)[0]
+    return Sample(score, int(places_of(edges[np.newaxis], SIZE)[0]))
 
 
 def taught(transform=lambda score: score):
     evidence = DetectionEvidence()
     rng = np.random.default_rng(3)
     for score in rng.uniform(0.1, 0.9, 600).tolist():
-        evidence.learn(sample(ROAD, transform(score)), bool(score > 0.5))
+        evidence.learn([sample(ROAD, transform(score))], bool(score > 0.5))
     return evidence
 
 
 def odds(evidence, edges, *scores):
     evidence.look()
-    return evidence.log_odds([sample(edges, score) for score in scores])
+    places = places_of(np.tile(edges, (len(scores), 1)), SIZE)
+    return evidence.log_odds(np.array(scores), places)
 
 
 def test_nothing_is_known_at_first():
@@ -51,21 +56,21 @@ def test_a_place_of_false_alarms_speaks_against_a_detection_and_never_for_one():
     evidence = taught()
     before = odds(evidence, ROAD, 0.8)
     for _ in range(50):
-        evidence.learn(sample(TREE, 0.8), False)
+        evidence.learn([sample(TREE, 0.8)], False)
     for _ in range(200):
-        evidence.learn(sample(ROAD, 0.8), True)
+        evidence.learn([sample(ROAD, 0.8)], True)
     assert odds(evidence, TREE, 0.8) < odds(evidence, ROAD, 0.8) - 2
     assert odds(evidence, ROAD, 0.8) < before + 2
 
 
 def test_no_detections_have_no_odds():
-    assert len(taught().log_odds([])) == 0
+    assert len(odds(taught(), ROAD)) == 0
 
 
 def test_places_with_false_alarms_are_counted_and_forgotten():
     evidence = DetectionEvidence()
-    evidence.learn(sample(TREE, 0.5), False)
-    evidence.learn(sample(ROAD, 0.5), True)
+    evidence.learn([sample(TREE, 0.5)], False)
+    evidence.learn([sample(ROAD, 0.5)], True)
     assert evidence.cluttered == 1
     for _ in range(20_000):
         evidence.look()

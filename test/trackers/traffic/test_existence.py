@@ -7,43 +7,52 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from traffic_samples import DRIVE, track
+from traffic_samples import changed, step_of, together, track
 
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.association import FrameDetections, birth_odds
-from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import CERTAIN, DetectionEvidence
-from vehicle_pf_tracker.trackers.traffic.existence import Existence
-from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.track import FEW, predict
+from vehicle_pf_tracker.trackers.traffic.association import birth_odds
+from vehicle_pf_tracker.trackers.traffic.candidates import weighed
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, PLACES
+from vehicle_pf_tracker.trackers.traffic.existence import (
+    CERTAIN,
+    believed,
+    doubt,
+    end,
+    fits_of_known,
+)
+from vehicle_pf_tracker.trackers.traffic.identity import resumed
+from vehicle_pf_tracker.trackers.traffic.prediction import driven
+from vehicle_pf_tracker.trackers.traffic.state import Experience, State
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 SIZE = (320, 240)
 SCORE = 0.8
+STEP = step_of(SIZE)
+ONLY = np.array([0])
 
 
-def found(evidence, *boxes):
+def seen(evidence, *boxes):
     """Detections of one frame, as the tracker has them."""
-    frame = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
-    detections = Detections.make(boxes, np.full(len(boxes), SCORE))
     evidence.look()
-    return FrameDetections(detections, evidence, ColourBins(frame), SIZE)
+    return weighed(Detections.make(boxes, np.full(len(boxes), SCORE)), evidence, SIZE)
 
 
 def ended_unconfirmed(places):
     """Return the log odds of a detection after ten tracks that were detected at these places."""
-    evidence = DetectionEvidence()
-    existence = Existence(TrafficParameters(), evidence)
+    experience = Experience()
+    evidence = experience.detections
     for _ in range(10):
         one = track(1, *places[0])
         for frame, place in enumerate(places):
-            predict([one], -1000.0, 1.0 if frame else 0.0, DRIVE)
-            detections = found(evidence, (*place, 40, 30))
-            one.state.measure(detections.edges[0], np.ones(4))
-            assert not existence.detected(one, detections, 0, 0.0)
-        one.undetected = 100.0
-        assert existence.survivors([one], SIZE, 1 / 30) == []
-    return float(found(evidence, (200, 180, 40, 30)).log_odds[0])
+            one = driven(one, -1000.0, step_of(SIZE, elapsed=1.0 if frame else 0.0))
+            candidates = seen(evidence, (*place, 40, 30))
+            gaussians = one.drives.gaussians.measured(candidates.edges, np.ones((1, 4)))
+            one = replace(one, drives=replace(one.drives, gaussians=gaussians))
+            one, proven = believed(one, candidates, ONLY, np.zeros(1), experience, STEP)
+            assert not proven
+        state = end(State(changed(one, undetected=100.0), experience), STEP)
+        assert len(state.tracks) == 0
+    return float(seen(evidence, (200, 180, 40, 30)).log_odds[0])
 
 
 def test_what_flickered_in_one_place_speaks_against_its_scores():
@@ -78,44 +87,44 @@ def test_a_shape_that_drives_may_be_a_piece_of_a_vehicle_for_half_a_second(
 
 
 def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_alarm():
-    evidence = DetectionEvidence()
-    one = track(1, 100.0)
-    predict([one], -1000.0, 1.0, DRIVE)
-    here, aside = birth_odds(
-        [one], found(evidence, (103, 100, 40, 30), (280, 20, 9, 9)), [0, 1], 0.05
-    )[0]
+    evidence = Experience().detections
+    one = driven(track(1, 100.0), -1000.0, STEP)
+    both, here_only = [(103, 100, 40, 30), (280, 20, 9, 9)], (103, 100, 40, 30)
+    here, aside = birth_odds(one, seen(evidence, *both), np.arange(2), SIZE, 0.05)[0]
     assert here > 2
     assert aside < -10
-    sample = found(evidence, (103, 100, 40, 30)).samples[0]
+    sample = seen(evidence, here_only).samples(ONLY)
     for _ in range(30):  # of a place where false alarms are common, less so
         evidence.look()
         evidence.learn(sample, False)
-    assert birth_odds([one], found(evidence, (103, 100, 40, 30)), [0], 0.05)[0, 0] < here - 2
+    assert birth_odds(one, seen(evidence, here_only), ONLY, SIZE, 0.05)[0, 0] < here - 2
 
 
 def test_a_detector_that_finds_one_vehicle_in_three_is_known_to():
-    existence = Existence(TrafficParameters(), DetectionEvidence())
-    one = track(1, 100.0, confirmed=True, has_driven=True)
+    experience = Experience()
+    one, other = track(1, 100.0, confirmed=True, has_driven=True), track(2, 200.0, confirmed=True)
     for frame in range(300):
-        one.undetected, one.log_odds = float(frame % 3 > 0), 5.0
-        existence.fade([one, track(2, 200.0, confirmed=True)], 1.0, SIZE)
-    assert existence.detection_rate == pytest.approx(1 / 3, abs=0.05)
+        missed = changed(one, undetected=float(frame % 3 > 0))
+        doubt(State(together(missed, other), experience), STEP)
+    assert experience.rate.share == pytest.approx(1 / 3, abs=0.05)
 
 
 def missed(undetected, *, seen=()):
     """Evidence that confirmed vehicles in sight lose in a frame, undetected for so long."""
-    tracks = [
-        track(
-            identity,
-            60.0 * identity,
-            confirmed=True,
-            log_odds=5.0,
-            undetected=0.0 if identity in seen else periods,
+    tracks = together(
+        *(
+            track(
+                identity,
+                60.0 * identity,
+                confirmed=True,
+                log_odds=5.0,
+                undetected=0.0 if identity in seen else periods,
+            )
+            for identity, periods in enumerate(undetected, start=1)
         )
-        for identity, periods in enumerate(undetected, start=1)
-    ]
-    Existence(TrafficParameters(), DetectionEvidence()).fade(tracks, 1.0, SIZE)
-    return [5.0 - one.log_odds for one in tracks]
+    )
+    state = doubt(State(tracks, Experience()), STEP)
+    return (5.0 - state.tracks.beliefs.log_odds).tolist()
 
 
 def test_a_vehicle_that_alone_is_missed_is_doubted():
@@ -133,94 +142,97 @@ def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
     assert min(missed([200.0, 200.0])) > 0
 
 
-def vanish(existence, left, *, given=False):
+def vanish(experience, left, *, given=False):
     """Return a vehicle that the detector missed several times in plain sight."""
     facts = {"confirmed": True, "has_driven": True, "given": given}
-    one = track(1, left, **facts, log_odds=CERTAIN, undetected=1.0)
-    for _ in range(FEW):
-        existence.fade([one], 1.0, SIZE)
-        existence.survivors([one], SIZE, 1 / 30)
-    return one
+    state = State(track(1, left, **facts, log_odds=CERTAIN, undetected=1.0), experience)
+    for _ in range(4):
+        state = end(doubt(state, STEP), STEP)
+    return state.tracks
 
 
-def end(existence, left):
+def is_lost(tracks):
+    return bool(tracks.sights.absences.lost[0])
+
+
+def ended(experience, left):
     """Let a vehicle vanish and never come back."""
-    one = vanish(existence, left)
-    one.unseen = 1e3
-    assert existence.survivors([one], SIZE, 1 / 30) == []
+    gone = changed(vanish(experience, left), unseen=1e3)
+    assert len(end(State(gone, experience), STEP).tracks) == 0
 
 
-def come_back(existence, left):
+def come_back(experience, left):
     """Let a vehicle vanish and be found again."""
-    existence.resume(vanish(existence, left), track(2, left))
+    resumed(together(vanish(experience, left), track(2, left)), 0, 1, experience)
 
 
 def test_what_vanished_where_vehicles_come_back_is_occluded_and_elsewhere_lost():
-    existence = Existence(TrafficParameters(), DetectionEvidence())
-    assert not vanish(existence, 100.0).lost  # nothing is known
+    experience = Experience()
+    assert not is_lost(vanish(experience, 100.0))  # nothing is known
     for _ in range(3):
-        come_back(existence, 20.0)
-        end(existence, 200.0)
-    assert not vanish(existence, 20.0).lost
-    assert vanish(existence, 200.0).lost
-    come_back(existence, 20.0)
-    assert not vanish(existence, 120.0).lost  # most came back, wherever that was
+        come_back(experience, 20.0)
+        ended(experience, 200.0)
+    assert not is_lost(vanish(experience, 20.0))
+    assert is_lost(vanish(experience, 200.0))
+    come_back(experience, 20.0)
+    assert not is_lost(vanish(experience, 120.0))  # most came back, wherever that was
 
 
 def test_the_share_of_a_place_is_a_beta_binomial_estimate():
-    existence = Existence(TrafficParameters(), DetectionEvidence())
-    end(existence, 20.0)
-    end(existence, 20.0)
-    come_back(existence, 200.0)
+    experience = Experience()
+    ended(experience, 20.0)
+    ended(experience, 20.0)
+    come_back(experience, 200.0)
     usual = (1 + 1) / (3 + 2)
-    shares = [
-        existence.reappearances.share(vanish(existence, left).vanished) for left in (20.0, 200.0)
-    ]
+    places = [vanish(experience, left).sights.absences.vanished[0] for left in (20.0, 200.0)]
+    assert all(0 <= place < PLACES for place in places)
+    shares = [experience.reappearances.share(int(place)) for place in places]
     assert shares == pytest.approx([2 * usual / 4, (1 + 2 * usual) / 3])
 
 
 @pytest.mark.parametrize("found", [True, False])
 def test_what_becomes_of_a_vehicle_becomes_of_the_part_that_was_missing(found):
-    existence = Existence(TrafficParameters(), DetectionEvidence())
-    one = vanish(existence, 100.0)
-    for _ in range(FEW):
-        one.shorten((3, 5), is_short=True)
+    experience, place = Experience(), 53
+    one = changed(vanish(experience, 100.0), shortened=place)
     if found:
-        existence.resume(one, track(2, 100.0))
+        one = resumed(together(one, track(2, 100.0)), 0, 1, experience)
+        assert one.drives.extents.shortened[0] == NOWHERE
     else:
-        one.unseen = 1e3
-        existence.survivors([one], SIZE, 1 / 30)
-    assert (existence.uncoverings.share((3, 5)) > 0.5) is found
-    assert one.shortened is None
+        end(State(changed(one, unseen=1e3), experience), STEP)
+    assert (experience.uncoverings.share(place) > 0.5) is found
 
 
 def test_a_place_is_learnt_anew():
-    existence = Existence(TrafficParameters(), DetectionEvidence())
+    experience = Experience()
     for _ in range(500):
-        come_back(existence, 100.0)
+        come_back(experience, 100.0)
     for _ in range(40):
-        end(existence, 100.0)
-    assert vanish(existence, 100.0).lost
+        ended(experience, 100.0)
+    assert is_lost(vanish(experience, 100.0))
 
 
 def test_one_that_was_given_by_hand_stays_and_teaches_nothing():
-    existence = Existence(TrafficParameters(), DetectionEvidence())
-    end(existence, 100.0)
-    one = vanish(existence, 100.0, given=True)
-    assert not one.lost
-    assert one.vanished is None
+    experience = Experience()
+    ended(experience, 100.0)
+    one = vanish(experience, 100.0, given=True)
+    assert not is_lost(one)
+    assert one.sights.absences.vanished[0] == NOWHERE
 
 
 def evidence_of(fit, *, drives=True):
     """Evidence that a detection which fits its confirmed vehicle so well adds by where it is."""
-    existence, evidence = Existence(TrafficParameters(), DetectionEvidence()), DetectionEvidence()
     one = track(1, 100.0, confirmed=True, has_driven=True)
+    smooth = replace(STEP.motion, acceleration=0.001)
+    gaussians = one.drives.gaussians
     for frame in range(20):
         left = 100.0 + 3 * frame * drives
-        predict([one], -1000.0, 1.0, replace(DRIVE, acceleration=0.001))
-        one.state.measure(np.array([left, 100, left + 40, 130]), np.full(4, 0.5))
-    existence.detected(one, found(evidence, (left, 100, 40, 30)), 0, fit)
-    return one.log_odds
+        box = np.array([[left, 100, left + 40, 130]])
+        gaussians = gaussians.driven(1.0, smooth).measured(box, np.full((1, 4), 0.5))
+    one = replace(one, drives=replace(one.drives, gaussians=gaussians))
+    candidates = seen(Experience().detections, (left, 100, 40, 30))
+    fits = fits_of_known(one, np.array([fit]))
+    one, _ = believed(one, candidates, ONLY, fits, Experience(), STEP)
+    return float(one.beliefs.log_odds[0])
 
 
 def test_a_detection_of_a_vehicle_counts_by_how_much_better_it_fits_than_a_false_alarm():

@@ -6,53 +6,60 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.horizon import Growth, Horizon
+from vehicle_pf_tracker.trackers.traffic.horizon import Growths, Horizon, explaining_row
 
 HEIGHT = 240
 
 
 def grown(horizon, bottoms, factor=0.4):
     """Growth of a vehicle whose widths are zero at the row `horizon`, px."""
-    growth = Growth()
+    growth = Growths.unknown(1)
     for bottom in bottoms:
         width = factor * (bottom - horizon) if horizon is not None else 40.0
-        growth.add(np.array([100 - width / 2, bottom - 20, 100 + width / 2, bottom]))
+        box = [100 - width / 2, bottom - 20, 100 + width / 2, bottom]
+        growth = growth.added(np.array([box]))
     return growth
+
+
+def row(assumed, *growths):
+    told = [growth.told(HEIGHT) for growth in growths]
+    return explaining_row(assumed, np.concatenate([np.empty((0, 3)), *told]))
 
 
 def test_one_vehicle_that_is_followed_tells_the_horizon():
     growth = grown(24, range(60, 160))
-    assert Horizon().row(-0.2, [growth], HEIGHT) == pytest.approx(0.1, abs=0.04)
+    assert row(-0.2, growth) == pytest.approx(0.1, abs=0.04)
 
 
 def test_the_more_vehicles_the_nearer():
     for factors in (1, 8):
         horizon = Horizon()
         for factor in range(factors):
-            horizon.learn(grown(48, range(80, 200), 0.3 + 0.1 * factor), HEIGHT)
-        row = horizon.row(-0.2, [], HEIGHT)
-    assert row == pytest.approx(0.2, abs=0.02)
+            grows = grown(48, range(80, 200), 0.3 + 0.1 * factor)
+            horizon = horizon.learnt(grows, HEIGHT)
+        horizon = horizon.looked(-0.2, Growths.unknown(0), (320, HEIGHT), None)
+    assert horizon.row / HEIGHT == pytest.approx(0.2, abs=0.02)
 
 
 def test_widths_of_different_vehicles_are_not_compared():
     # Lorries drive in the nearer lane: from the side a wall of perspective, where there is none.
     lanes = [grown(None, 60 + np.sin(np.arange(60))), grown(None, 140 + np.sin(np.arange(60)), 3)]
-    assert Horizon().row(-0.2, lanes, HEIGHT) <= -0.2
+    assert row(-0.2, *lanes) <= -0.2
 
 
 def test_what_did_not_move_tells_nothing():
-    assert grown(24, [100.0] * 50).told(HEIGHT) is None
-    assert grown(24, range(60, 70)).told(HEIGHT) is None
-    assert Horizon().row(-50.0, [grown(24, [100.0] * 50)], HEIGHT) == -50.0
+    assert len(grown(24, [100.0] * 50).told(HEIGHT)) == 0
+    assert len(grown(24, range(60, 70)).told(HEIGHT)) == 0
+    assert row(-50.0, grown(24, [100.0] * 50)) == -50.0
 
 
 def test_vehicles_that_do_not_grow_put_it_far_above():
-    assert Horizon().row(-0.2, [grown(None, range(60, 160))] * 3, HEIGHT) < -1
+    assert row(-0.2, *[grown(None, range(60, 160))] * 3) < -1
 
 
 def test_one_that_is_wrong_does_not_move_it():
     right = [grown(24, range(60, 160), factor) for factor in (0.3, 0.4, 0.5)]
-    wrong = Growth()
+    wrong = Growths.unknown(1)
     for bottom in range(60, 160):
-        wrong.add(np.array([0.0, bottom - 20, 300.0 - bottom, bottom]))
-    assert Horizon().row(-0.2, [*right, wrong], HEIGHT) == pytest.approx(0.1, abs=0.03)
+        wrong = wrong.added(np.array([[0.0, bottom - 20, 300.0 - bottom, bottom]]))
+    assert row(-0.2, *right, wrong) == pytest.approx(0.1, abs=0.03)

@@ -3,25 +3,31 @@
 
 """Costs of pairs, their assignment, and overlaps, with hand numbers."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from traffic_samples import track
+from traffic_samples import changed, together, track
 
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas, clipped, inside_image, overlaps
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import (
     GATE,
-    FrameDetections,
-    assign,
+    assigned,
     edge_costs,
-    is_double,
     pair_costs,
 )
-from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
-from vehicle_pf_tracker.trackers.traffic.parameters import DetectionParameters
+from vehicle_pf_tracker.trackers.traffic.candidates import weighed
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
+    DetectionEvidence,
+    Sample,
+    places_of,
+)
+from vehicle_pf_tracker.trackers.traffic.identity import is_double
 
+SIZE = (320, 240)
+ONLY = np.array([0])
 BOX = np.array([10.0, 10, 50, 40])
 
 
@@ -43,9 +49,17 @@ def test_a_sliver_is_no_part():
 
 
 def test_the_assignment_is_the_cheapest_of_all_and_below_the_gate():
-    assert assign(np.array([[1.0, 2.0], [2.0, 29.0]])) == [(0, 1), (1, 0)]
-    assert assign(np.array([[1.0, 40.0], [40.0, 40.0]])) == [(0, 0)]
-    assert assign(np.empty((0, 3))) == []
+    assert pairs([[1.0, 2.0], [2.0, 29.0]]) == [(7, 6), (8, 5)]
+    assert pairs([[1.0, 40.0], [40.0, 40.0]]) == [(7, 5)]
+    assert pairs(np.empty((0, 3))) == []
+
+
+def pairs(costs):
+    """Pairs of tracks 7 and 8 with detections 5 and 6."""
+    costs = np.array(costs)
+    rows, columns, fits = assigned(np.array([7, 8]), np.array([5, 6]), costs, -costs)
+    assert len(fits) == len(rows)
+    return list(zip(rows.tolist(), columns.tolist(), strict=True))
 
 
 def test_overlaps():
@@ -65,37 +79,33 @@ def test_overlaps():
 def test_what_shares_most_of_its_box_with_a_detected_vehicle_is_its_double(left, facts, double):
     new, box = track(3, 100, detection=BOX), BOX + np.array([left - 100, 0] * 2)
     other = track(1, left, confirmed=True, detection=box, **facts)
-    assert is_double(new, [new, other]) is double
-    assert not is_double(new, [new, track(2, left, detection=box)])  # new as well
+    assert is_double(together(other, new), 1) is double
+    assert not is_double(together(track(2, left, detection=box), new), 1)  # new as well
 
 
 @pytest.mark.parametrize("log_odds", [1.0, -1.0])
 def test_a_likely_vehicle_that_overlaps_by_half_may_be_one_whose_drive_was_wrong(log_odds):
     sure = track(1, 100)
-    sure.state.covariance *= 1e-4
+    sure = changed(sure, covariance=sure.drives.gaussians.covariance * 1e-4)
     boxes = Detections.make([(106, 104, 40, 30)], [0.8])
-    frame = np.zeros((240, 320, 3), np.uint8)
-    found = FrameDetections(boxes, DetectionEvidence(), ColourBins(frame), (320, 240))
-    found.log_odds = np.array([log_odds])
-    settings = DetectionParameters(edge_noise=0.02)
-    cost, _ = pair_costs([sure], found, [0], settings)
+    candidates = weighed(boxes, DetectionEvidence(), SIZE)
+    candidates = replace(candidates, log_odds=np.array([log_odds]))
+    cost, _ = pair_costs(sure, candidates, ONLY, SIZE, 0.02)
     assert (cost < GATE).all() == (log_odds > 0)
 
 
 def test_the_log_odds_of_a_pair_fall_with_its_distance_and_with_false_alarms_there():
     evidence, vehicle = DetectionEvidence(), track(1, 100.0)
-    frame = np.zeros((240, 320, 3), np.uint8)
 
     def odds(left):
-        boxes = Detections.make([(left, 100, 40, 30)], [0.8])
-        found = FrameDetections(boxes, evidence, ColourBins(frame), (320, 240))
-        return float(pair_costs([vehicle], found, [0], DetectionParameters())[1][0, 0])
+        candidates = weighed(Detections.make([(left, 100, 40, 30)], [0.8]), evidence, SIZE)
+        return float(pair_costs(vehicle, candidates, ONLY, SIZE, 0.05)[1][0, 0])
 
     before = odds(100)
     assert before > 2
     assert odds(115) < 0
-    sample = evidence.samples(vehicle.state.edges[np.newaxis], np.ones(1), (320, 240))[0]
+    sample = Sample(1.0, int(places_of(vehicle.edges, SIZE)[0]))
     for _ in range(30):
         evidence.look()
-        evidence.learn(sample, False)
+        evidence.learn([sample], False)
     assert odds(100) < before - 2

@@ -5,7 +5,7 @@
 
 import numpy as np
 import pytest
-from traffic_samples import track
+from traffic_samples import together, track
 
 from laboratory.scenes import make_traffic_scene
 from laboratory.scenes.perspective import looking
@@ -46,12 +46,13 @@ def standing(number, left, bottom):
 
 def test_the_order_in_depth_is_that_on_the_road():
     lower, higher = standing(1, 500.0, 302.0), standing(2, 100.0, 300.0)
-    assert nearest_first([higher, lower], None) == [lower, higher]
-    assert nearest_first([higher, lower], road()) == [lower, higher]
+    both = together(higher, lower)
+    assert nearest_first(both, None).tolist() == [1, 0]
+    assert nearest_first(both, road()).tolist() == [1, 0]
     # The left of the image shows what is nearer, where the camera is rolled.
     (left, right) = (road(roll=-0.1).to_road(np.array(feet)) for feet in ((120, 300), (520, 302)))
     assert left[1] < right[1]
-    assert nearest_first([higher, lower], road(roll=-0.1)) == [higher, lower]
+    assert nearest_first(both, road(roll=-0.1)).tolist() == [0, 1]
 
 
 def predicted_error(is_calibrated, identity=2, seen=30, hidden=20):

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.detection.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import VehicleState
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Gaussians
 
 GROUND = np.random.default_rng(0).integers(90, 130, (240, 320, 3)).astype(np.uint8)
 PAINT = np.random.default_rng(1).integers(0, 255, (80, 80, 3)).astype(np.uint8)
@@ -153,13 +153,14 @@ def test_a_vehicle_of_a_bad_state_is_dropped_counted_and_the_others_go_on(monkey
     tracker.step(scene(*boxes))
     for box in boxes:
         tracker.add(Box(*box))
-    predict = VehicleState.predict
+    driven = Gaussians.driven
 
-    def spoil(state, elapsed, drive):
-        predict(state, elapsed, drive)
-        state.covariance[state.edges[:, 0] < 100, 1] = value
+    def spoil(gaussians, elapsed, motion):
+        gaussians = driven(gaussians, elapsed, motion)
+        gaussians.covariance[gaussians.edges[:, 0] < 100, 1] = value
+        return gaussians
 
-    monkeypatch.setattr(VehicleState, "predict", spoil)
+    monkeypatch.setattr(Gaussians, "driven", spoil)
     kept, new = tracker.step(scene(*boxes), Detections.make(boxes))
     assert tracker.bad_states == 1
     assert (kept.identity, kept.mode) == (2, TrackMode.TRACKING)

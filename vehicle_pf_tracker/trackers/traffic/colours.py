@@ -5,8 +5,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import cv2
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
@@ -25,36 +28,44 @@ class ColourBins:
     def __init__(self, frame: Frame) -> None:
         self._frame = frame
 
-    def histogram(self, edges: Array, covers: Array) -> Array:
-        """Count the colours of a box's inner part.
+    def histograms(self, edges: Array, covers: Sequence[Array]) -> Array:
+        """Count the colours of the inner parts of boxes.
 
         Parameters
         ----------
-        edges : (4,) array
-            Edges of the box, px.
-        covers : (K, 4) array
-            Edges of boxes whose pixels are left out.
+        edges : (N, 4) array
+            Edges of the boxes, px.
+        covers : sequence of N (K, 4) arrays
+            Edges of boxes whose pixels are left out of each.
 
         Returns
         -------
-        (BINS,) array
-            Shares of the colours; zero where nothing of the box is in sight.
+        (N, BINS) array
+            Shares of the colours; zero where nothing of a box is in sight.
         """
-        left, top, right, bottom = edges.tolist()
-        dx, dy = RIM * (right - left), RIM * (bottom - top)
-        x0, x1 = max(int(left + dx), 0), max(int(right - dx) + 1, 0)
-        y0, y1 = max(int(top + dy), 0), max(int(bottom - dy) + 1, 0)
-        part, seen = self._frame[y0:y1, x0:x1], None
-        if not part.size:
-            return np.zeros(BINS)
-        if len(covers):
-            seen = np.ones(part.shape[:2], np.uint8)
-            for cover in np.maximum(covers - (x0, y0, x0, y0), 0.0).astype(int).tolist():
-                seen[cover[1] : cover[3], cover[0] : cover[2]] = 0
-        counts = cv2.calcHist([part], [0, 1, 2], seen, [_LEVELS] * 3, [0.0, 256.0] * 3).ravel()
-        return np.asarray(counts / max(float(counts.sum()), 1.0), np.float64)
+        margins = RIM * (edges[:, 2:] - edges[:, :2])
+        low = np.maximum((edges[:, :2] + margins).astype(np.intp), 0)
+        high = np.maximum((edges[:, 2:] - margins).astype(np.intp) + 1, 0)
+        counts = np.zeros((len(edges), BINS), np.float32)
+        boxes = zip(np.hstack([low, high]).tolist(), covers, strict=True)
+        for row, ((left, top, right, bottom), cover) in enumerate(boxes):
+            part = self._frame[top:bottom, left:right]
+            if part.size:
+                seen = _uncovered(part, cover - (left, top, left, top)) if len(cover) else None
+                shares = cv2.calcHist([part], [0, 1, 2], seen, [_LEVELS] * 3, [0.0, 256.0] * 3)
+                counts[row] = shares.ravel()
+        totals = np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
+        return np.asarray(counts / totals, np.float64)
 
 
-def similarity(one: Array, other: Array) -> float:
-    """Bhattacharyya coefficient of two histograms, 0 to 1."""
-    return float(np.sqrt(one * other).sum())
+def _uncovered(part: Frame, covers: Array) -> npt.NDArray[np.uint8]:
+    """Mask of the pixels of a part of the image that no nearer box covers, by its own pixels."""
+    seen = np.ones(part.shape[:2], np.uint8)
+    for left, top, right, bottom in np.maximum(covers, 0.0).astype(int).tolist():
+        seen[top:bottom, left:right] = 0
+    return seen
+
+
+def similarities(some: Array, others: Array) -> Array:
+    """Bhattacharyya coefficients (...) of histograms (..., BINS), 0 to 1."""
+    return np.asarray(np.sqrt(some * others).sum(axis=-1))

@@ -10,14 +10,13 @@ not compared: where lorries drive in the nearest lane, they would bend the road.
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR
+from vehicle_pf_tracker.trackers.traffic.rows import Rows, columns
 
 _LEAST_BOXES = 20
 """Boxes below which a vehicle does not tell how it grows. At 30, HOTA of `traffic-overtaking` falls
@@ -33,6 +32,8 @@ longer."""
 _ASSUMED_SPREAD = 0.8
 """Standard deviation of the assumed growth per image height: from the side there is none, and from
 a bridge a vehicle in the middle doubles its size on a third of the height."""
+_FARTHEST = 3.0
+"""Standard deviations of a growth beyond which it is another vehicle's, and counts no more."""
 _GROWTHS = np.geomspace(0.3, 30.0, 100)
 """Growths per image height that are tried, of a vehicle in the middle of all: by less perspective
 is none, and where it is more the vehicle is a point."""
@@ -40,34 +41,46 @@ _HIGHEST = -1 / float(_GROWTHS[0])
 """Highest row of a calibrated horizon, of the image's height; it makes as little difference."""
 
 
-class Growth:
-    """Regression of one vehicle's widths on its lower edges, in px."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Growths(Rows):
+    """Regressions of the widths of N vehicles on their lower edges, in px.
 
-    def __init__(self) -> None:
-        self._sums = np.zeros(5)
+    Attributes
+    ----------
+    sums : (N, 5) array
+        Sums over the boxes: one, lower edge, its square, width, width times lower edge.
+    """
 
-    def add(self, edges: Array) -> None:
-        """Add a detection (4,) that shows the whole vehicle."""
-        width, bottom = float(edges[2] - edges[0]), float(edges[3])
-        self._sums += (1.0, bottom, bottom**2, width, bottom * width)
+    sums: Array
 
-    def told(self, height: int) -> tuple[float, float, float] | None:
-        """Summarise it in units of the image's height; None of too few boxes.
+    @classmethod
+    def unknown(cls, count: int) -> Growths:
+        """Growths before the first box."""
+        return cls(np.zeros((count, 5)))
+
+    def added(self, edges: Array) -> Growths:
+        """Add a detection of each (N, 4) that shows the whole vehicle."""
+        width, bottom = edges[:, 2] - edges[:, 0], edges[:, 3]
+        once = np.ones(len(edges))
+        terms = columns(once, bottom, bottom * bottom, width, bottom * width)
+        return Growths(self.sums + terms)
+
+    def told(self, height: int) -> Array:
+        """Summarise those of enough boxes in units of the image's height.
 
         Returns
         -------
-        middle, growth, scatter : float
-            Mean of its lower edges, relative growth per height, sum of the edges' squared
-            deviations.
+        (K, 3) array
+            Mean of the lower edges, relative growth per height, and sum of the edges' squared
+            deviations, of each.
         """
-        count, total, squares, widths, products = self._sums.tolist()
-        if count < _LEAST_BOXES or widths <= 0:
-            return None
+        sums = self.sums[(self.sums[:, 0] >= _LEAST_BOXES) & (self.sums[:, 3] > 0)]
+        count, total, squares, widths, products = sums.T
         scatter = squares - total * total / count
-        if scatter <= 0:
-            return None
-        slope = (products - total * widths / count) / scatter * count / widths
-        return total / count / height, slope * height, scatter / height**2
+        kept = scatter > 0
+        slope = (products - total * widths / count) / np.where(kept, scatter, 1.0) * count / widths
+        told = columns(total / count / height, slope * height, scatter / height**2)
+        return np.asarray(told[kept])
 
 
 def calibrated_row(road: RoadPlane, size: tuple[int, int]) -> float:
@@ -87,63 +100,67 @@ def calibrated_row(road: RoadPlane, size: tuple[int, int]) -> float:
     return float(max(-(across * width / 2 + level) / down / height, _HIGHEST))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
 class Horizon:
-    """Row that explains best how vehicles have grown, those that are followed included."""
+    """Row that explains best how vehicles have grown, those that are followed included.
 
-    def __init__(self) -> None:
-        self._ended: deque[tuple[float, float, float]] = deque(maxlen=_REMEMBERED)
+    Attributes
+    ----------
+    row : float
+        The row in px.
+    ended : (K, 3) array
+        Growth of vehicles whose ways have ended, as `Growths.told` has it.
+    """
 
-    def learn(self, growth: Growth, height: int) -> None:
-        """Add a vehicle whose way has ended."""
-        told = growth.told(height)
-        if told is not None:
-            self._ended.append(told)
+    row: float = 0.0
+    ended: Array = field(default_factory=lambda: np.empty((0, 3)))
 
-    def look(
-        self,
-        assumed: float,
-        followed: Iterable[Growth],
-        size: tuple[int, int],
-        road: RoadPlane | None,
-    ) -> float:
-        """Row of the horizon in this image, px; that of the road, where it is calibrated.
+    def learnt(self, growths: Growths, height: int) -> Horizon:
+        """Add vehicles whose ways have ended."""
+        ended = np.concatenate([self.ended, growths.told(height)])
+        return replace(self, ended=ended[-_REMEMBERED:])
+
+    def looked(
+        self, assumed: float, followed: Growths, size: tuple[int, int], road: RoadPlane | None
+    ) -> Horizon:
+        """Find the row in this image; that of the road, where it is calibrated.
 
         Parameters
         ----------
         assumed : float
             Horizon assumed before vehicles show it, fraction of the image's height.
-        followed : iterable of Growth
-            Growth of each followed vehicle.
+        followed : Growths
+            Growths of the vehicles that are followed.
         size : (int, int)
             Width and height of the image.
         road : RoadPlane or None
             Calibrated road.
         """
         if road is not None:
-            return calibrated_row(road, size) * size[1]
-        return self.row(assumed, followed, size[1]) * size[1]
+            return replace(self, row=calibrated_row(road, size) * size[1])
+        told = np.concatenate([self.ended, followed.told(size[1])])
+        return replace(self, row=explaining_row(assumed, told) * size[1])
 
-    def row(self, assumed: float, followed: Iterable[Growth], height: int) -> float:
-        """Row of the horizon, of the image's height.
 
-        Parameters
-        ----------
-        assumed : float
-            Horizon assumed before vehicles show it.
-        followed : iterable of Growth
-            Growth of each followed vehicle.
-        height : int
-            Height of the image, px.
-        """
-        told = [*self._ended, *(one for each in followed if (one := each.told(height)))]
-        if not told:
-            return assumed
-        middle, growth, scatter = np.array(told).T[..., np.newaxis]
-        centre = float(middle.mean())
-        usual = 1 / (centre - min(assumed, centre - 1 / _GROWTHS[-1]))
-        growths = np.append(_GROWTHS, usual)
-        rows = centre - 1 / growths
-        expected = np.where(middle > rows, 1 / (middle - rows), np.inf)
-        variance = _WIDTH_NOISE**2 / scatter + _TURN**2
-        costs = np.minimum((growth - expected) ** 2 / variance, FAR**2).sum(axis=0)
-        return float(rows[int(np.argmin(costs + ((growths - usual) / _ASSUMED_SPREAD) ** 2))])
+def explaining_row(assumed: float, told: Array) -> float:
+    """Row of the horizon that explains growths (K, 3) best, of the image's height.
+
+    Parameters
+    ----------
+    assumed : float
+        Horizon assumed before vehicles show it.
+    told : (K, 3) array
+        What the growths of vehicles tell, see `Growths.told`.
+    """
+    if not len(told):
+        return assumed
+    middle, growth, scatter = told.T[..., np.newaxis]
+    centre = float(middle.mean())
+    usual = 1 / (centre - min(assumed, centre - 1 / _GROWTHS[-1]))
+    growths = np.append(_GROWTHS, usual)
+    rows = centre - 1 / growths
+    expected = np.where(middle > rows, 1 / (middle - rows), np.inf)
+    variance = _WIDTH_NOISE**2 / scatter + _TURN**2
+    # Bounded, so that one vehicle that turned, or was two, does not move the horizon of the others.
+    costs = np.minimum((growth - expected) ** 2 / variance, _FARTHEST**2).sum(axis=0)
+    return float(rows[int(np.argmin(costs + ((growths - usual) / _ASSUMED_SPREAD) ** 2))])

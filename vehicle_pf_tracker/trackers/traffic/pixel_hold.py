@@ -10,28 +10,30 @@ well they explain where the points went; their mean and spread are the measureme
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TypeAlias
+from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.overlaps import areas
+from vehicle_pf_tracker.core.overlaps import NOTHING, areas
 from vehicle_pf_tracker.image.shared_motion import PointFlow
-from vehicle_pf_tracker.trackers.traffic.colours import RIM, ColourBins, similarity
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import HALF
-from vehicle_pf_tracker.trackers.traffic.track import FEW, Track
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import FAR, PIXEL_NOISE, V, X
-
-Grey: TypeAlias = npt.NDArray[np.uint8]
+from vehicle_pf_tracker.trackers.traffic.colours import RIM, similarities
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
+from vehicle_pf_tracker.trackers.traffic.state import Grey, State, Step
+from vehicle_pf_tracker.trackers.traffic.tracks import Sights, Tracks
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import PIXEL_NOISE, V, X
 
 _GRID = 5
 """Points along each side of a box; the fewest that a motion is taken from, and as many as count as
 independent: neighbours err together."""
-_OUTLIER = math.exp(-(FAR**2) / 2)
+_ASTRAY = 3.0
+"""Standard deviations beyond which a point went elsewhere: one in 400 is as far."""
+_OUTLIER = math.exp(-(_ASTRAY**2) / 2)
 """Likelihood of a point that went elsewhere."""
+_MOST_ALIVE, _MOST_AGREE = 0.5, 0.5
+"""Least share of the points found again that drive, and of these that agree with a box."""
+_STANDS = 0.5
+"""Share of the predicted way below which a point does not drive."""
 _SLIP = 0.02
 """Standard deviation, of its size, by which a box grows or slips on its vehicle in a frame."""
 _SLIP_PX = 0.3
@@ -41,125 +43,144 @@ _CAUTION = 1.5
 _HELD_SHARE = 0.3
 """Least visible share of a vehicle, and share in the image, for pixels to hold it. At a half, and
 without the caution, IDF1 by motion falls by three."""
+_HELD_FOR = 4.0
+"""Nominal periods since a vehicle was seen from which its points lie on what hides it."""
 _HELD_FALL = 0.15
 """Fall of the colours' similarity below its usual value above which pixels do not hold it. At .2,
 as for vehicles that come back, IDF1 by motion behind the bridge falls by five."""
 _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 
 
-@dataclass(frozen=True, slots=True)
-class Hold:
-    """Measurement of a box by its pixels: edges and their standard deviations (4,), px."""
-
-    edges: Array
-    deviations: Array
-
-
-class PixelHold:
-    """Flow between two frames, of points in boxes."""
-
-    def __init__(self) -> None:
-        self._before: Grey | None = None
-        self._present: Grey | None = None
-
-    def show(self, grey: Grey) -> None:
-        """Take the next frame."""
-        self._before, self._present = self._present, grey
-
-    def hold(self, tracks: Sequence[Track], colours: ColourBins, normals: Array) -> None:
-        """Measure the vehicles among `tracks` that were not detected; see `measure`."""
-        held = [
-            track
-            for track in tracks
-            if track.confirmed
-            and track.undetected > 0
-            and track.unseen < FEW  # later the points lie on what hides it
-            and min(track.visible, track.inside) > _HELD_SHARE
-        ]
-        for track, hold in zip(held, self.measure(held, colours, normals), strict=True):
-            if hold is not None:
-                track.hold(hold.edges, hold.deviations)
-
-    def measure(
-        self, tracks: Sequence[Track], colours: ColourBins, normals: Array
-    ) -> list[Hold | None]:
-        """Measure vehicles; None for those that their pixels do not show.
-
-        Parameters
-        ----------
-        tracks : sequence of Track
-            Track predicted into this frame.
-        colours : ColourBins
-            Colours of this frame.
-        normals : (P, 3) array
-            Standard normal numbers that make the particles.
-        """
-        before, present = self._before, self._present
-        if before is None or present is None or before.shape != present.shape or not tracks:
-            return [None] * len(tracks)
-        starts = [_uncovered(_points(track.before), track.covers) for track in tracks]
-        guesses = [_carried(*pair) for pair in zip(starts, tracks, strict=True)]
-        moved = _follow(before, present, np.concatenate(starts), np.concatenate(guesses))
-        parts = np.split(moved, np.cumsum([len(one) for one in starts])[:-1])
-        return [
-            _hold(track, old, new, normals, colours)
-            for track, old, new in zip(tracks, starts, parts, strict=True)
-        ]
+def hold(state: State, step: Step) -> State:
+    """Measure vehicles that were not detected by their pixels; and keep the frame for the next."""
+    tracks, absences = state.tracks, state.tracks.sights.absences
+    part = np.minimum(tracks.sights.visible, tracks.sights.inside)
+    held = tracks.confirmed & ~tracks.detected & (absences.unseen < _HELD_FOR)
+    held &= part > _HELD_SHARE
+    if step.parameters.pixels and state.grey is not None and held.any():
+        tracks = _held(tracks, np.flatnonzero(held), state.grey, step)
+    return state._replace(tracks=tracks, grey=step.grey)
 
 
-def _hold(track: Track, old: Array, new: Array, normals: Array, colours: ColourBins) -> Hold | None:
-    """Weight particles by the flow of one vehicle's points."""
-    before, predicted = track.before, track.state.edges
+def _held(tracks: Tracks, rows: Integers, before: Grey, step: Step) -> Tracks:
+    """Correct the vehicles at `rows` by what their pixels show."""
+    kept, edges, spreads = measure(tracks.take(rows), before, step)
+    rows = rows[kept]
+    if not len(rows):
+        return tracks
+    gaussians = tracks.drives.gaussians
+    measured = gaussians.take(rows).measured(edges, spreads)
+    drives = replace(tracks.drives, gaussians=gaussians.put(rows, measured))
+    unseen = tracks.sights.absences.unseen.copy()
+    unseen[rows] = 0.0
+    absences = replace(tracks.sights.absences, unseen=unseen)
+    return replace(tracks, drives=drives, sights=replace(tracks.sights, absences=absences))
+
+
+def measure(tracks: Tracks, before: Grey, step: Step) -> tuple[Integers, Array, Array]:
+    """Measure vehicles by the flow of their pixels.
+
+    Parameters
+    ----------
+    tracks : Tracks
+        Vehicles, predicted into this frame.
+    before : (H, W) array
+        The frame before, in grey.
+    step : Step
+        The step.
+
+    Returns
+    -------
+    (K,), (K, 4), (K, 4) arrays
+        Rows of those that their pixels show, edges and their standard deviations, px.
+    """
+    if before.shape != step.grey.shape:
+        return np.zeros(0, np.intp), NOTHING, NOTHING
+    old, new = tracks.drives.before, tracks.edges
+    covers = tracks.sights.covers
+    starts = [_uncovered(_points(edges), cover) for edges, cover in zip(old, covers, strict=True)]
+    guesses = [_carried(*each) for each in zip(starts, old, new, strict=True)]
+    moved = _follow(before, step.grey, np.concatenate(starts), np.concatenate(guesses))
+    ends = np.split(moved, np.cumsum([len(one) for one in starts])[:-1])
+    gaussians = tracks.drives.gaussians
+    places = np.sqrt(gaussians.covariance[:, [X, V], [X, V]]) + PIXEL_NOISE
+    rows, edges, spreads = [], [], []
+    for row, (start, end) in enumerate(zip(starts, ends, strict=True)):
+        shown = _shown(start, end, old[row], new[row], places[row], step.normals)
+        if shown is not None:
+            rows.append(row)
+            edges.append(shown[0])
+            spreads.append(shown[1])
+    kept, boxes = np.array(rows, np.intp), np.array(edges).reshape(-1, 4)
+    alike = _alike(tracks.sights.take(kept), boxes, step)
+    return kept[alike], boxes[alike], np.array(spreads).reshape(-1, 4)[alike]
+
+
+def _alike(sights: Sights, boxes: Array, step: Step) -> Bools:
+    """Find boxes (K, 4) that have the colours of their vehicles."""
+    colours = step.colours.histograms(boxes, list(sights.covers))
+    fall = sights.looks.usual_similarity - similarities(sights.looks.colours, colours)
+    return np.asarray(fall <= _HELD_FALL)
+
+
+def _shown(
+    old: Array, new: Array, before: Array, predicted: Array, place: Array, normals: Array
+) -> tuple[Array, Array] | None:
+    """Edges (4,) and their standard deviations, px, by one vehicle's points; None if too few agree.
+
+    Parameters
+    ----------
+    old, new : (N, 2) arrays
+        Points in the frame before, and where they are now; NaN where they are not found again.
+    before, predicted : (4,) arrays
+        Box in the frame before, and as it is predicted.
+    place : (2,) array
+        Standard deviations of the predicted place, px.
+    normals : (P, 3) array
+        Standard normal numbers that make the particles.
+    """
     found = np.isfinite(new[:, 0])
     alive = found & ~_standing(old, new, before, predicted)
-    if alive.sum() < max(_GRID, HALF * found.sum()):
+    if alive.sum() < max(_GRID, _MOST_ALIVE * found.sum()):
         return None
     centre, size = (predicted[:2] + predicted[2:]) / 2, predicted[2:] - predicted[:2]
     relative = (old[alive] - (before[:2] + before[2:]) / 2) * _growth(before, predicted)
     observed = new[alive] - centre
-    particles = _particles(track, observed - relative, normals)
+    particles = _particles(place, observed - relative, normals)
     expected = (1 + particles[:, 2])[:, np.newaxis, np.newaxis] * relative
     expected += particles[:, np.newaxis, :2]
     squared = ((observed - expected) ** 2).sum(axis=2) / PIXEL_NOISE**2
     logs = np.log(np.exp(-squared / 2) + _OUTLIER).mean(axis=1)
     logs *= _GRID
+    if (squared[int(np.argmax(logs))] < _ASTRAY**2).mean() < _MOST_AGREE:
+        return None
     middles = centre + particles[:, :2]
     halves = size * (1 + particles[:, 2:]) / 2
     boxes = np.hstack([middles - halves, middles + halves])
-    if (squared[int(np.argmax(logs))] < FAR**2).mean() < HALF:
-        return None
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
     edges = weights @ boxes
-    fall = track.usual_similarity - similarity(
-        track.colours, colours.histogram(edges, track.covers)
-    )
-    if fall > _HELD_FALL:
-        return None
     spread = np.sqrt(weights @ (boxes - edges) ** 2)
     sides = np.tile(edges[2:] - edges[:2], 2)
-    return Hold(edges, _CAUTION * (np.hypot(spread, _SLIP * sides) + _SLIP_PX))
+    return edges, _CAUTION * (np.hypot(spread, _SLIP * sides) + _SLIP_PX)
 
 
-def _standing(old: Array, new: Array, before: Array, predicted: Array) -> npt.NDArray[np.bool_]:
+def _standing(old: Array, new: Array, before: Array, predicted: Array) -> Bools:
     """Points that stand while the vehicle drives: they lie on what hides it."""
     drive = (predicted[:2] + predicted[2:] - before[:2] - before[2:]) / 2
     length = float(np.hypot(*drive))
     if length < PIXEL_NOISE:
         return np.zeros(len(old), dtype=np.bool_)
-    return np.asarray(np.hypot(*(new - old).T) < HALF * length)
+    return np.asarray(np.hypot(*(new - old).T) < _STANDS * length)
 
 
-def _particles(track: Track, motions: Array, normals: Array) -> Array:
+def _particles(place: Array, motions: Array, normals: Array) -> Array:
     """Particles (P, 3): displacement of the centre in px and relative growth.
 
     Half of them are drawn around the prediction, half around the points' median motion: a
     prediction may be far off.
     """
-    covariance = track.state.covariance
-    place = np.sqrt([covariance[X, X], covariance[V, V]]) + PIXEL_NOISE
-    spread = np.append(place, _SLIP)
-    particles = np.asarray(normals * spread)
+    particles = np.asarray(normals * np.append(place, _SLIP))
     particles[::2, :2] = np.median(motions, axis=0) + normals[::2, :2] * PIXEL_NOISE
     return particles
 
@@ -192,9 +213,8 @@ def _uncovered(points: Array, covers: Array) -> Array:
     return np.asarray(points[~inside.any(axis=1)])
 
 
-def _carried(points: Array, track: Track) -> Array:
+def _carried(points: Array, before: Array, after: Array) -> Array:
     """Places of points as the prediction has them."""
-    before, after = track.before, track.state.edges
     relative = (points - (before[:2] + before[2:]) / 2) * _growth(before, after)
     return np.asarray(relative + (after[:2] + after[2:]) / 2)
 

@@ -5,16 +5,28 @@
 
 import math
 
+import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.traffic.straight_drive import StraightDrive
+from vehicle_pf_tracker.trackers.traffic.way import Ways
+
+
+def way(*places):
+    ways = Ways.unknown(1)
+    for time, (x, y) in enumerate(places):
+        ways = (ways.older(1.0) if time else ways).added(np.array([[x - 5, y - 5, x + 5, y + 5]]))
+    return ways
 
 
 def evidence(*places):
-    drive = StraightDrive()
-    for time, (x, y) in enumerate(places):
-        drive.add(time, x, y)
-    return drive.evidence()
+    return float(way(*places).evidence()[0])
+
+
+def test_a_way_is_measured_from_the_first_detection_in_widths():
+    here = np.array([[25.0, 2, 45, 12]])
+    assert way((5, 7), (9, 7)).lengths(here) == pytest.approx(30 / 20)
+    assert way().lengths(here) == 0
+    assert way((5, 7), (9, 7)).matches == 2
 
 
 def test_the_drive_explains_a_share_of_the_scatter():

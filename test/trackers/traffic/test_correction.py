@@ -1,0 +1,169 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Choice of the edges of a detection that are measured."""
+
+import numpy as np
+import pytest
+from traffic_samples import changed, step_of, track_of
+
+from vehicle_pf_tracker.core.overlaps import overlaps
+from vehicle_pf_tracker.trackers.traffic.births import first_gaussians
+from vehicle_pf_tracker.trackers.traffic.correction import correct, which_edges
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import places_of
+from vehicle_pf_tracker.trackers.traffic.prediction import driven
+from vehicle_pf_tracker.trackers.traffic.report import estimates_of
+from vehicle_pf_tracker.trackers.traffic.returns import Returns
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge, Gaussians, Motion
+
+SIZE = (320, 240)
+STILL, ROAD = Motion(0.001, 0.5, 400.0), Motion(0.002, 0.5, 768.0)
+BOX = np.array([100.0, 100, 140, 130])
+PART = BOX - (0, 0, 0, 12)
+(PLACE,) = places_of(BOX[None], SIZE).tolist()
+
+
+def exactly(edges):
+    """Known well, under a far horizon."""
+    return Gaussians.around(edges[None], np.full((1, 4), 0.3), np.array([-1e4]), STILL)
+
+
+class Vehicle:
+    """A vehicle whose box has been measured often."""
+
+    def __init__(self, edges=BOX):
+        self.tracks = track_of(exactly(edges), matches=20, shown=1.0)
+        self.uncoverings = Returns()
+
+    def see(self, detection, *, noise=0.05):
+        """Be detected; True if that shows all of it."""
+        edges = np.array([detection], float)
+        self.tracks, whole = correct(self.tracks, edges, SIZE, noise, self.uncoverings)
+        return bool(whole[0])
+
+    @property
+    def edges(self):
+        return self.tracks.edges[0]
+
+
+@pytest.fixture
+def vehicle():
+    return Vehicle()
+
+
+def test_a_whole_detection_measures_every_edge(vehicle):
+    assert vehicle.see(BOX + 1)
+    assert (vehicle.edges > BOX).all()
+
+
+def test_a_covered_edge_does_not_brake_the_vehicle(vehicle):
+    assert not vehicle.see(PART)
+    assert vehicle.edges[Edge.BOTTOM] == pytest.approx(130, abs=0.3)
+    assert vehicle.tracks.drives.extents.partial == 1
+
+
+def test_a_verdict_is_given_before_anything_changes(vehicle):
+    given = vehicle.tracks, PART[None], SIZE, 0.05, vehicle.uncoverings
+    verdict = which_edges(*given)
+    assert verdict.covered.tolist() == [[False, False, False, True]]
+    assert verdict.left_out.tolist() == verdict.covered.tolist()
+    assert not verdict.whole.any()
+    assert (vehicle.edges == BOX).all()
+    assert (which_edges(*given).left_out == verdict.left_out).all()
+
+
+def test_a_box_is_reported_a_quarter_of_the_way_to_its_detection(vehicle):
+    vehicle.see(BOX + 1)
+    (shown,) = estimates_of(vehicle.tracks)
+    nearer = vehicle.edges + (BOX + 1 - vehicle.edges) / 4
+    assert shown.box.corners[0] == pytest.approx(nearer[:2])
+    vehicle.see(PART)  # of the covered edge nothing is known
+    low = estimates_of(vehicle.tracks)[0].box.corners[2][1]
+    assert low == pytest.approx(vehicle.edges[Edge.BOTTOM])
+    later = driven(vehicle.tracks, -1e4, step_of())
+    assert estimates_of(later)[0].box.corners[0] == pytest.approx(later.edges[0, :2])
+
+
+def test_a_vehicle_that_brakes_is_followed(vehicle):
+    # Both edges go the same way: it is not covered.
+    assert vehicle.see(BOX - (0, 6, 0, 6))
+    assert vehicle.edges[Edge.BOTTOM] < 129.8
+
+
+def test_a_drive_that_detections_contradict_is_left(vehicle):
+    # Two px farther in every frame, of a vehicle that was sure to stand.
+    for frame in range(1, 21):
+        vehicle.see(BOX + 2 * frame)
+    assert vehicle.edges == pytest.approx(BOX + 40, abs=4)
+
+
+def test_a_box_that_another_vehicle_widens_is_no_drive(vehicle):
+    wider = BOX.copy()
+    wider[Edge.RIGHT] += 15
+    for _ in range(10):
+        vehicle.see(wider)
+    assert vehicle.tracks.drives.gaussians.edge_variances[0, Edge.LEFT] < 0.3
+
+
+def test_an_edge_cut_by_the_border_is_not_measured():
+    below = Vehicle(np.array([100.0, 215, 140, 250]))
+    below.see(np.array([100.0, 215, 140, 240]))
+    assert below.edges[Edge.BOTTOM] == pytest.approx(250, abs=0.2)
+
+
+def test_what_was_shown_of_a_vehicle_grows_with_it(vehicle):
+    twice = np.array([80.0, 80, 160, 140])
+    resized = vehicle.tracks.drives.gaussians.resized(twice[None])
+    vehicle.tracks = changed(vehicle.tracks, mean=resized.mean, edges=resized.edges)
+    # By this noise no edge jumps by a fifth of the height.
+    assert not vehicle.see(twice - (0, 0, 0, 12), noise=0.1)
+
+
+def test_no_edge_stays_covered_for_ever(vehicle):
+    for _ in range(200):
+        vehicle.see(PART)
+    assert vehicle.edges[Edge.BOTTOM] < 125
+
+
+@pytest.mark.parametrize("found", [True, False])
+def test_where_parts_do_not_come_back_a_smaller_vehicle_is_believed_soon(vehicle, found):
+    vehicle.uncoverings.learn(PLACE, found=found)
+    for _ in range(4):
+        vehicle.see(PART)
+    assert vehicle.edges[Edge.BOTTOM] == pytest.approx(130, abs=0.1)
+    for _ in range(20):
+        vehicle.see(PART)
+    assert bool(vehicle.edges[Edge.BOTTOM] > 129.9) is found
+
+
+def test_where_parts_come_back_is_learnt(vehicle):
+    for box in [PART] * 4 + [BOX]:
+        vehicle.see(box)
+    assert vehicle.uncoverings.share(PLACE) > 0.5
+    for box in [PART] * 3 + [BOX]:  # too few to tell
+        vehicle.see(box)
+    assert vehicle.uncoverings.share(PLACE) == pytest.approx((1 + 2 * 2 / 3) / 3)
+    for _ in range(100):
+        vehicle.see(PART)
+    assert vehicle.uncoverings.share(PLACE) == pytest.approx(1 / 2)
+
+
+@pytest.mark.parametrize("rate", [0.94, 0.97])
+def test_a_vehicle_that_drives_away_fast_before_a_wrong_horizon_is_followed(rate):
+    sides = 100 * rate ** np.arange(25)
+    # By the horizon, far above, it would shrink by a ninth of this.
+    boxes = np.array([(300 - a / 2, 250 - 0.3 * a, 300 + a / 2, 250 + 0.5 * a) for a in sides])
+    size, horizon = (640, 640), np.array([-72.0])
+    tracks = track_of(first_gaussians(boxes[:1], 0.05, horizon, ROAD, size), confirmed=True)
+    uncoverings = Returns()
+    for number, box in enumerate(boxes[1:], start=1):
+        gaussians = tracks.drives.gaussians.driven(1.0, ROAD)
+        tracks = changed(
+            tracks,
+            mean=gaussians.mean,
+            covariance=gaussians.covariance,
+            edges=gaussians.edges,
+            sums=np.array([number] + [0.0] * 7),
+        )
+        tracks, _ = correct(tracks, box[None], size, 0.05, uncoverings)
+        assert overlaps(tracks.edges[0], box) > 0.6

@@ -1,0 +1,65 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Re-identification of vehicles that reappear away from their prediction."""
+
+import numpy as np
+import pytest
+from traffic_samples import changed, together, track
+
+from vehicle_pf_tracker.trackers.traffic.colours import BINS
+from vehicle_pf_tracker.trackers.traffic.identity import former, resumed
+from vehicle_pf_tracker.trackers.traffic.report import estimates_of
+from vehicle_pf_tracker.trackers.traffic.state import Experience
+
+RED, BLUE = np.eye(BINS)[:2]
+
+
+def confirmed(number, left, colours=RED, **facts):
+    return track(number, left, colours=colours, confirmed=True, **facts)
+
+
+def found_again(*tracks):
+    """The row of the vehicle that the last of these tracks is."""
+    every = together(*tracks)
+    return former(every, len(every) - 1, every.confirmed)
+
+
+def test_a_vehicle_that_reappears_a_little_off_is_the_hidden_one():
+    hidden, new = confirmed(1, 100.0, undetected=20.0), confirmed(2, 130.0)
+    both = together(hidden, changed(new, detection=new.edges))
+    assert found_again(hidden, new) == 0
+    one = resumed(both, 0, 1, Experience()).take(np.array([0]))
+    assert one.sights.looks.detection[0, 0] == pytest.approx(130)
+    assert one.names.identity == 1
+    assert one.edges[0, 0] == pytest.approx(130)
+    assert one.detected
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        confirmed(1, 100.0, undetected=2.0),
+        confirmed(1, 300.0, undetected=20.0),
+        confirmed(1, 100.0, BLUE, undetected=20.0),
+        confirmed(1, 100.0, undetected=20.0, visible=0.2),
+    ],
+    ids=["just seen", "far away", "of another colour", "still behind another"],
+)
+def test_others_are_not_taken_for_it(other):
+    assert found_again(other, confirmed(2, 130.0)) is None
+
+
+def test_a_vehicle_confirmed_a_second_time_is_the_first_unless_there_were_two():
+    ghost, born = confirmed(1, 100.0, undetected=20.0), confirmed(2, 115.0, age=12.0)
+    assert found_again(ghost, born) == 0
+    assert found_again(ghost, confirmed(2, 115.0, age=21.0)) is None  # detected beside it
+    assert found_again(ghost, confirmed(2, 140.0, age=12.0)) is None  # near, not beside it
+    both = resumed(together(ghost, born), 0, 1, Experience())
+    one, _ = estimates_of(both)
+    assert (one.identity, one.joined) == (1, 2)
+
+
+def test_of_two_hidden_vehicles_the_nearer_one_has_come_back():
+    far, near = (confirmed(1, left, undetected=20.0) for left in (80.0, 120.0))
+    assert found_again(far, near, confirmed(3, 130.0)) == 1

@@ -1,0 +1,107 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""New tracks, each of a box that is no known vehicle's."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.overlaps import NOTHING
+from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges, deviations
+from vehicle_pf_tracker.trackers.traffic.candidates import Candidates
+from vehicle_pf_tracker.trackers.traffic.existence import believed
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
+from vehicle_pf_tracker.trackers.traffic.state import State, Step
+from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
+    USUAL_ASPECT,
+    Edge,
+    Gaussians,
+    Motion,
+)
+
+_NEW_VEHICLES = 0.1
+"""Vehicles that come into view per image: one in a third of a second at 30 Hz."""
+_ASPECT_DEVIATION = 0.25
+"""Standard deviation of `USUAL_ASPECT` where a border cuts a vehicle when it is first seen: from
+the side it is half of it."""
+_THIN = 0.5
+"""Share of the usual side below which most of a vehicle is out of sight."""
+
+
+def begun(state: State, candidates: Candidates, columns: Integers, step: Step) -> State:
+    """Take detections at `columns` for new vehicles, as yet with the evidence of one detection."""
+    if not len(columns):
+        return state
+    count = len(state.tracks)
+    state = begun_in(state, candidates.edges[columns], step)
+    rows = np.arange(count, len(state.tracks))
+    tracks = state.tracks.take(rows)
+    labels = [candidates.labels[column] for column in columns.tolist()]
+    colours = step.colours.histograms(candidates.edges[columns], [NOTHING] * len(columns))
+    looks = replace(tracks.sights.looks, colours=colours, score=candidates.scores[columns])
+    tracks = replace(
+        tracks, names=tracks.names.voted(labels), sights=replace(tracks.sights, looks=looks)
+    )
+    fits = math.log(_NEW_VEHICLES) - candidates.clutter[columns]
+    tracks, _ = believed(tracks, candidates, columns, fits, state.experience, step)
+    return state._replace(tracks=state.tracks.put(rows, tracks))
+
+
+def begun_in(state: State, edges: Array, step: Step) -> State:
+    """Begin tracks in boxes (K, 4) in px."""
+    # A horizon below the box would have it drive on the sky.
+    horizon = np.minimum(state.horizon.row, edges[:, Edge.BOTTOM] - 1)
+    gaussians = first_gaussians(edges, step.edge_noise, horizon, step.motion, step.size)
+    serials = state.last_serial + 1 + np.arange(len(edges))
+    tracks = state.tracks.extended(Tracks.begun(gaussians, serials, np.zeros_like(edges)))
+    return state._replace(tracks=tracks, last_serial=state.last_serial + len(edges))
+
+
+def first_gaussians(
+    edges: Array, noise: float, horizon: Array, motion: Motion, size: tuple[int, int]
+) -> Gaussians:
+    """Make the states of vehicles from their first boxes, which borders of the image may cut.
+
+    Parameters
+    ----------
+    edges : (K, 4) array
+        Edges of the boxes, px.
+    noise : float
+        Standard deviation of an edge, fraction of the size.
+    horizon : (K,) array
+        Row of the horizon, px.
+    motion : Motion
+        Motion model of vehicles.
+    size : (int, int)
+        Width and height of the image.
+    """
+    cut, spread, whole = cut_edges(edges, size, noise), deviations(edges, noise), edges.copy()
+    width, height = (edges[:, 2:] - edges[:, :2]).T
+    _complete(whole, spread, cut, (Edge.TOP, Edge.BOTTOM), height, USUAL_ASPECT * width)
+    _complete(whole, spread, cut, (Edge.LEFT, Edge.RIGHT), width, height / USUAL_ASPECT)
+    return Gaussians.around(whole, spread, horizon, motion)
+
+
+def _complete(
+    edges: Array,
+    spread: Array,
+    cut: Bools,
+    ends: tuple[Edge, Edge],
+    side: Array,
+    usual: Array,
+) -> None:
+    """Move the one of two edges (K, 4) that a border cuts to where it usually is."""
+    low, high = ends
+    known = _ASPECT_DEVIATION * usual
+    thin = side < _THIN * usual
+    spread[thin, low] = spread[thin, high] = known[thin]
+    at_low = (side < usual) & cut[:, low]
+    at_high = (side < usual) & ~cut[:, low] & cut[:, high]
+    edges[at_low, low], spread[at_low, low] = (edges[:, high] - usual)[at_low], known[at_low]
+    edges[at_high, high], spread[at_high, high] = (edges[:, low] + usual)[at_high], known[at_high]

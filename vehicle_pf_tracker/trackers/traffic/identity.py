@@ -1,0 +1,170 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""One number for one vehicle: new ones get one, hidden ones keep theirs, doubles have none.
+
+Before a new vehicle gets a number, it is compared with those that are hidden near by: by distance,
+size and colours.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import intersections
+from vehicle_pf_tracker.core.overlaps import areas
+from vehicle_pf_tracker.trackers.traffic.colours import similarities
+from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN, note_found
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, objects
+from vehicle_pf_tracker.trackers.traffic.state import Experience, State
+from vehicle_pf_tracker.trackers.traffic.tracks import Tracks, added_votes
+
+_HIDDEN_FOR = 4.0
+"""Nominal periods without a detection from which a vehicle is hidden: fewer come by chance."""
+_OUT_OF_SIGHT = 0.5
+"""Visible share of a hidden vehicle below which it is still behind another one."""
+_MOST_GROWN = 2.0
+"""Ratio of the areas of two boxes below which they may be of one vehicle: it reappears part by
+part."""
+_FARTHER_IN = 30.0
+"""Nominal periods, one second of 30 Hz, in which the distance at which a hidden vehicle may
+reappear grows by its width."""
+_NEAR_A_DOUBLE = 0.5
+"""The same distance, in this share, of one that has a number: beside a lorry that hides a car there
+often is another car."""
+_FALL = 0.2
+"""Fall of the colours' similarity below its usual value above which it is not the vehicle."""
+_SHARED = 0.5
+"""Share of the smaller box that two boxes share above which they are of one vehicle."""
+
+
+def named(state: State, proven: Bools, *, returning: bool) -> State:
+    """Give tracks that are `proven` to be vehicles (N,) their numbers, one after the other.
+
+    One that was hidden before keeps its number; a second box of another vehicle gets none.
+    """
+    tracks, kept = state.tracks, np.ones(len(proven), np.bool_)
+    identity = state.last_identity
+    for row in np.flatnonzero(proven).tolist():
+        hidden = former(tracks, row, tracks.confirmed) if returning else None
+        if hidden is not None:
+            tracks = resumed(tracks, hidden, row, state.experience)
+            kept[row] = False
+        elif not is_double(tracks, row):
+            identity += 1
+            tracks = _numbered(tracks, row, identity)
+    tracks = tracks if kept.all() else tracks.take(kept)
+    return state._replace(tracks=tracks, last_identity=identity)
+
+
+def given(state: State) -> State:
+    """Give the last track its number by hand, without a doubt."""
+    row, identity = len(state.tracks) - 1, state.last_identity + 1
+    tracks = _numbered(state.tracks, row, identity)
+    names, log_odds = tracks.names, tracks.beliefs.log_odds.copy()
+    by_hand = names.given.copy()
+    log_odds[row], by_hand[row] = CERTAIN, True
+    names = replace(names, given=by_hand)
+    tracks = replace(tracks, names=names, beliefs=replace(tracks.beliefs, log_odds=log_odds))
+    return state._replace(tracks=tracks, last_identity=identity)
+
+
+def _numbered(tracks: Tracks, row: int, identity: int) -> Tracks:
+    numbers = tracks.names.identity.copy()
+    numbers[row] = identity
+    return replace(tracks, names=replace(tracks.names, identity=numbers))
+
+
+def merged(state: State) -> State:
+    """Merge vehicles that were born a second time with the ones that they are."""
+    tracks = state.tracks
+    age, undetected = tracks.beliefs.ways.age, tracks.sights.absences.undetected
+    missed = tracks.confirmed & ~tracks.detected
+    if not missed.any():
+        return state
+    young = tracks.confirmed & ~tracks.names.given & (age < undetected[missed].max())
+    kept = np.ones(len(tracks), np.bool_)
+    for row in np.flatnonzero(young).tolist():
+        twin = former(tracks, row, missed) if tracks.detected[row] else None
+        if twin is not None:
+            tracks = resumed(tracks, twin, row, state.experience)
+            kept[row] = missed[twin] = False
+    return state if kept.all() else state._replace(tracks=tracks.take(kept))
+
+
+def is_double(tracks: Tracks, row: int) -> bool:
+    """Test whether most of a new vehicle's detection is in that of another one, or reversely.
+
+    Networks give one vehicle two boxes, for many frames on end: of it all and of its front, or with
+    and without its shadow. Two vehicles side by side soon show more of each.
+    """
+    detections = tracks.sights.looks.detection
+    boxes, own = detections[tracks.confirmed & tracks.detected], detections[row]
+    smaller = np.minimum(areas(boxes), areas(own))
+    return bool((intersections(own, boxes) > _SHARED * smaller).any())
+
+
+def former(tracks: Tracks, row: int, others: Bools) -> int | None:
+    """Find the hidden vehicle, among `others` (N,), that the new one at `row` is, if it is any."""
+    undetected = tracks.sights.absences.undetected
+    hidden = others & tracks.confirmed & (undetected >= _HIDDEN_FOR)
+    hidden &= tracks.sights.visible >= _OUT_OF_SIGHT
+    hidden[row] = False
+    is_named = bool(tracks.confirmed[row])
+    if is_named:  # one that was detected beside the other is another one
+        hidden &= undetected > tracks.beliefs.ways.age[row]
+    rows = np.flatnonzero(hidden)
+    looks = tracks.sights.looks
+    if not len(rows) or not looks.colours[row].any():
+        return None
+    distance, ratio = _apart(tracks.edges[row], tracks.edges[rows])
+    distance /= 1 + undetected[rows] / _FARTHER_IN
+    fall = looks.usual_similarity[rows] - similarities(looks.colours[rows], looks.colours[row])
+    may_be = (ratio > 1 / _MOST_GROWN) & (ratio < _MOST_GROWN) & (fall <= _FALL)
+    may_be &= distance <= (_NEAR_A_DOUBLE if is_named else 1.0)
+    if not may_be.any():
+        return None
+    nearest = np.lexsort((tracks.names.serial[rows], np.where(may_be, distance, np.inf)))
+    return int(rows[nearest[0]])
+
+
+def _apart(new: Array, old: Array) -> tuple[Array, Array]:
+    """Distance (K,) of a box (4,) from boxes (K, 4) in widths, and ratio (K,) of the areas."""
+    size, sizes = (np.maximum(edges[..., 2:] - edges[..., :2], 1.0) for edges in (new, old))
+    away = new[:2] + size / 2 - (old[:, :2] + sizes / 2)
+    width = np.sqrt(size[0] * sizes[:, 0])
+    return np.hypot(*away.T) / width, size.prod() / sizes.prod(axis=1)
+
+
+def resumed(tracks: Tracks, hidden: int, row: int, experience: Experience) -> Tracks:
+    """Let the vehicle at `hidden` go on as the new track at `row` that it turned out to be."""
+    at, new = np.array([hidden]), tracks.take(np.array([row]))
+    old = note_found(tracks.take(at), experience)
+    votes = added_votes(old.names.votes[0], new.names.votes[0])
+    names = replace(old.names, joined=new.names.serial, votes=objects([votes]))
+    extents = replace(
+        old.drives.extents,
+        shown=new.drives.extents.shown,
+        partial=new.drives.extents.partial,
+        short=new.drives.extents.short,
+    )
+    gaussians, before = new.drives.gaussians, new.drives.before
+    drives = replace(old.drives, gaussians=gaussians, before=before, extents=extents)
+    beliefs = replace(
+        old.beliefs,
+        has_driven=old.beliefs.has_driven | new.beliefs.has_driven,
+        log_odds=np.maximum(old.beliefs.log_odds, new.beliefs.log_odds),
+    )
+    looks = replace(
+        old.sights.looks, score=new.sights.looks.score, detection=new.sights.looks.detection
+    )
+    sights = replace(
+        new.sights,
+        hidden_by=np.zeros(1, np.intp),
+        absences=old.sights.absences.ended(),
+        looks=looks,
+    )
+    return tracks.put(at, Tracks(names, drives, beliefs, sights))

@@ -1,0 +1,167 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""What a detector has seen is given to the vehicles, and what is left over may be new ones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from vehicle_pf_tracker.core.overlaps import NOTHING
+from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.association import Pairs, pairs_of_known, pairs_of_new
+from vehicle_pf_tracker.trackers.traffic.births import begun
+from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges
+from vehicle_pf_tracker.trackers.traffic.candidates import Candidates, weighed
+from vehicle_pf_tracker.trackers.traffic.correction import correct
+from vehicle_pf_tracker.trackers.traffic.existence import believed, doubt, fits_of_known
+from vehicle_pf_tracker.trackers.traffic.identity import merged, named
+from vehicle_pf_tracker.trackers.traffic.parts import divided, inside_of, outgrown
+from vehicle_pf_tracker.trackers.traffic.recognition import coloured
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
+from vehicle_pf_tracker.trackers.traffic.state import State, Step
+from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
+
+_LIKELY = 0.0
+"""Log odds from which a detection is rather a vehicle than not."""
+
+
+class Look(NamedTuple):
+    """A look of the detector while its detections are given to vehicles.
+
+    Attributes
+    ----------
+    state : State
+        What is known.
+    free : (N,) array
+        True for detections that are no vehicle's.
+    candidates : Candidates
+        The detections.
+    step : Step
+        The step.
+    """
+
+    state: State
+    free: Bools
+    candidates: Candidates
+    step: Step
+
+
+def look(state: State, step: Step, detections: Detections) -> State:
+    """Take what a detector saw in this frame."""
+    # 1. Every detection is as likely a vehicle as earlier ones of its score and place have been.
+    state.experience.detections.look()
+    candidates = weighed(detections.usable(*step.size), state.experience.detections, step.size)
+    seen = Look(state, np.ones(len(candidates), np.bool_), candidates, step)
+    # 2. Vehicles that are known choose first, and among likely detections first: else a false
+    # alarm near by would be taken by one, and its own detection would be left to another.
+    # What is left over inside a vehicle that was seen is a part of it.
+    for least in (_LIKELY, -np.inf):
+        seen = _without_parts(_give_known(seen, least))
+    # 3. What is not known yet to be a vehicle chooses by density against clutter: whether it is
+    # one is not to depend on whether one is expected.
+    seen = _give_new(seen)
+    # 4. One vehicle has one number: one that was hidden may have been taken for a new one, and
+    # one that was known by a part is not the box around it.
+    if step.parameters.returning:
+        seen = seen._replace(state=merged(seen.state))
+    seen = _give_outgrown(seen)
+    # 5. Only now it is known who was missed, in plain sight.
+    seen = seen._replace(state=doubt(seen.state, step))
+    # 6. A box around a vehicle that has its own is no new one either. The others may be.
+    seen = _without_parts(seen, either=True)
+    return begun(seen.state, candidates, np.flatnonzero(seen.free), step)
+
+
+def _give_known(look: Look, least: float) -> Look:
+    """Give free detections of log odds from `least` to vehicles that have none."""
+    state, free, candidates, step = look
+    rows = np.flatnonzero(state.tracks.confirmed & ~state.tracks.detected)
+    columns = np.flatnonzero(free & (candidates.log_odds >= least))
+    pairs = pairs_of_known(state.tracks, rows, candidates, columns, step.size, step.edge_noise)
+    return _take(look, pairs)
+
+
+def _give_new(look: Look) -> Look:
+    """Give free detections to tracks that are not known yet to be vehicles."""
+    state, free, candidates, step = look
+    rows, columns = np.flatnonzero(~state.tracks.confirmed), np.flatnonzero(free)
+    pairs = pairs_of_new(state.tracks, rows, candidates, columns, step.size, step.edge_noise)
+    return _take(look, pairs)
+
+
+def _give_outgrown(look: Look) -> Look:
+    """Give boxes around vehicles that were known by a part only to these."""
+    state, free, candidates, step = look
+    columns = np.flatnonzero(free)
+    if not len(columns):
+        return look
+    tracks, rows = outgrown(state.tracks, candidates.edges[columns])
+    look = look._replace(state=state._replace(tracks=tracks))
+    return _take(
+        look, pairs_of_known(tracks, rows, candidates, columns, step.size, step.edge_noise)
+    )
+
+
+def _take(look: Look, pairs: Pairs) -> Look:
+    """Correct tracks by their detections, believe in them the more, and number new vehicles."""
+    state, free, candidates, step = look
+    rows, columns, fits = pairs
+    if not len(rows):
+        return look
+    free = free.copy()
+    free[columns] = False
+    tracks, edges = state.tracks.take(rows), candidates.edges[columns]
+    tracks = replace(tracks, drives=divided(tracks.drives, edges, candidates.edges))
+    uncoverings = state.experience.uncoverings
+    tracks, whole = correct(tracks, edges, step.size, step.edge_noise, uncoverings)
+    tracks = _shown(tracks, candidates, columns, whole, step)
+    fits = fits_of_known(tracks, fits)
+    tracks, proven = believed(tracks, candidates, columns, fits, state.experience, step)
+    state = state._replace(tracks=state.tracks.put(rows, tracks))
+    if proven.any():
+        every = np.zeros(len(state.tracks), np.bool_)
+        every[rows[proven]] = True
+        state = named(state, every, returning=step.parameters.returning)
+    return look._replace(state=state, free=free)
+
+
+def _shown(
+    tracks: Tracks, candidates: Candidates, columns: Integers, whole: Bools, step: Step
+) -> Tracks:
+    """Learn what vehicles look like and how they grow from detections that show the `whole`."""
+    edges = candidates.edges[columns]
+    labels = [candidates.labels[column] for column in columns.tolist()]
+    looks = replace(tracks.sights.looks, score=candidates.scores[columns])
+    if whole.any():
+        colours = step.colours.histograms(edges[whole], [NOTHING] * int(whole.sum()))
+        looks = coloured(looks, colours, whole)
+    grows = whole & ~cut_edges(edges, step.size, step.edge_noise).any(axis=1)
+    growths = tracks.drives.growths
+    growths = growths.put(grows, growths.take(grows).added(edges[grows]))
+    return replace(
+        tracks,
+        names=tracks.names.voted(labels),
+        drives=replace(tracks.drives, growths=growths),
+        sights=replace(tracks.sights, looks=looks),
+    )
+
+
+def _without_parts(look: Look, *, either: bool = False) -> Look:
+    """Drop free detections inside vehicles, bonnets or second boxes, or `either` in the other."""
+    state, free, candidates, _ = look
+    tracks, columns = state.tracks, np.flatnonzero(free)
+    boxes = tracks.edges[tracks.confirmed & (either | tracks.detected)]
+    if not (len(columns) and len(boxes)):
+        return look
+    parts = columns[inside_of(boxes, candidates.edges[columns], either=either)]
+    if not len(parts):
+        return look
+    # They stood beside a vehicle: their place is none where false alarms come from nothing.
+    state.experience.detections.learn(candidates.samples(parts), False, alone=False)
+    free = free.copy()
+    free[parts] = False
+    return look._replace(free=free)

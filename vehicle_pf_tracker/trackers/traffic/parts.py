@@ -1,0 +1,121 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Boxes of parts of a vehicle, and of several vehicles at once.
+
+Blobs and networks give boxes of a bonnet, of a vehicle with and without its shadow, or one box of
+two vehicles that enter side by side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.box import intersections
+from vehicle_pf_tracker.core.overlaps import areas
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
+from vehicle_pf_tracker.trackers.traffic.tracks import Drives, Tracks
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge
+
+_INSIDE = 0.7
+"""Share of a box inside another one above which it is a part of it: a bonnet, a second box."""
+_TOUCHES = 0.1
+"""Share of a box that overlaps another one below which they are beside each other."""
+_CROWDED_FOR = 4
+"""Looks in a row by which a box is of several vehicles, or of more than was known: fewer may be
+wrong."""
+_OFTEN_ALONE = 0.5
+"""Looks that show more than a vehicle, of its detections, from which it was always more: two that
+drive side by side are one box for a while, too."""
+
+
+def inside_of(boxes: Array, edges: Array, *, either: bool = False) -> Bools:
+    """Find boxes (N,) among `edges` (N, 4) that are inside one of `boxes` (M, 4), or `either`."""
+    each = edges[:, np.newaxis]
+    smaller = np.minimum(areas(boxes), areas(each)) if either else areas(each)
+    return np.asarray((intersections(each, boxes) > _INSIDE * smaller).any(axis=1))
+
+
+def divided(drives: Drives, edges: Array, others: Array) -> Drives:
+    """Shrink boxes of several vehicles that were taken for one to the nearest one's.
+
+    Vehicles that enter the image side by side are one blob, and drive apart later. The detection of
+    one is then no part of a larger vehicle whose rest is hidden: the rest is there, behind it.
+
+    Parameters
+    ----------
+    drives : Drives
+        Drives of N vehicles, predicted into this frame.
+    edges : (N, 4) array
+        Edges of the detection of each, px.
+    others : (M, 4) array
+        Edges of all detections.
+    """
+    predicted = drives.gaussians.edges
+    each, own = predicted[:, np.newaxis], edges[:, np.newaxis]
+    beside = (
+        (intersections(each, others) > _TOUCHES * areas(each))
+        & (intersections(own, others) < _TOUCHES * areas(others))
+        & (others[:, Edge.BOTTOM] < own[..., Edge.BOTTOM])
+    ).any(axis=1)
+    known = intersections(predicted, edges) > _INSIDE * areas(edges)
+    crowded = np.where(known & beside, drives.extents.crowded + 1, 0)
+    drives = replace(drives, extents=replace(drives.extents, crowded=crowded))
+    several = np.flatnonzero(crowded >= _CROWDED_FOR)
+    return _filled(drives, several, edges[several]) if len(several) else drives
+
+
+def _filled(drives: Drives, rows: Integers, edges: Array) -> Drives:
+    """Be as large as boxes (K, 4), and there, of those at `rows` (K,)."""
+    extents = drives.extents
+    crowded, shown = extents.crowded.copy(), extents.shown.copy()
+    crowded[rows], shown[rows] = 0, 1.0
+    resized = drives.gaussians.take(rows).resized(edges)
+    return replace(
+        drives,
+        gaussians=drives.gaussians.put(rows, resized),
+        extents=replace(extents, crowded=crowded, shown=shown),
+    )
+
+
+def outgrown(tracks: Tracks, edges: Array) -> tuple[Tracks, Integers]:
+    """Find those that were known by a part only, and make each as large as the box around it.
+
+    Where something hides a vehicle at first, or the background has its colour, it is followed by
+    what is seen; a box of all of it then is too large to be its own.
+
+    Parameters
+    ----------
+    tracks : Tracks
+        All.
+    edges : (M, 4) array
+        Edges of the detections that are no vehicle's.
+
+    Returns
+    -------
+    Tracks, (K,) array
+        All, and the rows of those that have outgrown.
+    """
+    none = np.zeros(0, np.intp)
+    confirmed = np.flatnonzero(tracks.confirmed)
+    if not (len(confirmed) and len(edges)):
+        return tracks, none
+    boxes = tracks.edges[confirmed]
+    common = intersections(edges[:, np.newaxis], boxes)
+    alone = (common > 0).sum(axis=1, keepdims=True) == 1
+    around = alone & (common > _INSIDE * areas(boxes))
+    waits = (~tracks.detected & tracks.in_sight)[confirmed]
+    drives, matches = tracks.drives, tracks.beliefs.ways.matches
+    rows: list[int] = []
+    for index, column in np.argwhere(around & waits).tolist():
+        row = int(confirmed[column])
+        crowded = drives.extents.crowded.copy()
+        crowded[row] += 1
+        drives = replace(drives, extents=replace(drives.extents, crowded=crowded))
+        if crowded[row] >= max(_CROWDED_FOR, _OFTEN_ALONE * matches[row]):
+            drives = _filled(drives, np.array([row]), edges[index : index + 1])
+            rows.append(row)
+    return replace(tracks, drives=drives), np.array(list(dict.fromkeys(rows)), np.intp)

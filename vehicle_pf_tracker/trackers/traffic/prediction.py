@@ -1,0 +1,52 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Prediction of all vehicles along the road, from one frame to the next."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from vehicle_pf_tracker.trackers.traffic.state import State, Step
+from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
+
+
+def find_horizon(state: State, step: Step) -> State:
+    """Find the row of the horizon by the vehicles that have grown so far."""
+    followed = state.tracks.drives.growths.take(state.tracks.confirmed)
+    assumed = step.parameters.motion.horizon
+    horizon = state.horizon.looked(assumed, followed, step.size, step.road)
+    return state._replace(horizon=horizon)
+
+
+def drive_on(state: State, step: Step) -> State:
+    """Let all vehicles drive on along the road, below the horizon as it is known now."""
+    state = find_horizon(state, step)
+    tracks = driven(state.tracks, state.horizon.row, step)
+    sound = tracks.drives.gaussians.is_sound
+    if sound.all():
+        return state._replace(tracks=tracks)
+    lost = int(np.count_nonzero(~sound))
+    return state._replace(tracks=tracks.take(sound), bad_states=state.bad_states + lost)
+
+
+def driven(tracks: Tracks, horizon: float, step: Step) -> Tracks:
+    """Predict tracks below a horizon (row in px), and let time pass for them."""
+    elapsed, drives, sights = step.elapsed, tracks.drives, tracks.sights
+    drives = replace(
+        drives,
+        gaussians=drives.gaussians.under(horizon).driven(elapsed, step.motion),
+        before=drives.gaussians.edges,
+        lag=np.zeros_like(drives.lag),
+    )
+    absences = replace(
+        sights.absences,
+        unseen=sights.absences.unseen + elapsed,
+        undetected=sights.absences.undetected + elapsed,
+    )
+    looks = replace(sights.looks, score=np.full(len(tracks), np.nan))
+    beliefs = replace(tracks.beliefs, ways=tracks.beliefs.ways.older(elapsed))
+    sights = replace(sights, absences=absences, looks=looks)
+    return replace(tracks, drives=drives, beliefs=beliefs, sights=sights)

@@ -1,0 +1,54 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Colours of vehicles, learnt while they are in plain sight, by which they are known again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.traffic.colours import similarities
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
+from vehicle_pf_tracker.trackers.traffic.state import State, Step
+from vehicle_pf_tracker.trackers.traffic.tracks import Looks
+
+_RATE = 0.25
+"""Rate per detection at which colours and their usual similarity are learnt: the latest four count
+for two thirds."""
+
+
+def coloured(looks: Looks, colours: Array, rows: Integers | Bools) -> Looks:
+    """Let the colours of those at `rows` follow those (K, BINS) of boxes in plain sight."""
+    before = looks.colours[rows]
+    rate = np.where(before.any(axis=1, keepdims=True), _RATE, 1.0)
+    learnt = looks.colours.copy()
+    learnt[rows] = before + rate * (colours - before)
+    return replace(looks, colours=learnt)
+
+
+def learn_colours(
+    state: State, rows: Integers, labels: Sequence[str], score: float, step: Step
+) -> State:
+    """Learn what vehicles at `rows` look like where they are, and take their classes."""
+    tracks = state.tracks.take(rows)
+    colours = step.colours.histograms(tracks.edges, list(tracks.sights.covers))
+    looks = coloured(tracks.sights.looks, colours, np.arange(len(rows)))
+    looks = replace(looks, score=np.full(len(rows), score))
+    sights = replace(tracks.sights, looks=looks)
+    tracks = replace(tracks, names=tracks.names.voted(labels), sights=sights)
+    return state._replace(tracks=state.tracks.put(rows, tracks))
+
+
+def learn_similarity(state: State, step: Step) -> State:
+    """Learn the usual similarity of each detected vehicle's colours to those learnt."""
+    tracks, sights = state.tracks, state.tracks.sights
+    rows = np.flatnonzero(tracks.confirmed & tracks.detected)
+    now = step.colours.histograms(tracks.edges[rows], sights.covers[rows].tolist())
+    usual = sights.looks.usual_similarity.copy()
+    usual[rows] += _RATE * (similarities(sights.looks.colours[rows], now) - usual[rows])
+    sights = replace(sights, looks=replace(sights.looks, usual_similarity=usual))
+    return state._replace(tracks=replace(tracks, sights=sights))

@@ -1,0 +1,97 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Estimates of a frame: what is said of each vehicle."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
+
+_SEEN_WITHIN = 2.0
+"""Nominal periods within which a vehicle counts as seen: one frame may fail."""
+_MOSTLY_INSIDE = 0.5
+"""Share in the image from which it is not the border that hides a vehicle."""
+_PLACED = {
+    TrackMode.TENTATIVE: 1.0,
+    TrackMode.TRACKING: 1.0,
+    TrackMode.OCCLUDED: 0.5,
+    TrackMode.LOST: 0.5,
+}
+"""Factor on the confidence, by mode: a vehicle that nobody sees is there, but where is a guess."""
+
+
+def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
+    """Estimates of all tracks, by identity, tentative ones last."""
+    names = tracks.names
+    order = np.lexsort((names.serial, names.identity, ~tracks.confirmed))
+    tracks = tracks.take(order)
+    names, drives, sights = tracks.names, tracks.drives, tracks.sights
+    low, high = np.split(drives.gaussians.edges + drives.lag, 2, axis=1)
+    modes = _modes(tracks)
+    rows = zip(
+        names.identity.tolist(),
+        names.serial.tolist(),
+        names.joined.tolist(),
+        names.votes.tolist(),
+        np.hstack([low, np.maximum(high - low, 1.0)]).tolist(),
+        drives.gaussians.velocity.tolist(),
+        drives.gaussians.foot_covariance.tolist(),
+        tracks.beliefs.log_odds.tolist(),
+        tracks.beliefs.ways.age.tolist(),
+        sights.looks.score.tolist(),
+        modes,
+        _hiders(tracks, modes),
+        strict=True,
+    )
+    return tuple(
+        TrackEstimate(
+            identity=identity,
+            box=Box(*box),
+            velocity=(velocity[0], velocity[1]),
+            mode=mode,
+            confidence=_PLACED[mode] / (1 + math.exp(-log_odds)),
+            label=max(votes, key=votes.__getitem__, default=""),
+            score=score,
+            age=age,
+            hidden_by=hider,
+            serial=serial,
+            joined=joined,
+            foot_covariance=(foot[0], foot[1], foot[2]),
+        )
+        for identity, serial, joined, votes, box, velocity, foot, log_odds, age, score, mode, hider
+        in rows
+    )  # fmt: skip
+
+
+def _modes(tracks: Tracks) -> list[TrackMode]:
+    """Claims about the vehicles."""
+    absences = tracks.sights.absences
+    facts = zip(
+        tracks.confirmed.tolist(),
+        absences.lost.tolist(),
+        (absences.unseen < _SEEN_WITHIN).tolist(),
+        strict=True,
+    )
+    return [_mode(*each) for each in facts]
+
+
+def _mode(is_confirmed: bool, is_lost: bool, is_seen: bool) -> TrackMode:
+    if not is_confirmed:
+        return TrackMode.TENTATIVE
+    if is_lost:
+        return TrackMode.LOST
+    return TrackMode.TRACKING if is_seen else TrackMode.OCCLUDED
+
+
+def _hiders(tracks: Tracks, modes: list[TrackMode]) -> list[int | str | None]:
+    """Say what hides each hidden vehicle: another one, or else the scene or the border."""
+    unknown = np.where(tracks.sights.inside >= _MOSTLY_INSIDE, SCENE, BORDER).tolist()
+    rows = zip(modes, tracks.sights.hidden_by.tolist(), unknown, strict=True)
+    hidden = (TrackMode.OCCLUDED, TrackMode.LOST)
+    return [(hider or other) if mode in hidden else None for mode, hider, other in rows]

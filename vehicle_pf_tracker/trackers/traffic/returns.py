@@ -1,0 +1,70 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""What usually becomes of what a detector does not see, learnt from how it went."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import PLACES
+from vehicle_pf_tracker.trackers.traffic.rows import Bools
+
+_UNKNOWN = 0.5
+"""Share that is seen again, before any outcome is known: either is as likely."""
+_UNIFORM = 2.0
+"""Outcomes that a prior is worth: as many as a uniform one."""
+_REMEMBERED = 30
+"""Outcomes of a place above which they are halved: leaves and road works come and go."""
+_FIRST_ASKED = 10.0
+"""Vehicles in plain sight that were detected, and that were missed, before any was seen."""
+
+
+class Returns:
+    """How much of what vanished in plain sight was seen again, by place.
+
+    Below a bridge nearly all is, elsewhere hardly anything: what vanished was no vehicle, or no
+    part of one, or its detections went to another. The share in one place is a beta-binomial
+    estimate, whose prior is the share everywhere; that begins at a half.
+    """
+
+    def __init__(self) -> None:
+        self._counts = np.zeros((2, PLACES))
+
+    def learn(self, place: int, *, found: bool) -> None:
+        """Add an outcome."""
+        self._counts[int(found), place] += 1
+        if self._counts[:, place].sum() > _REMEMBERED:
+            self._counts[:, place] /= 2
+
+    def share(self, place: int) -> float:
+        """Share that is seen again."""
+        everywhere = _estimated(self._counts.sum(axis=1), _UNKNOWN)
+        return _estimated(self._counts[:, place], everywhere)
+
+
+def _estimated(outcomes: Array, prior: float) -> float:
+    """Posterior mean of a share, of the numbers without and with it."""
+    without, found = outcomes.tolist()
+    return float((found + _UNIFORM * prior) / (without + found + _UNIFORM))
+
+
+class DetectionRate:
+    """Share of the vehicles in plain sight that the detector finds."""
+
+    def __init__(self) -> None:
+        self._detected, self._asked = _FIRST_ASKED, 2 * _FIRST_ASKED
+
+    def learn(self, asked: Bools, detected: Bools) -> Array:
+        """Add the vehicles (N,) that it was asked for, one by one; the share (N,) after each."""
+        found = self._detected + np.cumsum(asked & detected)
+        total = self._asked + np.cumsum(asked)
+        if len(asked):
+            self._detected, self._asked = float(found[-1]), float(total[-1])
+        return np.asarray(found / total)
+
+    @property
+    def share(self) -> float:
+        """The share."""
+        return self._detected / self._asked

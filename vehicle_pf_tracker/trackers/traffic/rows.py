@@ -1,0 +1,81 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Values of several vehicles at once, one row for each."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, TypeAlias, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+
+Bools: TypeAlias = npt.NDArray[np.bool_]
+Integers: TypeAlias = npt.NDArray[np.intp]
+Objects: TypeAlias = npt.NDArray[np.object_]
+"""Rows of immutable values whose size differs."""
+RowsT = TypeVar("RowsT", bound="Rows")
+
+
+class Rows:
+    """Base of frozen dataclasses whose fields are arrays (N, ...) or are `Rows` themselves."""
+
+    __slots__ = ()
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    def __len__(self) -> int:
+        return len(getattr(self, next(iter(self.__dataclass_fields__))))
+
+    def take(self: RowsT, rows: Integers | Bools) -> RowsT:
+        """Those at `rows`, in this order."""
+        values = [getattr(self, name) for name in self.__dataclass_fields__]
+        return type(self)(
+            *[value[rows] if type(value) is np.ndarray else value.take(rows) for value in values]
+        )
+
+    def put(self: RowsT, rows: Integers | Bools, others: RowsT) -> RowsT:
+        """All, of which those at `rows` are others."""
+        replaced = []
+        for name in self.__dataclass_fields__:
+            value, new = getattr(self, name), getattr(others, name)
+            if type(value) is np.ndarray:
+                changed = value.copy()
+                changed[rows] = new
+            else:
+                changed = value.put(rows, new)
+            replaced.append(changed)
+        return type(self)(*replaced)
+
+    def extended(self: RowsT, others: RowsT) -> RowsT:
+        """All, and others after them."""
+        joined = []
+        for name in self.__dataclass_fields__:
+            value, new = getattr(self, name), getattr(others, name)
+            is_array = type(value) is np.ndarray
+            joined.append(np.concatenate([value, new]) if is_array else value.extended(new))
+        return type(self)(*joined)
+
+
+def columns(*values: Array) -> Array:
+    """Put arrays (N,) beside each other: (N, K)."""
+    table = np.empty((len(values[0]), len(values)))
+    for index, value in enumerate(values):
+        table[:, index] = value
+    return table
+
+
+def objects(values: list[Any]) -> Objects:
+    """Make an array (N,) of values that may themselves be arrays or tuples."""
+    array = np.empty(len(values), np.object_)
+    for index, value in enumerate(values):
+        array[index] = value
+    return array
+
+
+def filled(count: int, value: object) -> Objects:
+    """Make an array (N,) of one immutable value."""
+    array = np.empty(count, np.object_)
+    array.fill(value)
+    return array

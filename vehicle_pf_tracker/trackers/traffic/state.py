@@ -1,0 +1,124 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""State of `traffic`, what the camera has taught, and the input of one step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
+from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
+from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
+from vehicle_pf_tracker.trackers.traffic.returns import DetectionRate, Returns
+from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Motion
+
+Grey: TypeAlias = npt.NDArray[np.uint8]
+
+_VEHICLE_WIDTH = 1.8
+"""Width of a car in m, by which speeds and accelerations become widths."""
+_FOCAL = 1.2
+"""Focal length, of the image's width: that of a camera with a field of view of 45 degrees."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Experience:
+    """What this camera has taught, by place: all that changes in place.
+
+    Attributes
+    ----------
+    detections : DetectionEvidence
+        What became of detections, by their scores and places.
+    reappearances, uncoverings : Returns
+        What became of vehicles that vanished in plain sight, and of parts of others that did.
+    rate : DetectionRate
+        Share of the vehicles in plain sight that the detector finds.
+    """
+
+    detections: DetectionEvidence = field(default_factory=DetectionEvidence)
+    reappearances: Returns = field(default_factory=Returns)
+    uncoverings: Returns = field(default_factory=Returns)
+    rate: DetectionRate = field(default_factory=DetectionRate)
+
+
+class State(NamedTuple):
+    """What is known after a frame.
+
+    Attributes
+    ----------
+    tracks : Tracks
+        Vehicles that are followed, nearest first, new ones last.
+    experience : Experience
+        What this camera has taught.
+    horizon : Horizon
+        Row of the horizon, and what it is known by.
+    last_identity, last_serial : int
+        Number of the newest vehicle, and of the newest track.
+    grey : (H, W) array or None
+        The frame in grey, from which pixels are followed into the next one; None before the first.
+    bad_states : int
+        Vehicles dropped so far because their state was no Gaussian any more.
+    """
+
+    tracks: Tracks
+    experience: Experience
+    horizon: Horizon = Horizon()
+    last_identity: int = 0
+    last_serial: int = 0
+    grey: Grey | None = None
+    bad_states: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """A frame, and what all parts of a step use.
+
+    Attributes
+    ----------
+    size : (int, int)
+        Width and height of the image.
+    grey : (H, W) array
+        The frame in grey.
+    colours : ColourBins
+        Its colours.
+    parameters : TrafficParameters
+        Parameters.
+    road : RoadPlane or None
+        Calibrated road; None: what it tells is taken from the boxes.
+    period : float
+        Nominal frame period in s.
+    elapsed : float
+        Time since the frame before, in nominal frame periods.
+    normals : (P, 3) array
+        Standard normal numbers that make particles.
+    """
+
+    size: tuple[int, int]
+    grey: Grey
+    colours: ColourBins
+    parameters: TrafficParameters
+    road: RoadPlane | None
+    period: float
+    elapsed: float
+    normals: Array
+
+    @property
+    def motion(self) -> Motion:
+        """Motion model of vehicles in this image and at this rate."""
+        motion = self.parameters.motion
+        acceleration = motion.acceleration * self.period**2 / _VEHICLE_WIDTH
+        top_speed = motion.top_speed * self.period / _VEHICLE_WIDTH
+        return Motion(acceleration, top_speed, _FOCAL * self.size[0])
+
+    @property
+    def edge_noise(self) -> float:
+        """Standard deviation of a detection's edge, fraction of the size."""
+        return self.parameters.detections.edge_noise

@@ -1,0 +1,279 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Vehicles that are followed: their names, drives, the belief in them, and what is in sight.
+
+All are frozen arrays with one row for each vehicle, so that a step is one call for all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.overlaps import NOTHING
+from vehicle_pf_tracker.trackers.traffic.colours import BINS
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE
+from vehicle_pf_tracker.trackers.traffic.horizon import Growths
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Objects, Rows, filled
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Gaussians
+from vehicle_pf_tracker.trackers.traffic.way import Ways
+
+IN_SIGHT = 0.5
+"""Share of a box, not covered and inside the image, above which a detector should see it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Names(Rows):
+    """Names of N vehicles.
+
+    Attributes
+    ----------
+    serial : (N,) array
+        Number of the track.
+    identity : (N,) array
+        Number of the vehicle; 0 until it is confirmed.
+    given : (N,) array
+        It was given by hand: that no detector finds it does not refute it.
+    joined : (N,) array
+        Number of the track as which it was found again; 0 if of none.
+    votes : (N,) array of mapping of str to int
+        Number of its detections by their class.
+    """
+
+    serial: Integers
+    identity: Integers
+    given: Bools
+    joined: Integers
+    votes: Objects
+
+    def voted(self, labels: Sequence[str]) -> Names:
+        """Take the classes of a detection of each."""
+        if not any(labels):
+            return self
+        votes = self.votes.copy()
+        for row, label in enumerate(labels):
+            if label:
+                votes[row] = added_votes(votes[row], {label: 1})
+        return replace(self, votes=votes)
+
+
+def added_votes(votes: Mapping[str, int], others: Mapping[str, int]) -> dict[str, int]:
+    """Sum of votes by class; of equally many the class that was seen first wins."""
+    return {**votes, **{label: votes.get(label, 0) + count for label, count in others.items()}}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Extents(Rows):
+    """How much is seen of each of N vehicles.
+
+    Attributes
+    ----------
+    shown : (N, 2) array
+        Largest width and height of its latest detections, of its own.
+    partial, short : (N,) arrays
+        Number of its latest detections in a row that showed only a part of it, and that were
+        smaller than earlier ones.
+    shortened : (N,) array
+        Place where several in a row were smaller, until it is known whether the rest comes back.
+    crowded : (N,) array
+        Number of its latest detections in a row that had another one beside them in its box.
+    """
+
+    shown: Array
+    partial: Integers
+    short: Integers
+    shortened: Integers
+    crowded: Integers
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drives(Rows):
+    """Drives of N vehicles.
+
+    Attributes
+    ----------
+    gaussians : Gaussians
+        Place, size and velocity.
+    before : (N, 4) array
+        Edges in the frame before, px.
+    drift : (N, 4) array
+        Mean of the latest outward residuals of the edges, in standard deviations.
+    lag : (N, 4) array
+        What the state stays behind, px: the edges are reported with it.
+    extents : Extents
+        How much is seen of each.
+    growths : Growths
+        Regressions of the widths on the lower edges.
+    """
+
+    gaussians: Gaussians
+    before: Array
+    drift: Array
+    lag: Array
+    extents: Extents
+    growths: Growths
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Beliefs(Rows):
+    """Evidence that N vehicles exist.
+
+    Attributes
+    ----------
+    log_odds : (N,) array
+        Log odds that it is a vehicle.
+    strength : (N,) array
+        Evidence by the scores of its detections alone.
+    doubt : (N,) array
+        Log odds against a vehicle by these scores; never below zero.
+    has_driven : (N,) array
+        Its way shows that it is no part of the scene.
+    ways : Ways
+        Its way through the image.
+    samples : (N,) array of tuple of Sample
+        Its earliest detections, while it is not known what they show.
+    """
+
+    log_odds: Array
+    strength: Array
+    doubt: Array
+    has_driven: Bools
+    ways: Ways
+    samples: Objects
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Absences(Rows):
+    """How long N vehicles were not seen.
+
+    Attributes
+    ----------
+    unseen, undetected : (N,) arrays
+        Nominal periods since it was last seen, and last detected.
+    missed : (N,) array
+        Number of the latest looks of the detector, in a row, that missed it in plain sight.
+    vanished : (N,) array
+        Place where it was missed several times in a row; `NOWHERE` if it was not.
+    lost : (N,) array
+        It has been hidden for too long to be predicted, has left, or is rather not there.
+    """
+
+    unseen: Array
+    undetected: Array
+    missed: Integers
+    vanished: Integers
+    lost: Bools
+
+    def ended(self) -> Absences:
+        """Be detected, all."""
+        count = len(self)
+        none = np.full(count, NOWHERE)
+        zero = np.zeros(count)
+        return Absences(zero, zero, np.zeros(count, np.intp), none, self.lost)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Looks(Rows):
+    """What N vehicles look like.
+
+    Attributes
+    ----------
+    colours : (N, BINS) array
+        Histogram of its colours; zero while unknown.
+    usual_similarity : (N,) array
+        Similarity of its colours to those learnt, while it is detected.
+    detection : (N, 4) array
+        Edges of its latest detection, px.
+    score : (N,) array
+        Score of its detection in this frame; NaN without one.
+    """
+
+    colours: Array
+    usual_similarity: Array
+    detection: Array
+    score: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sights(Rows):
+    """What is in sight of N vehicles.
+
+    Attributes
+    ----------
+    visible, inside : (N,) arrays
+        Share of its box that no nearer vehicle hides, and that lies in the image.
+    covers : (N,) array of (K, 4) arrays
+        Edges of the nearer boxes over its box, px.
+    hidden_by : (N,) array
+        Identity of the nearest vehicle that hides a good part of it; 0 if none does.
+    absences : Absences
+        How long it was not seen.
+    looks : Looks
+        What it looks like.
+    """
+
+    visible: Array
+    inside: Array
+    covers: Objects
+    hidden_by: Integers
+    absences: Absences
+    looks: Looks
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tracks(Rows):
+    """N vehicles: their names, drives, the belief in them, and what is in sight of them."""
+
+    names: Names
+    drives: Drives
+    beliefs: Beliefs
+    sights: Sights
+
+    @classmethod
+    def begun(cls, gaussians: Gaussians, serial: Integers, detections: Array) -> Tracks:
+        """Begin tracks of which nothing is known but where they are."""
+        count = len(gaussians)
+        numbers, none = np.zeros(count, np.intp), np.full(count, NOWHERE)
+        zero, no, edges = np.zeros(count), np.zeros(count, np.bool_), np.zeros((count, 4))
+        extents = Extents(np.zeros((count, 2)), numbers, numbers, none, numbers)
+        looks = Looks(np.zeros((count, BINS)), np.ones(count), detections, np.full(count, np.nan))
+        absences = Absences(zero, zero, numbers, none, no)
+        return cls(
+            Names(serial, numbers, no, numbers, filled(count, {})),
+            Drives(gaussians, edges, edges, edges, extents, Growths.unknown(count)),
+            Beliefs(zero, zero, zero, no, Ways.unknown(count), filled(count, ())),
+            Sights(
+                np.ones(count), np.ones(count), filled(count, NOTHING), numbers, absences, looks
+            ),
+        )
+
+    @property
+    def edges(self) -> Array:
+        """Edges (N, 4), px."""
+        return self.drives.gaussians.edges
+
+    @property
+    def confirmed(self) -> Bools:
+        """True (N,) once it is known to be a vehicle."""
+        return np.asarray(self.names.identity > 0)
+
+    @property
+    def detected(self) -> Bools:
+        """True (N,) where it was detected in this frame."""
+        return np.asarray(self.sights.absences.undetected == 0)
+
+    @property
+    def in_sight(self) -> Bools:
+        """True (N,) where nothing known hides it, and it is in the image."""
+        return np.asarray(np.minimum(self.sights.visible, self.sights.inside) > IN_SIGHT)
+
+
+def no_tracks() -> Tracks:
+    """Make the tracks of an empty road."""
+    zero = np.zeros(0)
+    none = Gaussians(np.zeros((0, 6)), np.zeros((0, 6, 6)), zero, NOTHING)
+    return Tracks.begun(none, np.zeros(0, np.intp), NOTHING)

@@ -1,0 +1,86 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Ways of vehicles through the image: how far, and how straight at constant speed.
+
+A regression of the places of detections on their times, of which only the sums are kept.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.traffic.rows import Rows, columns
+
+_STRAIGHT = 0.8
+"""Straightness of a drive, which a leap between two places that flicker cannot reach (0.75)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ways(Rows):
+    """Ways of N vehicles.
+
+    Attributes
+    ----------
+    age : (N,) array
+        Nominal periods since each was first seen.
+    first : (N, 2) array
+        Centre of the first detection, px.
+    sums : (N, 8) array
+        Sums over the detections: one, time, its square, x, y, time x, time y, x² + y².
+    """
+
+    age: Array
+    first: Array
+    sums: Array
+
+    @classmethod
+    def unknown(cls, count: int) -> Ways:
+        """Ways before the first detection."""
+        return cls(np.zeros(count), np.zeros((count, 2)), np.zeros((count, 8)))
+
+    @property
+    def matches(self) -> Array:
+        """Number (N,) of detections."""
+        return self.sums[:, 0]
+
+    def older(self, elapsed: float) -> Ways:
+        """Go on by `elapsed` nominal periods."""
+        return replace(self, age=self.age + elapsed)
+
+    def added(self, edges: Array) -> Ways:
+        """Add a detection of each now, by its edges (N, 4) in px."""
+        x, y = ((edges[:, :2] + edges[:, 2:]) / 2).T
+        time, once = self.age, np.ones(len(self))
+        terms = columns(once, time, time * time, x, y, time * x, time * y, x * x + y * y)
+        first = np.where(self.sums[:, :1] == 0, columns(x, y), self.first)
+        return Ways(self.age, first, self.sums + terms)
+
+    def lengths(self, edges: Array) -> Array:
+        """Distance (N,) of boxes (N, 4) from the first detection, in their widths; 0 before it."""
+        x, y = ((edges[:, :2] + edges[:, 2:]) / 2 - self.first).T
+        width = np.maximum(edges[:, 2] - edges[:, 0], 1.0)
+        return np.asarray(np.where(self.matches > 0, np.hypot(x, y) / width, 0.0))
+
+    def evidence(self) -> Array:
+        """Logarithm (N,) of how rarely detections that shake in one place are as straight.
+
+        They shake independently, and a drive has constant speed; 0 where they are not straight.
+        """
+        count, time, squared, x, y, time_x, time_y, places = self.sums.T
+        known = np.maximum(count, 1.0)
+        scatter = places - (x * x + y * y) / known
+        duration = squared - time * time / known
+        along_x, along_y = time_x - time * x / known, time_y - time * y / known
+        is_told = (scatter > 0) & (duration > 0)
+        # Share of their scatter that the drive explains.
+        explained = (along_x**2 + along_y**2) / np.where(is_told, duration, 1.0)
+        straightness = explained / np.where(is_told, scatter, 1.0)
+        is_told &= straightness >= _STRAIGHT
+        # The share is distributed as Beta(1, count - 2): two slopes, of twice as many coordinates.
+        rest = np.maximum(1 - np.where(is_told, straightness, 0.0), math.ulp(1.0))
+        return np.asarray(np.where(is_told, (2 - count) * np.log(rest), 0.0))
