@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import cv2
@@ -133,12 +134,11 @@ class StatedTimes:
 
     def read(self):
         self.index += 1
-        return self.index < len(self.times), np.zeros((4, 4, 3), np.uint8)
+        if self.index == len(self.times):
+            return None
+        return np.zeros((4, 4, 3), np.uint8), self.times[self.index]
 
-    def get(self, key):
-        return self.times[min(self.index, len(self.times) - 1)]
-
-    def release(self):
+    def close(self):
         pass
 
 
@@ -149,6 +149,14 @@ def test_the_times_of_a_variable_rate_are_kept(tmp_path, monkeypatch):
     assert [p.stamp_ns - START for p in video.frames()] == [
         0, 40_000_000, 120_000_000, 160_000_000, 240_000_000
     ]  # fmt: skip
+
+
+def test_frames_without_a_time_follow_at_the_rate(tmp_path, monkeypatch):
+    video = VideoFile(video_of(tmp_path / "v.avi"))
+    monkeypatch.setattr(video, "_open", lambda: StatedTimes([0.0, math.nan, 200.0]))
+    video.fps = 100.0
+    assert [p.stamp_ns - START for p in video.frames()] == [0, 10_000_000, 200_000_000]
+    assert any("for 1 frames" in notice for notice in video.notices)
 
 
 def test_times_that_go_back_are_replaced_and_counted(tmp_path, monkeypatch):

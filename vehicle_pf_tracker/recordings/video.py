@@ -1,27 +1,27 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Footage of a video file, a camera or a stream, and footage of any kind by its name.
-
-OpenCV's own complaints are kept off the terminal where an error says the same in one sentence.
-"""
+"""Footage of a video file, a camera or a stream, and footage of any kind by its name."""
 
 from __future__ import annotations
 
 import math
-import os
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
-
-import cv2
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.recordings.decoders import (
+    Decoder,
+    OpenCVDecoder,
+    is_url,
+    open_decoder,
+    quiet_opencv,
+)
 from vehicle_pf_tracker.recordings.footage import (
     LAST_STAMP_NS,
     START_NS,
@@ -33,27 +33,6 @@ from vehicle_pf_tracker.recordings.footage import (
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
 from vehicle_pf_tracker.recordings.truth_files import Beside, Table, read_truth
 from vehicle_pf_tracker.recordings.truth_labels import Images
-
-_SILENT = 0
-"""OpenCV's level at which it logs nothing."""
-
-
-@contextmanager
-def quiet_opencv() -> Iterator[None]:
-    """Keep OpenCV from complaining on the terminal."""
-    # OpenCV moved these functions between 4 and 5.
-    logging: Any = getattr(cv2.utils, "logging", cv2)
-    level = logging.getLogLevel()
-    logging.setLogLevel(_SILENT)
-    try:
-        yield
-    finally:
-        logging.setLogLevel(level)
-
-
-# The decoder's own complaints would go to the terminal beside our sentence.
-os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
-
 
 _MOST_FRAMES = 1_000_000
 """Frames that truth may name in a video that states no number: nine hours of 30 frames/s."""
@@ -93,12 +72,9 @@ class VideoFile(Footage):
     ) -> None:
         self._path = path
         self._keeps_times = fps is None
-        video = self._open()
-        self.fps = float(video.get(cv2.CAP_PROP_FPS)) if fps is None else check_fps(fps, "--fps")
-        stated = video.get(cv2.CAP_PROP_FRAME_COUNT)
-        self.frame_count = int(stated) if math.isfinite(stated) and stated > 0 else None
-        size = (int(video.get(cv2.CAP_PROP_FRAME_WIDTH)), int(video.get(cv2.CAP_PROP_FRAME_HEIGHT)))
-        video.release()
+        with closing(self._open()) as video:
+            self.fps = video.fps if fps is None else check_fps(fps, "--fps")
+            self.frame_count, size = video.frame_count, video.size
         if not math.isfinite(self.fps) or self.fps <= 0:
             raise InputError(f"the video {path} states no frame rate; give it with --fps")
         check_fps(self.fps, path)
@@ -115,11 +91,11 @@ class VideoFile(Footage):
 
     def frames(self) -> Iterator[Picture]:
         """Yield the frames with their stamps."""
-        video = self._open()
         number = last = untimed = 0
-        try:
-            while (frame := _next_frame(video)) is not None:
-                stamp = self._stamp(video, number, last)
+        with closing(self._open()) as video:
+            while (read := video.read()) is not None:
+                frame, time_ms = read
+                stamp = self._stamp(time_ms, number, last)
                 if stamp is None:
                     stamp = last + round(1e9 / self.fps) if last else START_NS
                     untimed += 1
@@ -128,8 +104,6 @@ class VideoFile(Footage):
                 if truth is not None:
                     truth = self._truth[number] = replace(truth, stamp_ns=stamp)
                 yield Picture(stamp, frame, f"frame {number} of {self._path}", truth=truth)
-        finally:
-            video.release()
         if not number:
             raise InputError(f"no frame of the video {self._path} can be decoded")
         self._notices = [*self._found, *self._irregularities(number, untimed)]
@@ -144,12 +118,14 @@ class VideoFile(Footage):
         size = path.stat().st_size if path.is_file() else _MOST_FRAMES  # a frame has a byte or more
         return max(min(self.frame_count or _MOST_FRAMES, size), 1)
 
-    def _stamp(self, video: cv2.VideoCapture, index: int, last: int) -> int | None:
-        """Return the stamp of the frame just read, in ns; None if it is not after `last`."""
+    def _stamp(self, time_ms: float, index: int, last: int) -> int | None:
+        """Return the stamp of a frame in ns; None if it has none, or not one after `last`."""
         even = stamp_of(index, self.fps)
         if not self._keeps_times:
             return even
-        stated = START_NS + round(video.get(cv2.CAP_PROP_POS_MSEC) * 1e6)
+        if not math.isfinite(time_ms):
+            return None
+        stated = START_NS + round(time_ms * 1e6)
         if abs(stated - even) <= _ROUNDING_NS and even > last:
             return even
         return stated if last < stated <= LAST_STAMP_NS else None
@@ -166,19 +142,8 @@ class VideoFile(Footage):
         if lost := sum(not 1 <= number <= read for number in self._truth):
             yield f"frames of the truth without an image: {lost}"
 
-    def _open(self) -> cv2.VideoCapture:
-        return _opened(str(self._path), f"{self._path} is not a video file that can be decoded")
-
-
-def _opened(source: int | str, failure: str) -> cv2.VideoCapture:
-    """Open a video, by FFmpeg where OpenCV has it: other decoders complain on the terminal."""
-    has_ffmpeg = cv2.CAP_FFMPEG in cv2.videoio_registry.getStreamBackends()
-    backend = cv2.CAP_FFMPEG if has_ffmpeg and isinstance(source, str) else cv2.CAP_ANY
-    with quiet_opencv():
-        video = cv2.VideoCapture(source, backend)
-    if not video.isOpened():
-        raise InputError(failure)
-    return video
+    def _open(self) -> Decoder:
+        return open_decoder(self._path)
 
 
 class Camera(Footage):
@@ -197,15 +162,18 @@ class Camera(Footage):
 
     def __init__(self, source: int | str) -> None:
         self._name = f"the camera {source}" if isinstance(source, int) else f"the stream {source}"
-        self._video = _opened(source, f"{self._name} cannot be opened")
-        self.fps = float(self._video.get(cv2.CAP_PROP_FPS))
+        try:
+            self._video = OpenCVDecoder(source)
+        except InputError as error:
+            raise InputError(f"{self._name} {error}") from None
+        self.fps = self._video.fps
         self.frame_count = None
         self._read = 0
 
     @property
     def is_endless(self) -> bool:
         """True for a live source; False where the URL is that of a video file."""
-        return self._video.get(cv2.CAP_PROP_FRAME_COUNT) <= 0
+        return self._video.frame_count is None
 
     def frames(self) -> Iterator[Picture]:
         """Yield frames until the source ends."""
@@ -216,21 +184,15 @@ class Camera(Footage):
                 last = max(time.time_ns(), last + 1)
                 yield Picture(last, frame, f"frame {self._read} of {self._name}")
         finally:
-            self._video.release()
+            self._video.close()
         if not self._read:
             raise InputError(f"{self._name} sends no images")
         self._notices = [f"{self._name} sent no more images after {self._read}"]
 
     def _next(self) -> Frame | None:
         with quiet_opencv():  # it complains of a stream that stalls
-            return _next_frame(self._video)
-
-
-def _next_frame(video: cv2.VideoCapture) -> Frame | None:
-    is_read, image = video.read()
-    if not is_read:
-        return None
-    return cv2.cvtColor(image, cv2.COLOR_BGR2RGB)  # type: ignore[return-value]
+            read = self._video.read()
+        return None if read is None else read[0]
 
 
 _CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
@@ -266,7 +228,7 @@ def open_footage(
     """
     text = str(source)
     is_index = text.isdecimal() and not Path(text).exists()
-    if is_index or "://" in text:
+    if is_index or is_url(text):
         camera = Camera(int(text) if is_index else text)
         if not is_index and not camera.is_endless:
             return VideoFile(text, truth, fps, identity)

@@ -78,7 +78,7 @@ def _h264(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
     import av  # noqa: PLC0415 - an extra
 
     limited = min(max(rate, LOWEST_RATE), HIGHEST_RATE)
-    with av.open(str(path), "w") as container:
+    with av.open(str(path.absolute()), "w") as container:  # 10:00.mp4 is no protocol
         exact = Fraction(limited).limit_denominator(1001)  # 30000/1001 is the oddest in use
         stream: Any = container.add_stream("libx264", rate=exact)
         stream.codec_context.time_base = Fraction(1, _TICKS)

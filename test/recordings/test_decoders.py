@@ -1,0 +1,164 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Videos that one decoder reads and the other does not, in files of any name."""
+
+import struct
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from small_recordings import COUNT, frame_of, write_video
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.recordings import decoders
+from vehicle_pf_tracker.recordings.decoders import AvDecoder, OpenCVDecoder, open_decoder
+from vehicle_pf_tracker.recordings.source import open_source
+from vehicle_pf_tracker.showing.video_file import video_writer
+
+av = pytest.importorskip("av")
+START = 1_000_000_000
+
+
+def encode(path, codec="libx264", rate=25, count=COUNT):
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream(codec, rate=rate)
+        stream.width, stream.height, stream.pix_fmt = 96, 64, "yuv420p"
+        for index in range(count):
+            picture = av.VideoFrame.from_ndarray(frame_of(index), "rgb24")
+            container.mux(stream.encode(picture))
+        container.mux(stream.encode())
+    return path
+
+
+def frames_of(decoder):
+    frames = list(iter(decoder.read, None))
+    decoder.close()
+    return frames
+
+
+def test_both_decoders_give_the_same_frames_and_times(tmp_path):
+    path = str(encode(tmp_path / "v.mp4"))
+    one, other = OpenCVDecoder(path), AvDecoder(path)
+    facts = ("fps", "frame_count", "size")
+    assert [getattr(one, name) for name in facts] == [getattr(other, name) for name in facts]
+    pairs = list(zip(frames_of(one), frames_of(other), strict=True))
+    assert len(pairs) == COUNT
+    for (frame, time_ms), (other_frame, other_ms) in pairs:
+        assert time_ms == pytest.approx(other_ms, abs=0.01)
+        # Two conversions to RGB differ by rounding, and at edges by their chroma filters.
+        assert np.abs(frame.astype(int) - other_frame).mean() < 4
+
+
+@pytest.mark.parametrize("turn", [(0, 1, -1, 0), (0, -1, 1, 0), (-1, 0, 0, -1)])
+def test_both_decoders_turn_what_a_phone_took(tmp_path, turn):
+    path = encode(tmp_path / "v.mp4")
+    content = path.read_bytes()
+    upright = struct.pack(">9i", 1 << 16, 0, 0, 0, 1 << 16, 0, 0, 0, 1 << 30)
+    a, b, c, d = (number << 16 for number in turn)
+    turned = struct.pack(">9i", a, b, 0, c, d, 0, 0, 0, 1 << 30)
+    head = content.index(b"tkhd")
+    at = content.index(upright, head)
+    path.write_bytes(content[:at] + turned + content[at + len(turned) :])
+    (one, _), (other, _) = (kind(str(path)).read() for kind in (OpenCVDecoder, AvDecoder))
+    assert one.shape == other.shape
+    assert np.abs(one.astype(int) - other).mean() < 4
+
+
+@pytest.mark.skipif("libsvtav1" not in av.codecs_available, reason="PyAV has no encoder of AV1")
+def test_av1_is_read(tmp_path):
+    source = open_source(encode(tmp_path / "v.mp4", "libsvtav1"))
+    images = list(source.frames())
+    assert [image.stamp_ns - START for image in images] == [n * 40_000_000 for n in range(COUNT)]
+    assert (source.fps, source.frame_count) == (25, COUNT)
+    red = images[0].frame[28:32, 12:20].reshape(-1, 3).mean(axis=0)
+    assert red == pytest.approx([200, 30, 30], abs=25)
+
+
+@pytest.fixture
+def no_opencv(monkeypatch):
+    """Let OpenCV open videos, and decode none."""
+    monkeypatch.setattr(OpenCVDecoder, "read", lambda _: None)
+
+
+@pytest.mark.usefixtures("no_opencv")
+def test_without_pyav_the_codec_and_the_remedy_are_named(tmp_path, monkeypatch):
+    path = encode(tmp_path / "v.mp4")
+    monkeypatch.setitem(sys.modules, "av", None)
+    with pytest.raises(InputError, match=r"codec is (H264|AVC1); .*pip install .*\[video\]"):
+        open_source(path)
+
+
+@pytest.mark.usefixtures("no_opencv")
+def test_what_opencv_does_not_decode_pyav_does(tmp_path):
+    assert len(list(open_source(encode(tmp_path / "v.mp4")).frames())) == COUNT
+
+
+@pytest.mark.usefixtures("no_opencv")
+def test_a_file_that_is_cut_ends_there(tmp_path):
+    path = write_video(tmp_path / "v.avi", [frame_of(n) for n in range(COUNT)])
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) * 2 // 3])
+    source = open_source(path)
+    read = len(list(source.frames()))
+    assert 2 < read < COUNT
+    assert any(f"{read} could be read" in notice for notice in source.notices)
+
+
+@pytest.mark.parametrize("content", [b"", b"no video", b"\x00\x00\x00\x18ftypmp42" + bytes(99)])
+def test_what_is_no_video_is_said(tmp_path, content):
+    path = tmp_path / "v.mp4"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match="is not a video file that can be decoded"):
+        open_source(path)
+
+
+NAMES = [
+    "2026-11-26T10:00:00.mp4",
+    "cam:1.mp4",
+    "file:a.mp4",
+    "concat:a|b.mp4",
+    "http:a.mp4",
+    "100% %03d.mp4",
+    "-i.mp4",
+    "a b'c\"d.mp4",
+    "a?b#c.mp4",
+    "vidéo.mp4",
+    "a:/b.mp4",
+    "a://b.mp4",
+]
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("decoder", [OpenCVDecoder, AvDecoder])
+def test_files_of_any_name_are_read(tmp_path, monkeypatch, name, decoder):
+    if decoder is AvDecoder:
+        monkeypatch.setattr(OpenCVDecoder, "read", lambda _: None)
+    monkeypatch.chdir(tmp_path)
+    video = encode(tmp_path / "v.mp4", count=3)
+    place = tmp_path / name
+    place.parent.mkdir(exist_ok=True)
+    video.rename(place)
+    assert len(list(open_source(name).frames())) == 3
+
+
+def test_a_video_of_any_name_is_written(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with video_writer(Path("10:00:00.mp4"), (96, 64), 25) as write:
+        write(frame_of(0), 0.0)
+    assert len(list(open_source("10:00:00.mp4").frames())) == 1
+
+
+def test_a_url_that_is_no_file_stays_a_url():
+    assert decoders.is_url("rtsp://10.0.0.1/a")
+    assert decoders.is_url("https://example.org/" + "a" * 5000)
+    with pytest.raises(InputError, match="is not a video file"):
+        open_decoder("file:///nothing.mp4")
+
+
+def test_opencv_is_the_first(tmp_path):
+    path = write_video(tmp_path / "v.avi", [frame_of(0)])
+    assert isinstance(open_decoder(path), OpenCVDecoder)
+    assert cv2.videoio_registry.getBackends()
