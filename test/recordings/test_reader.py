@@ -352,9 +352,10 @@ def test_whole_files_without_a_full_index_are_read_without_complaint(bare_mcap, 
     [
         ("MCAP", "NONE", ""),
         ("MCAP", "STORAGE", ""),
-        ("MCAP", "FILE", "is compressed by file; convert it with `ros2 bag convert`"),
-        ("MCAP", "MESSAGE", "is compressed by message; convert it with `ros2 bag convert`"),
-        ("SQLITE3", "NONE", "is stored as sqlite3; convert it to MCAP"),
+        ("MCAP", "FILE", "is compressed by file; convert it: rosbags-convert --src"),
+        ("MCAP", "MESSAGE", "is compressed by message; convert it: rosbags-convert --src"),
+        ("SQLITE3", "NONE", ""),
+        ("SQLITE3", "FILE", "is compressed by file; convert it: rosbags-convert --src"),
     ],
 )
 def test_recordings_of_another_writer_of_rosbag2(tmp_path, version, storage, mode, said):

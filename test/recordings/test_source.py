@@ -181,7 +181,7 @@ def test_recordings_are_opened_as_such(tmp_path):
     ("name", "words"),
     [
         ("old.bag", "a ROS 1 bag; convert it to MCAP: rosbags-convert --src"),
-        ("data_0.db3", "a bag in SQLite; convert it to MCAP: rosbags-convert --src"),
+        ("data_0.db3", "is not a bag in SQLite"),
         ("nothing.mp4", "no file or folder"),
         ("rtsp://127.0.0.1:9/none", "cannot be opened"),
         ("97", "the camera 97 cannot be opened"),

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The rosbag2 folder: which MCAP files it consists of, and its metadata.yaml (version 9).
+"""The rosbag2 folder: which files it consists of, and its metadata.yaml (version 9).
 
 Read by rosbag2's `MetadataIo` and by `rosbags`; the field names are rosbag2_storage's.
 """
@@ -17,10 +17,11 @@ import yaml
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.messages import type_hash
+from vehicle_pf_tracker.recordings.sqlite_index import CONVERSION
 
 
 def recording_files(path: Path) -> tuple[list[Path], list[str]]:
-    """List the MCAP files of a rosbag2 folder, or the one file that `path` is.
+    """List the files of a rosbag2 folder, or the one file that `path` is.
 
     Returns
     -------
@@ -32,7 +33,7 @@ def recording_files(path: Path) -> tuple[list[Path], list[str]]:
     Raises
     ------
     InputError
-        If there is no such path, or nothing in it is an MCAP file.
+        If there is no such path, or nothing in it is a recording.
     """
     try:
         if not path.exists():
@@ -52,11 +53,13 @@ def _folder_files(folder: Path) -> tuple[list[Path], list[str]]:
     if information is not None:
         _check_storage(folder, information)
         return _listed_files(folder, information)
-    present = sorted(filter(Path.is_file, folder.glob("[!.]*.mcap")), key=_natural_order)
-    if not present:
-        raise InputError(f"the folder {folder} holds no recording (metadata.yaml, *.mcap)")
     state = "damaged" if metadata.exists() else "missing"
-    return present, [f"{metadata} is {state}; the *.mcap files beside it are used"]
+    for suffix in (".mcap", ".db3"):
+        present = [path for path in folder.glob(f"[!.]*{suffix}") if path.is_file()]
+        if present:
+            notice = f"{metadata} is {state}; the *{suffix} files beside it are used"
+            return sorted(present, key=_natural_order), [notice]
+    raise InputError(f"the folder {folder} holds no recording (metadata.yaml, *.mcap, *.db3)")
 
 
 def _information(metadata: Path) -> dict[str, Any] | None:
@@ -76,16 +79,15 @@ def _information(metadata: Path) -> dict[str, Any] | None:
 
 def _check_storage(folder: Path, information: dict[str, Any]) -> None:
     storage = information.get("storage_identifier") or "mcap"
-    if storage != "mcap":
+    if storage not in {"mcap", "sqlite3"}:
         raise InputError(
-            f"the recording {folder} is stored as {storage}; "
-            "convert it to MCAP with `ros2 bag convert`"
+            f"the recording {folder} is stored as {storage}; convert it to MCAP where it was made"
         )
     mode = (information.get("compression_mode") or "").lower()
     if mode not in {"", "none", "storage"}:
         raise InputError(
-            f"the recording {folder} is compressed by {mode}; convert it with `ros2 bag convert`, "
-            "or record with `--storage-preset-profile zstd_fast`"
+            f"the recording {folder} is compressed by {mode}; convert it: "
+            f"{CONVERSION.format(path=folder)}, or record with `--storage-preset-profile zstd_fast`"
         )
 
 

@@ -138,9 +138,7 @@ class AvDecoder:
         try:
             av = importlib.import_module("av")
         except ImportError:
-            raise InputError(
-                "is not installed: install the extra [video], pip install 'vehicle_pf_tracker[video]'"
-            ) from None
+            raise InputError("is not installed (pip install 'vehicle_pf_tracker[video]')") from None
         self._failures = (av.error.FFmpegError, ValueError)
         try:
             self._container = av.open(source)

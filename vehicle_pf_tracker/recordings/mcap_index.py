@@ -60,6 +60,10 @@ class McapIndex:
         True if the file was cut: it lacks its end, or stops within a record.
     damages : list of str
         Other unreadable parts, one clause each.
+    read : callable
+        Reads the messages of a block of the file.
+    unit : str
+        Unit of the offsets of the blocks.
     """
 
     path: Path
@@ -69,6 +73,8 @@ class McapIndex:
     counts: Counter[int] = field(default_factory=Counter)
     is_truncated: bool = False
     damages: list[str] = field(default_factory=list)
+    read: Callable[[Path, Block], Iterator[Message]] = read_block
+    unit: str = "byte"
 
 
 def read_index(path: Path) -> McapIndex:
@@ -244,7 +250,7 @@ def merged_messages(
             yield files[number], item
             continue
         try:
-            for place, message in enumerate(read_block(files[number].path, item)):
+            for place, message in enumerate(files[number].read(files[number].path, item)):
                 if (
                     message.channel_id in wanted[number]
                     and first_ns <= message.log_time_ns < end_ns

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Read recordings: rosbag2 folders and bare MCAP files."""
+"""Read recordings: rosbag2 folders, and bare files in MCAP or SQLite."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.mcap_blocks import Message
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex, merged_messages, read_index
 from vehicle_pf_tracker.recordings.messages import deserialize
+from vehicle_pf_tracker.recordings.sqlite_index import SUFFIX, read_sqlite_index
 from vehicle_pf_tracker.recordings.topic_table import (
     ReadNotices,
     TopicInfo,
@@ -58,7 +59,7 @@ class RecordedMessage:
 
 
 class Recording:
-    """A rosbag2 folder or a bare MCAP file.
+    """A rosbag2 folder, or a bare file in MCAP or SQLite.
 
     Reading streams: no more than the chunks that overlap in time are in memory. Each call of
     `frames`, `messages` and `truth` starts anew, and several may be under way at once.
@@ -86,14 +87,16 @@ class Recording:
     Raises
     ------
     InputError
-        If there is no such file, it is not MCAP, nothing in it can be read, or no image topic can
-        be chosen.
+        If there is no such file, it is neither MCAP nor SQLite, nothing in it can be read, or no
+        image topic can be chosen.
     """
 
     def __init__(self, path: Path | str, topic: str | None = None) -> None:
         self.path = Path(path)
         files, found = recording_files(self.path)
-        self.files = [read_index(file) for file in files]
+        self.files = [
+            read_sqlite_index(file) if file.suffix == SUFFIX else read_index(file) for file in files
+        ]
         self._check_readable()
         self.topics: tuple[TopicInfo, ...] = list_topics(self.files)
         chosen = choose_image_topic(self.path, self.topics, topic)

@@ -149,7 +149,7 @@ class ReadNotices:
     def add_block(self, index: McapIndex, block: Block, error: DamageError) -> None:
         """Note a part of a file that was skipped."""
         self._damages[index.path, block.offset] = (
-            f"recording {index.path}: a part at byte {block.offset} was skipped: {error}"
+            f"recording {index.path}: a part at {index.unit} {block.offset} was skipped: {error}"
         )
 
     def add_image(self, log_time_ns: int, start_ns: int, error: InputError) -> None:

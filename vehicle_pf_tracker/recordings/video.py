@@ -31,6 +31,7 @@ from vehicle_pf_tracker.recordings.footage import (
     stamp_of,
 )
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
+from vehicle_pf_tracker.recordings.sqlite_index import CONVERSION, SUFFIX
 from vehicle_pf_tracker.recordings.truth_files import Beside, Table, read_truth
 from vehicle_pf_tracker.recordings.truth_labels import Images
 
@@ -195,9 +196,6 @@ class Camera(Footage):
         return None if read is None else read[0]
 
 
-_CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
-
-
 def open_footage(
     source: str | Path,
     *,
@@ -236,11 +234,9 @@ def open_footage(
             raise InputError(f"{source} is live and has no truth; leave --truth out")
         return camera
     path = Path(text)
-    kinds = {".bag": "a ROS 1 bag", ".db3": "a bag in SQLite"}
-    if path.suffix in kinds:
-        folder = path.parent if path.suffix == ".db3" else path
+    if path.suffix == ".bag":
         raise InputError(
-            f"{path} is {kinds[path.suffix]}; convert it to MCAP: {_CONVERSION.format(path=folder)}"
+            f"{path} is a ROS 1 bag; convert it to MCAP: {CONVERSION.format(path=path)}"
         )
     if not path.exists():
         raise InputError(f"there is no file or folder {path}")
@@ -252,5 +248,5 @@ def open_footage(
 
 
 def is_recording(path: Path) -> bool:
-    """Return whether `path` is a rosbag2 folder or an MCAP file, by its name and content."""
-    return path.suffix == ".mcap" or (path / "metadata.yaml").exists()
+    """Return whether `path` is a rosbag2 folder or a file of one, by its name and content."""
+    return path.suffix in {".mcap", SUFFIX} or (path / "metadata.yaml").exists()
