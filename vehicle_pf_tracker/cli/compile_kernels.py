@@ -9,6 +9,7 @@ import time
 
 from vehicle_pf_tracker.cli.console import tell_notices
 from vehicle_pf_tracker.cli.requests import VerbRequest
+from vehicle_pf_tracker.core.errors import InputError
 
 Request = VerbRequest
 """Request of `compile`, which has no options."""
@@ -20,7 +21,13 @@ def run(request: Request) -> int:
 
     print("compiling kernels, for up to a minute; later starts load them", flush=True)
     began = time.monotonic()
-    kernels = load_kernels("numba")
+    try:
+        kernels = load_kernels("numba")
+    except InputError as error:
+        raise InputError(
+            "there is nothing to compile without Numba: install the extra [numba], pip install "
+            f"'vehicle_pf_tracker[numba]' ({error.__cause__})"
+        ) from None
     tell_notices(kernels.notices)
     print(f"kernels are ready after {time.monotonic() - began:.1f} s")
     return 1 if kernels.notices else 0

@@ -20,7 +20,8 @@ from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.mcap_blocks import Message
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex, merged_messages, read_index
 from vehicle_pf_tracker.recordings.messages import deserialize
-from vehicle_pf_tracker.recordings.sqlite_index import SUFFIX, read_sqlite_index
+from vehicle_pf_tracker.recordings.recording_names import SQLITE
+from vehicle_pf_tracker.recordings.sqlite_index import read_sqlite_index
 from vehicle_pf_tracker.recordings.topic_table import (
     ReadNotices,
     TopicInfo,
@@ -95,7 +96,7 @@ class Recording:
         self.path = Path(path)
         files, found = recording_files(self.path)
         self.files = [
-            read_sqlite_index(file) if file.suffix == SUFFIX else read_index(file) for file in files
+            read_sqlite_index(file) if file.suffix == SQLITE else read_index(file) for file in files
         ]
         self._check_readable()
         self.topics: tuple[TopicInfo, ...] = list_topics(self.files)

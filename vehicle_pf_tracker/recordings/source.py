@@ -13,8 +13,9 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.recordings.footage import Footage
 from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.recording_names import is_recording
 from vehicle_pf_tracker.recordings.truth_files import Beside
-from vehicle_pf_tracker.recordings.video import is_recording, open_footage
+from vehicle_pf_tracker.recordings.video import open_footage
 
 Source: TypeAlias = Recording | Footage
 """A stream of stamped images, with truth where it is known."""

@@ -20,10 +20,8 @@ from mcap.records import Channel, Schema
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.mcap_blocks import Block, DamageError, Message
 from vehicle_pf_tracker.recordings.mcap_index import McapIndex
+from vehicle_pf_tracker.recordings.recording_names import CONVERSION
 
-SUFFIX = ".db3"
-CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
-"""Command that converts a bag; it comes with `rosbags`, and so with this package."""
 _TOPICS = "SELECT id, name, type, serialization_format, offered_qos_profiles FROM topics"
 _MESSAGES = "SELECT id, topic_id, timestamp, length(data) FROM messages ORDER BY id"
 _MESSAGE = "SELECT topic_id, timestamp, data FROM messages WHERE id = ?"

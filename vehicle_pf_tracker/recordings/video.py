@@ -31,7 +31,7 @@ from vehicle_pf_tracker.recordings.footage import (
     stamp_of,
 )
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
-from vehicle_pf_tracker.recordings.sqlite_index import CONVERSION, SUFFIX
+from vehicle_pf_tracker.recordings.recording_names import CONVERSION
 from vehicle_pf_tracker.recordings.truth_files import Beside, Table, read_truth
 from vehicle_pf_tracker.recordings.truth_labels import Images
 
@@ -245,8 +245,3 @@ def open_footage(
     if not path.is_file():
         raise InputError(f"{path} is not a regular file or a folder")
     return VideoFile(path, truth, fps, identity)
-
-
-def is_recording(path: Path) -> bool:
-    """Return whether `path` is a rosbag2 folder or a file of one, by its name and content."""
-    return path.suffix in {".mcap", SUFFIX} or (path / "metadata.yaml").exists()

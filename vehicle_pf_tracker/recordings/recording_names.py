@@ -1,0 +1,21 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Recordings by the names of their files, and the command that converts other bags.
+
+Without the readers: a node that only asks whether something is a recording has no MCAP.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+MCAP, SQLITE = ".mcap", ".db3"
+"""Suffixes of the files of recordings."""
+CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
+"""Command that converts a bag; it comes with `rosbags`, and so with this package."""
+
+
+def is_recording(path: Path) -> bool:
+    """Return whether `path` is a rosbag2 folder or a file of one, by its name and content."""
+    return path.suffix in {MCAP, SQLITE} or (path / "metadata.yaml").exists()
