@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.filtering.motion import (
+    DISC_SIGMA,
     sample_disc,
     sample_normal,
     sample_normal_rayleigh,
@@ -73,6 +74,13 @@ def test_disc_is_filled_evenly():
     # Half of the area lies within 10 / sqrt(2); the mean distance is two thirds of the radius.
     assert np.mean(distance < 10.0 / math.sqrt(2)) == pytest.approx(0.5, abs=0.005)
     assert distance.mean() == pytest.approx(20 / 3, rel=0.005)
+
+
+def test_a_gaussian_of_the_discs_variance_has_half_of_its_radius_as_deviation():
+    # The mean of r² over a disc of radius 10 is 50, and each axis has half of it: 25.
+    moves = sample_disc(np.random.default_rng(9), DRAWS, 10.0)
+    assert moves.std(axis=0) == pytest.approx([5.0, 5.0], rel=0.01)
+    assert 10.0 * DISC_SIGMA == 5.0
 
 
 def test_disc_of_no_radius_is_its_middle():

@@ -66,6 +66,15 @@ def test_one_step_by_hand():
     assert shifted == pytest.approx(np.array([[2.0, 1.5]]))
 
 
+def test_pixels_weigh_by_the_root_of_what_the_target_has_over_what_the_window_has():
+    # A row of three: profile 5/9, 1, 5/9, so that red has 5/19 and green 14/19 of the window.
+    reference = histogram(red=45 / 76, green=31 / 76)
+    # Roots of q / p: 3/2 for red, sqrt(31 / 56) for green.
+    green = np.sqrt(31 / 56)
+    (moved,) = mean_shift(image("rgg"), np.array([[1.5, 0.5]]), Window(1, 0), reference, 1)
+    assert moved == pytest.approx([1.5 + (green - 1.5) / (1.5 + 2 * green), 0.5])
+
+
 def test_without_a_colour_of_the_target_nothing_moves():
     start = np.array([[1.2, 0.9]])
     assert np.array_equal(

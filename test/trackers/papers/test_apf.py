@@ -10,6 +10,7 @@ import pytest
 from street import Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.trackers.papers import apf
 from vehicle_pf_tracker.trackers.papers.apf import ApfParameters, ApfTracker
 from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
@@ -174,6 +175,31 @@ def test_hidden_from_the_first_frame_on_it_is_in_the_occlusion_regime_and_learns
     assert [e.regime for e in estimates[:16]] == ["regular"] + ["occlusion"] * 15
     assert estimates[-1].regime == "regular"
     assert error(estimates[-1], street, 23) < 8
+
+
+def test_a_similarity_of_tau_itself_is_clear():
+    street, tracker = Street(), make(**PRINTED_RULE, **{"occlusion.tau": 1.0})
+    # Pi_0 = Pi_0_up = 1 (step 2), and 1 >= 1.
+    estimates = follow(tracker, street, range(3))
+    assert [e.regime for e in estimates[1:]] == ["regular", "occlusion"]
+
+
+def test_a_similarity_of_the_limit_itself_lets_the_reference_follow(monkeypatch):
+    monkeypatch.setattr(apf, "hellinger_similarity", lambda *_: 0.8)
+    values = {"reference.steady_above": 1.0, "reference.steady_alpha": 0.5}
+    street, tracker = Street(speed=0.0), make(**REAL_VIDEO, **values)
+    follow(tracker, street, range(2))
+    before = tracker.reference.histogram
+    tracker.step(street.frame(2))  # the clear level is 0.8 by now
+    assert not np.array_equal(tracker.reference.histogram, before)
+
+
+def test_the_first_particles_have_the_spread_of_the_regular_regime():
+    street = Street(speed=0.0)
+    tracker = make(num_particles=20_000, **{"motion.sigma_w": 4.0})
+    particles = tracker.start(street.frame(0), street.box(0)).particles
+    assert particles[:, 1].std() == pytest.approx(4.0, rel=0.03)
+    assert particles.mean(axis=0) == pytest.approx(street.box(0).centre, abs=0.2)
 
 
 class Reversing(Street):

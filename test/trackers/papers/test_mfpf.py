@@ -13,6 +13,7 @@ from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
 from vehicle_pf_tracker.trackers.papers import mfpf
+from vehicle_pf_tracker.trackers.papers.feature_weighting import weigh_features
 from vehicle_pf_tracker.trackers.papers.mfpf import MfpfTracker
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     MfpfParameters,
@@ -188,6 +189,19 @@ def test_interpretation_32_the_basic_filter_searches_no_wider_and_never_predicts
     assert {e.regime for e in runs[False][1:]} == {"estimation"}
     # What it sees where the vehicle was becomes a part of its reference.
     assert runs[False][-1].similarities["used_color"] == 1.0
+
+
+def test_each_features_own_weights_have_the_earlier_ones_as_a_factor():
+    tracker, street = make(num_particles=2), Street()
+    tracker.start(street.frame(0), street.box(0))
+    particles, prior = np.zeros((2, 2)), np.array([0.75, 0.25])
+    # Of sigma_v 0.1: coefficients 0.02 ln 3 apart have weights 1 : 3, and the same ones 1 : 1.
+    far = 0.9 + 0.02 * np.log(3)
+    rho = np.array([[0.9, 0.9], [0.9, far], [far, 0.9]])
+    weighting = weigh_features(np.ones(3), np.ones(3), 0.5)
+    weights, cloud = tracker.weigh(particles, prior, rho, weighting)
+    assert weights == pytest.approx(np.array([[0.75, 0.25], [0.5, 0.5], [0.9, 0.1]]))
+    assert cloud.weights == pytest.approx([0.75, 0.25])  # 1 : 3 and 3 : 1 cancel
 
 
 def test_the_evidence_is_the_median_of_the_features(monkeypatch):

@@ -10,6 +10,7 @@ from street import Street, error, follow
 from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.trackers.papers import pf
 from vehicle_pf_tracker.trackers.papers.pf import PfParameters, PfTracker
 
 
@@ -35,3 +36,20 @@ def test_it_stays_behind_where_the_vehicle_vanished():
     estimates = follow(make(sigma=3.0), street, range(50))
     assert error(estimates[14], street, 14) < 6
     assert error(estimates[-1], street, 49) > 40
+
+
+def test_second_order_particles_go_on_with_their_ancestors_moves(monkeypatch):
+    moves = np.array([[1.0, 0.0], [2.0, 3.0], [-1.0, 4.0]])
+    street, tracker = Street(speed=0.0), make(num_particles=3, dynamics="second_order")
+    started = tracker.start(street.frame(0), street.box(0)).particles
+    tracker._draw = lambda weights, scheme: np.array([0, 1, 2])
+    monkeypatch.setattr(pf, "sample_normal", lambda rng, count, sigma: moves)
+    first = tracker.step(street.frame(1)).particles
+    assert first == pytest.approx(started + moves)
+    tracker._draw = lambda weights, scheme: np.array([1, 1, 2])
+    monkeypatch.setattr(pf, "sample_normal", lambda rng, count, sigma: np.zeros((3, 2)))
+    # Two periods: twice the ancestor's own last move of one.
+    second = tracker.step(street.frame(2), 2.0).particles
+    assert second == pytest.approx(first[[1, 1, 2]] + 2 * moves[[1, 1, 2]])
+    third = tracker.step(street.frame(3)).particles
+    assert third == pytest.approx(second[[1, 1, 2]] + moves[[1, 1, 2]])

@@ -177,6 +177,19 @@ def test_copies_are_made_of_kept_particles_only():
     assert np.array_equal(after.cloud.positions, np.tile(before.cloud.positions[0], (6, 1)))
 
 
+def test_copies_are_made_of_the_kept_in_proportion_to_their_weights():
+    # Of sigma_v 0.2: coefficients 0.08 ln 3 apart have weights 3 : 1, here 0.75 and 0.25.
+    coefficients = [0.99, 0.99 - 0.08 * np.log(3), *[0.01] * 8]
+    values = {"resampling": "systematic", "jitter": 0.0, "occlusion.n_eff": 0.0}
+    before, after, replaced, regime = one_pass(coefficients, **values)
+    assert (replaced, regime) == (8, "regular")
+    first, second = (
+        (after.cloud.positions == before.cloud.positions[which]).all(axis=1).sum()
+        for which in (0, 1)
+    )
+    assert (first, second) == (1 + 6, 1 + 2)
+
+
 def test_particles_of_equal_weight_are_all_good():
     before, after, replaced, _ = one_pass([0.9] * 5)
     assert replaced == 0

@@ -7,6 +7,7 @@ import pytest
 from street import Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.trackers.papers import pf
 from vehicle_pf_tracker.trackers.papers.sapf import SapfParameters, SapfTracker
 
 
@@ -47,3 +48,14 @@ def test_finds_a_vehicle_that_jumped():
     far = Street(speed=14.0)
     tracker.step(far.frame(1))
     assert error(tracker.step(far.frame(1)), far, 1) < 6
+
+
+def test_tied_the_variance_shrinks_by_the_share_that_survives(monkeypatch):
+    sigmas, draw = [], pf.sample_normal
+    monkeypatch.setattr(
+        pf, "sample_normal", lambda rng, n, sigma: sigmas.append(sigma) or draw(rng, n, sigma)
+    )
+    values = {"annealing.survival": 0.25, "annealing.largest_rate": 1e6, "annealing.layers": 3}
+    follow(make(sigma=8.0, **{"annealing.tied": True, **values}), Street(), range(2))
+    # The start, then three layers: a quarter of the variance is half of the deviation.
+    assert sigmas == pytest.approx([8.0, 8.0, 4.0, 2.0], rel=1e-3)
