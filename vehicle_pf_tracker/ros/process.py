@@ -33,6 +33,7 @@ from vehicle_pf_tracker.core.addresses import shown
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
 from vehicle_pf_tracker.ros.node.kernel_loading import is_loading
+from vehicle_pf_tracker.ros.node_executor import node_executor
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
 from vehicle_pf_tracker.ros.transport import image_transport
 
@@ -132,7 +133,7 @@ def spin_nodes(
     int
         That of `spin`; 0 where a signal took the ground from under a call.
     """
-    executor, nodes = SingleThreadedExecutor(), list[NodeT]()
+    executor, nodes = node_executor(), list[NodeT]()
     try:
         with image_transport(image_bytes, rclpy.get_rmw_implementation_identifier()) as notices:
             for make in makers:
