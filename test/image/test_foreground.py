@@ -87,6 +87,7 @@ def test_the_median_is_that_of_each_pixel(count):
 def test_all_that_moves_has_a_box_now_and_in_the_frames_before():
     foreground, _ = watched()
     foreground.keep(scene((100, 50, 124, 64), (20, 90, 50, 110)), still=True)
+    foreground.learn_background()
     history = dict(foreground.history())
     assert list(history) == [0.0, 16.0, 32.0]
     assert history[16.0].shape == (1, 2, 2)

@@ -94,10 +94,16 @@ class Foreground:
         """Width and height of the frames, px."""
         return np.array(self._latest[-1].image.shape[::-1]) / self._latest[-1].zoom
 
-    def history(self) -> Iterator[tuple[float, Array]]:
-        """Learn the whole background; give the ages of kept frames, and the boxes in them."""
+    def learn_background(self) -> None:
+        """Learn the whole background from the frames that are kept now."""
         self._whole = median([each.image for each in self._background])
         self._learnt_at = self._frames
+
+    def history(self) -> Iterator[tuple[float, Array]]:
+        """Give the ages of kept frames, and the boxes of what moves in them.
+
+        The background has to be learnt.
+        """
         kept, since = list(self._background)[::-1], (self._frames - 1) % _KEPT_EVERY
         return (
             (float(since + _KEPT_EVERY * back), self._boxes(kept[back]))
@@ -105,7 +111,7 @@ class Foreground:
         )
 
     def boxes(self) -> Array:
-        """Find all that moves now, against the background that `history` has learnt.
+        """Find all that moves now, against the background that was learnt.
 
         Returns
         -------

@@ -45,7 +45,10 @@ def usual():
 
 
 def view_at(appearance, picture, position, size=SIZE, *, wide=False):
-    return appearance.view(appearance.patch(picture, np.array(position, float), size, wide=wide))
+    patch = appearance.patch(picture, np.array(position, float), size, wide=wide)
+    if not appearance.has_level:
+        appearance.learn_level(patch)
+    return appearance.view(patch)
 
 
 def test_the_target_has_its_canonical_size_in_the_patch():
@@ -65,7 +68,7 @@ def test_any_size_leaves_background_in_the_patch(size):
     assert patch.zoom.max() <= 8
 
 
-def test_the_first_view_sets_what_is_usual():
+def test_the_first_patch_sets_what_is_usual():
     appearance = learnt()
     assert view_at(appearance, frame(), PLACE).response.max() == pytest.approx(1)
     assert appearance.usual_response > 0

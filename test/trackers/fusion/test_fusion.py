@@ -18,8 +18,8 @@ from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.foreground import Foreground
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
+from vehicle_pf_tracker.trackers.fusion import flow_evidence, observe, visibility
 from vehicle_pf_tracker.trackers.fusion import follow as follow_module
-from vehicle_pf_tracker.trackers.fusion import observe, visibility
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion.hypotheses import HIDDEN_SCALES
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
@@ -201,7 +201,7 @@ def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
             )
             patch.setattr(SurfaceFlow, "judged", lambda *_: surface)
             patch.setattr(visibility, "wholeness", lambda *_: whole)
-            patch.setattr(visibility, "points_evidence", lambda *_: 0.0)
+            patch.setattr(flow_evidence, "points_evidence", lambda *_: 0.0)
             surface = tracker._state.surface._replace(share=share, is_reliable=reliable)
             change(tracker, surface=surface)
             tracker.step(street.frame(8))

@@ -14,7 +14,7 @@ from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion, Sighting
-from vehicle_pf_tracker.trackers.fusion.turning import Branch, Turning
+from vehicle_pf_tracker.trackers.fusion.turning import Branch, Outlines
 
 SIZE = np.array([26.0, 16.0])
 SPEED = 2.0
@@ -48,7 +48,7 @@ def drive(turns, paint=lambda picture, time: None, response=0.1, still=lambda ti
 
     The doubt begins `late` frames after the turn, with the last clear sighting before it.
     """
-    turning, foreground, centres, given = Turning(), Foreground(), path(turns), []
+    turning, foreground, centres, given = Outlines(), Foreground(), path(turns), []
     for time, centre in enumerate(centres):
         picture = ROAD.copy()
         left, top = np.rint(centre - SIZE / 2).astype(int)
@@ -56,13 +56,15 @@ def drive(turns, paint=lambda picture, time: None, response=0.1, still=lambda ti
         paint(picture, time)
         foreground.keep(SmallGrey(picture, 1.0), still=still(time))
         if not foreground.is_known:
-            turning = Turning()
+            turning = Outlines()
         if time > DOUBT + late:
             turning = turning.followed(foreground, 1.0, view(response), lambda *_: 1.0)
             given.append(turning.vehicle)
         elif time == DOUBT + late:
+            if foreground.is_known:
+                foreground.learn_background()
             motion = PerspectiveMotion(centres[DOUBT], np.array([SPEED, 0.0]), 0.0)
-            turning = Turning.begun(foreground, motion, Sighting(late, centres[DOUBT], SIZE))
+            turning = Outlines.begun(foreground, motion, Sighting(late, centres[DOUBT], SIZE))
     return given, centres[DOUBT + late + 1 :]
 
 
@@ -128,4 +130,4 @@ def test_frames_of_another_size_begin_anew():
         foreground.keep(SmallGrey(picture, 1.0), still=True)
     assert not foreground.is_known
     motion = PerspectiveMotion(START, np.array([SPEED, 0.0]), 0.0)
-    assert Turning.begun(foreground, motion, Sighting(0.0, START, SIZE)) == Turning()
+    assert Outlines.begun(foreground, motion, Sighting(0.0, START, SIZE)) == Outlines()

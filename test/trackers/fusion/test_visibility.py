@@ -15,9 +15,10 @@ from street import HEIGHT, SIZE, WIDTH, Street, follow
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.trackers.fusion.flow_evidence import points_evidence
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.state import Step
-from vehicle_pf_tracker.trackers.fusion.visibility import points_evidence, wholeness
+from vehicle_pf_tracker.trackers.fusion.step import Step
+from vehicle_pf_tracker.trackers.fusion.visibility import wholeness
 
 
 def visibility(**values):

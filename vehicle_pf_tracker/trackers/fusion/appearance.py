@@ -166,16 +166,23 @@ class Appearance:
         return patch if patch.side == self._side else patch.middle(self._side)
 
     def view(self, patch: Patch) -> View:
-        """Respond to a patch."""
+        """Respond to a patch; the usual response has to be known."""
         wide = patch.side > self._side
         respond = self._filter.respond_wide if wide else self._filter.respond
         spectrum = self._spectrum(patch)
-        response = respond(spectrum)
-        if not self.usual_response:
-            least = max(self._least_usual, _TINY_RESPONSE)
-            self.usual_response = max(float(response.max()), least)
-        response = response / np.float32(self.usual_response)
+        response = respond(spectrum) / np.float32(self.usual_response)
         return View(patch, None if wide else spectrum, response)
+
+    @property
+    def has_level(self) -> bool:
+        """True once the usual response is known, which all responses are relative to."""
+        return self.usual_response > 0
+
+    def learn_level(self, patch: Patch) -> None:
+        """Take the highest response to the first patch after a start for the usual one."""
+        respond = self._filter.respond_wide if patch.side > self._side else self._filter.respond
+        highest = float(respond(self._spectrum(patch)).max())
+        self.usual_response = max(highest, self._least_usual, _TINY_RESPONSE)
 
     def response_at(self, frame: Frame, position: Array, size: Array) -> float:
         """Response to a box of this centre and size (px), relative to the usual one."""

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import partial
 
@@ -17,10 +18,19 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, hidden_hypothes
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
 from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, SIZE_RESPONSE, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
-from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility
+from vehicle_pf_tracker.trackers.fusion.state import State, Wholeness
+from vehicle_pf_tracker.trackers.fusion.step import Observation, Step
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
-from vehicle_pf_tracker.trackers.fusion.turning import Turning
+from vehicle_pf_tracker.trackers.fusion.turning import Branch, Outlines, proven
+from vehicle_pf_tracker.trackers.fusion.verdict import (
+    Gone,
+    Hidden,
+    PartlyHidden,
+    Turning,
+    Verdict,
+    Visible,
+)
 
 _SURE = 0.8
 """Probability of being visible above which size, usual share and paint are measured: odds of 4 to
@@ -36,6 +46,10 @@ _LEAST_BELIEVED = 20.0
 """Geometric mean of the sides, px, below which points are not believed wholly: they are magnified
 twofold and more, as are their errors. Without it white_van is claimed in .67 of its hidden frames
 instead of .20; laws without a number lose more (laboratory/notes/fusion_tried.md)."""
+_LARGEST_PARTIAL = 1.5
+"""Bound of the growth, and of the shrinking, of a partly hidden vehicle, since it became that or
+came back as that. It is a tenth on the real sequences; an error of the rate must not go on for as
+long as a vehicle waits behind a hedge."""
 _TURNING_STIFFNESS = 0.5
 """Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
 turn by 90 degrees nothing that was learnt before stays right (scene `turn`, seed 100)."""
@@ -51,29 +65,54 @@ _LEAST_STIFFNESS = 0.2
 """Least stiffness in such a turn, of the usual one, however low the response."""
 
 
-def follow(state: State, seen: Observation, step: Step) -> State:
+def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> State:
     """Follow a visible vehicle, or the prediction of a hidden one."""
-    if state.visibility is Visibility.TURNING:
-        return _follow_outline(state, step)
-    if state.visibility.is_visible:
-        return _follow_peak(state, seen, step)
-    if not seen.was_hidden:
-        state = _enter_occlusion(state, step)
-    elif state.visibility is Visibility.GONE:
-        state = state._replace(particles=state.particles.all_visible(0.0))
+    state = state._replace(verdict=verdict)
+    match verdict:
+        case Turning(outlines=outlines):
+            return _follow_outline(state, outlines, step)
+        case Visible(whole=whole) | PartlyHidden(whole=whole):
+            return _follow_peak(_with_whole(state, whole, seen, step), seen, step)
+        case Hidden() if not seen.was_hidden:
+            state = _enter_occlusion(state, step)
+        case Gone():
+            state = state._replace(particles=state.particles.all_visible(0.0))
     return state._replace(position=step.inside(state.particles.mean))
+
+
+def _with_whole(state: State, whole: float, seen: Observation, step: Step) -> State:
+    """Believe that all or a part is visible; predict the size of a vehicle that is partly hidden.
+
+    It grows as it did in the sightings before, since its visible part has another size.
+    """
+    before = state.whole
+    if whole > 0.5:
+        return state._replace(whole=before._replace(probability=whole))
+    growth, measured = before.growth, before.measured
+    if before.is_likely:
+        fitted = state.sightings.fit()
+        growth = 0.0 if fitted is None else fitted[0].rate
+    if before.is_likely or seen.was_hidden:
+        measured = state.size
+    grown = state.size * math.exp(growth * step.elapsed)
+    grown = np.clip(grown, measured / _LARGEST_PARTIAL, measured * _LARGEST_PARTIAL)
+    return state._replace(whole=Wholeness(whole, measured, growth), size=step.bounded(grown))
 
 
 def _enter_occlusion(state: State, step: Step) -> State:
     """Predict from the last clear sightings: the occluder has dragged later ones along."""
     fitted = state.sightings.fit()
     if fitted is None:
-        return state._replace(particles=state.particles.all_visible(DOUBT), measured=state.size)
+        whole = state.whole._replace(measured=state.size)
+        return state._replace(particles=state.particles.all_visible(DOUBT), whole=whole)
     path, last = fitted
     if not last.cut:
-        state = state._replace(turning=Turning.begun(step.memory.foreground, path, last))
+        foreground = step.memory.foreground
+        if foreground.is_known:
+            foreground.learn_background()
+        state = state._replace(verdict=Hidden(Outlines.begun(foreground, path, last)))
     size = last.size * path.scale_at(last.age)
-    state = state._replace(size=size, measured=size)
+    state = state._replace(size=size, whole=state.whole._replace(measured=size))
     count, sigma = step.parameters.num_particles, step.hidden_velocity_sigma(state.sightings)
     particles = hidden_hypotheses(step.rng, path, last.age, count, state.extent, sigma)
     return state._replace(particles=particles)
@@ -82,7 +121,7 @@ def _enter_occlusion(state: State, step: Step) -> State:
 def _follow_peak(state: State, seen: Observation, step: Step) -> State:
     """Take position, velocity and, of a vehicle that is wholly visible, size from the peak."""
     state = _centred(state, seen, step)
-    if state.follows_size and seen.response > SIZE_RESPONSE and _is_sure(state):
+    if seen.tasks.follows_size and seen.response > SIZE_RESPONSE and _is_sure(state):
         state = _sized(state, seen, step)
     sightings = state.sightings.added(state.position, state.size, seen.response)
     return state._replace(sightings=sightings)
@@ -90,7 +129,7 @@ def _follow_peak(state: State, seen: Observation, step: Step) -> State:
 
 def _is_sure(state: State) -> bool:
     """Test whether a vehicle is surely visible, and as a whole."""
-    return state.is_whole and state.particles.probability_visible > _SURE
+    return state.whole.is_likely and state.particles.probability_visible > _SURE
 
 
 def _centred(state: State, seen: Observation, step: Step) -> State:
@@ -139,53 +178,64 @@ def believed_stretch(stretch: Array, share: float, size: Array, options: SizePar
     return np.full(2, common if share > EVEN else 0.0)
 
 
-def _follow_outline(state: State, step: Step) -> State:
+def _follow_outline(state: State, outlines: Outlines, step: Step) -> State:
     """Take position, size and velocity from the outline of a vehicle that turns."""
-    centre, outer = state.turned.box
-    position, size = step.inside(centre), step.bounded(outer)
+    vehicle = proven(outlines)
+    centre, outer = vehicle.box
+    position = step.inside(centre)
+    size = step.bounded(outer)
     sightings = state.sightings.added(position, size, 1.0)
     state = state._replace(position=position, size=size, sightings=sightings)
-    particles = gathered(state, step, position, state.turned.velocity, 1 - DOUBT)
+    particles = gathered(state, step, position, vehicle.velocity, 1 - DOUBT)
     return state._replace(particles=particles)
 
 
 def learn(state: State, seen: Observation, step: Step) -> State:
     """Learn from a visible vehicle; keep what the next frame is compared with."""
-    surface, strangers, memory = state.surface, state.strangers, step.memory
-    if state.visibility is Visibility.TURNING:
-        _learn_turn(state, seen.view, step)
-    elif state.visibility.is_visible:
-        _learn_appearance(state, seen, step)
-        if _is_sure(state) and seen.response > CLEAR_RESPONSE:
-            surface = surface.learnt_usual()
-            if memory.foreground.is_known:  # only then is it asked for
-                memory.appearance.learn_paint(step.frame, state.position, state.size)
-        if state.is_whole:
-            strangers = strangers.measured(seen.view, state.position, state.size)
-        if seen.was_hidden:  # what was kept shows an occluder
-            surface = surface.restarted()
-    patch = memory.appearance.usual_patch(seen.view.patch)
+    match state.verdict:
+        case Turning(outlines=outlines):
+            _learn_turn(state, proven(outlines), seen.view, step)
+        case Visible() | PartlyHidden():
+            _learn_appearance(state, seen, step)
+            state = _learn_usual(state, seen, step)
+    patch = step.memory.appearance.usual_patch(seen.view.patch)
     return state._replace(
         points=_renewed_points(state, seen, patch),
-        surface=surface.kept(patch, state.position, state.size),
-        strangers=strangers,
+        surface=state.surface.kept(patch, state.position, state.size),
     )
+
+
+def _learn_usual(state: State, seen: Observation, step: Step) -> State:
+    """Learn the usual share of the surface, the paint, and how strangers respond."""
+    surface, strangers, memory = state.surface, state.strangers, step.memory
+    if _is_sure(state) and seen.response > CLEAR_RESPONSE:
+        surface = surface.learnt_usual()
+        if memory.foreground.is_known:  # only then is it asked for
+            memory.appearance.learn_paint(step.frame, state.position, state.size)
+    if state.whole.is_likely:
+        strangers = strangers.measured(seen.view, state.position, state.size)
+    if seen.was_hidden:  # what was kept shows an occluder
+        surface = surface.restarted()
+    return state._replace(surface=surface, strangers=strangers)
 
 
 def _renewed_points(state: State, seen: Observation, patch: Patch) -> SurfacePoints:
     """Place new points on a vehicle that is visible, and keep the patch if points are tracked."""
-    points, turns = state.points, state.visibility is Visibility.TURNING
-    if turns or (state.visibility.is_visible and seen.was_hidden):
+    points = state.points
+    turns = isinstance(state.verdict, Turning)
+    follows_size = seen.tasks.follows_size
+    if turns or (state.is_visible and seen.was_hidden):
         points = points.restarted()
-    if turns or (state.visibility.is_visible and state.follows_size):
-        points = points.renewed(state.position, state.size, whole=turns or state.is_whole)
-    return points.kept(patch, state.position) if state.follows_size else points
+    if turns or (state.is_visible and follows_size):
+        whole = turns or state.whole.is_likely
+        points = points.renewed(state.position, state.size, whole=whole)
+    return points.kept(patch, state.position) if follows_size else points
 
 
-def _learn_turn(state: State, view: View, step: Step) -> None:
+def _learn_turn(state: State, vehicle: Branch, view: View, step: Step) -> None:
     """Train fast on a vehicle that turns."""
     appearance = step.memory.appearance
-    response = min(max(view.at(state.turned.box[0]), _LEAST_LEVEL), 1.0)
+    response = min(max(view.at(vehicle.box[0]), _LEAST_LEVEL), 1.0)
     appearance.learn_usual(response, _TURNING_LEVEL_RATE)
     # Without a spectrum the cells are measured again, at the size of the outline.
     bare = replace(view, spectrum=None)
@@ -198,11 +248,11 @@ def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
     surface, appearance = state.surface, memory.appearance
     turns = surface.is_reliable and surface.share > _TURNING_SHARE and response < _TURNING_RESPONSE
     turns &= not memory.foreground.is_known  # outlines tell more of a turn, size included
-    if not turns and (response <= EVEN or not state.is_whole):
+    if not turns and (response <= EVEN or not state.whole.is_likely):
         return
     visible = state.particles.probability_visible
     appearance.learn_usual(response, max(USUAL_RATE, 1 / (state.frames + 1)) * visible)
-    if not state.trains_filter:
+    if not seen.tasks.trains_filter:
         return
     stiffness = options.stiffness / visible
     if turns:

@@ -11,9 +11,11 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.camera_motion import CameraMotion, small_grey
+from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.correlation_filter import climbed
 from vehicle_pf_tracker.image.window import is_outside
 from vehicle_pf_tracker.trackers.fusion.appearance import View
+from vehicle_pf_tracker.trackers.fusion.departure import Departure
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     ACROSS_LANES,
     DOUBT,
@@ -22,8 +24,17 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     Hypotheses,
 )
 from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, VisibilityParameters
-from vehicle_pf_tracker.trackers.fusion.state import Observation, State, Step, Visibility
-from vehicle_pf_tracker.trackers.fusion.turning import Turning
+from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
+from vehicle_pf_tracker.trackers.fusion.state import State
+from vehicle_pf_tracker.trackers.fusion.step import Observation, Prediction, Step
+from vehicle_pf_tracker.trackers.fusion.verdict import (
+    Gone,
+    Hidden,
+    PartlyHidden,
+    Turning,
+    Verdict,
+    Visible,
+)
 
 _LARGEST_LOG_RATIO = 6.0
 """Bound of one observation's log ratio: no single frame is believed beyond 400 to 1."""
@@ -50,10 +61,13 @@ to exactly: a standing part of the first box answers better than the vehicle, an
 tell which of them it was shown."""
 
 
-def predict(state: State, step: Step) -> State:
+def predict(state: State, step: Step) -> tuple[State, Prediction]:
     """Move with the camera, and predict all hypotheses; the first step measures a first motion."""
-    state = _moved_with_camera(state, step)._replace(sets_off=False)
-    return _predicted(_set_off(state, step) if state.frames == 0 else state, step)
+    state = _moved_with_camera(state, step)
+    moved = _set_off(state, step) if state.frames == 0 else None
+    state, mean = _predicted(moved or state, step)
+    left_image = is_outside(step.frame, *mean.tolist())
+    return state, Prediction(left_image, sets_off=moved is not None)
 
 
 def _moved_with_camera(state: State, step: Step) -> State:
@@ -66,100 +80,124 @@ def _moved_with_camera(state: State, step: Step) -> State:
     state = state._replace(
         sightings=state.sightings.moved_on(step.elapsed, camera),
         surface=state.surface.moved(camera),
-        turning=state.turning if memory.foreground.is_known else Turning(),
     )
+    if not memory.foreground.is_known:
+        state = state._replace(verdict=_without_outlines(state))
     if camera.still:
         return state
     position = camera.apply(state.position)
     return state._replace(position=position, particles=state.particles.moved(camera))
 
 
-def _set_off(state: State, step: Step) -> State:
-    """Give the hypotheses the velocity of what moves in the first box, if anything does."""
+def _without_outlines(state: State) -> Verdict:
+    """Return the verdict where outlines have ended with the background."""
+    match state.verdict:
+        case Turning():  # what it was followed by is lost, and the vehicle still in sight
+            return PartlyHidden(state.whole.probability)
+        case Hidden():
+            return Hidden()
+    return state.verdict
+
+
+def _set_off(state: State, step: Step) -> State | None:
+    """Give the hypotheses the velocity of what moves in the first box; None if nothing does."""
     patch = step.memory.appearance.patch(step.frame, state.position, state.size)
     move = state.points.first_motion(patch, state.size)
     if move is None:
-        return state
+        return None
     particles, share = state.particles, _MEASURED_SPREAD
     positions = state.position + share * (particles.positions - state.position)
     velocities = move + share * particles.velocities
     particles = particles._replace(positions=positions, velocities=velocities)
-    return state._replace(particles=particles, sets_off=True)
+    return state._replace(particles=particles)
 
 
-def _predicted(state: State, step: Step) -> State:
-    """Predict all hypotheses; a hidden vehicle grows as they do."""
+def _predicted(state: State, step: Step) -> tuple[State, Array]:
+    """Predict all hypotheses, and their mean (2,) in px; a hidden vehicle grows as they do."""
     motion, elapsed = step.parameters.motion, step.elapsed
     particles, size, extent = state.particles, state.size, state.extent
-    visible = state.visibility.is_visible
+    visible = state.is_visible
     sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
     if not visible:
         sigmas = 0.0, step.hidden_velocity_sigma(state.sightings) * extent
         grown = size * np.exp(float(particles.weights @ particles.growths) * elapsed)
-        size = step.bounded(np.minimum(grown, LARGEST_GROWTH * state.measured))
+        size = step.bounded(np.minimum(grown, LARGEST_GROWTH * state.whole.measured))
     across = 1.0 if visible else ACROSS_LANES
     predicted = particles.predicted(step.rng, elapsed, sigmas, across).passed(elapsed)
-    return state._replace(
-        particles=predicted._replace(positions=step.inside(predicted.positions)),
-        size=size,
-        frames=state.frames + 1,
-        left_image=is_outside(step.frame, *predicted.mean.tolist()),
-    )
+    inside = predicted._replace(positions=step.inside(predicted.positions))
+    return state._replace(particles=inside, size=size, frames=state.frames + 1), predicted.mean
 
 
-def observe(state: State, step: Step) -> tuple[State, Observation]:
+def observe(state: State, prediction: Prediction, step: Step) -> tuple[State, Observation]:
     """Weigh the hypotheses by the filter's response, and find its peak at the best of them."""
-    if state.visibility is Visibility.GONE:
-        return _observe_return(state, step)
-    state, view = _weighed(state, step)
-    if state.sets_off:
+    if isinstance(state.verdict, Gone):
+        return _observe_return(state, state.verdict.departure, step)
+    was_hidden = not state.is_visible
+    climb = STAY if prediction.sets_off else CLIMB_ON_PATH if was_hidden else CLIMB_FREELY
+    state, view = _weighed(state, climb, step)
+    if prediction.sets_off:
         position = step.inside(state.particles.positions.mean(axis=0))
         response = view.at(position)
     else:
         position, response = likeliest_peak(view, state.particles, state.extent)
-    was_hidden = not state.visibility.is_visible
-    return state, Observation(view, step.inside(position), response, was_hidden)
+    tasks = _next_tasks(state, response, step)
+    return state, Observation(view, step.inside(position), response, was_hidden, tasks)
 
 
-def _weighed(state: State, step: Step) -> tuple[State, View]:
+def _next_tasks(state: State, response: float, step: Step) -> Tasks:
+    """Choose the costly tasks of this frame."""
+    level = min(state.surface.share, response) if state.surface.is_reliable else 0.0
+    return step.tasks.next(state.frames, level, was_visible=isinstance(state.verdict, Visible))
+
+
+def _weighed(state: State, climb: tuple[int, float], step: Step) -> tuple[State, View]:
     """Weigh the hypotheses by the response where they are, or close by.
 
     A hidden vehicle is looked for at other sizes too; the likeliest of them is taken over once it
     is visible.
     """
-    scales = (1.0,) if state.visibility.is_visible else HIDDEN_SCALES
-    results = [(*_searched(state, step, scale), scale) for scale in scales]
+    scales = (1.0,) if state.is_visible else HIDDEN_SCALES
+    results = [(*_searched(state, climb, step, scale), scale) for scale in scales]
     view, positions, ratios, scale = max(results, key=lambda it: state.particles.evidence(it[2]))
     particles = state.particles._replace(positions=positions).weighed(ratios)
     size = step.bounded(scale * state.size) if particles.probability_visible > 0.5 else state.size
     return state._replace(particles=particles, size=size), view
 
 
-def _searched(state: State, step: Step, scale: float) -> tuple[View, Array, Array]:
+def _searched(
+    state: State, climb: tuple[int, float], step: Step, scale: float
+) -> tuple[View, Array, Array]:
     """Judge the hypotheses by the response to a vehicle `scale` times as large as believed."""
-    particles, hidden = state.particles, not state.visibility.is_visible
-    appearance, options = step.memory.appearance, step.parameters
-    wide = hidden and particles.spread > _WIDE_FROM * state.extent
+    particles, appearance = state.particles, step.memory.appearance
+    wide = not state.is_visible and particles.spread > _WIDE_FROM * state.extent
     patch = appearance.patch(step.frame, particles.mean, scale * state.size, wide=wide)
-    view = appearance.view(patch)
-    climb = STAY if state.sets_off else CLIMB_ON_PATH if hidden else CLIMB_FREELY
-    return view, *response_evidence(view, particles.positions, climb, options.visibility)
+    view = _viewed(patch, step)
+    options = step.parameters.visibility
+    return view, *response_evidence(view, particles.positions, climb, options)
 
 
-def _observe_return(state: State, step: Step) -> tuple[State, Observation]:
+def _viewed(patch: Patch, step: Step) -> View:
+    """Respond to a patch; the first one after a start sets the level of all responses."""
+    appearance = step.memory.appearance
+    if not appearance.has_level:
+        appearance.learn_level(patch)
+    return appearance.view(patch)
+
+
+def _observe_return(state: State, departure: Departure, step: Step) -> tuple[State, Observation]:
     """Look for a vehicle that has left where it left; it is visible once that is proven."""
-    appearance, departure = step.memory.appearance, state.departure
-    assert departure is not None, "a vehicle that is `GONE` has left"
+    appearance = step.memory.appearance
     patch = appearance.patch(step.frame, departure.position, departure.size, wide=True)
-    view = appearance.view(patch)
+    view = _viewed(patch, step)
     departure = departure.observed(view, step.elapsed)
     particles, position, response = state.particles, departure.position, 0.0
     if departure.returned is not None:
         position, velocity = departure.returned
         particles = gathered(state, step, position, velocity, 1 - DOUBT)
         response = view.at(position)
-    state = state._replace(particles=particles, departure=departure)
-    return state, Observation(view, position, response, was_hidden=True)
+    tasks = _next_tasks(state, response, step)
+    state = state._replace(particles=particles)
+    return state, Observation(view, position, response, True, tasks, departure)
 
 
 def gathered(

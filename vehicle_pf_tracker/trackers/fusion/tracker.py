@@ -3,8 +3,9 @@
 
 """`fusion`: a correlation particle filter with a posterior over visibility.
 
-Per frame: predict and observe (`observe.py`), judge visibility (`visibility.py`), follow and learn
-(`follow.py`). `state.py` has the frozen state that they pass on, and the memory that they share.
+Per frame: predict and observe (`observe.py`), weigh by flow (`flow_evidence.py`), judge visibility
+(`visibility.py`), follow and learn (`follow.py`). `state.py` has the frozen state that they pass
+on, and `step.py` the frame and the memory that they share.
 
 - Visible or partly hidden: climb to the peak, follow the size, learn.
 - Turning: follow the outline of what moves, learn fast.
@@ -28,11 +29,15 @@ from vehicle_pf_tracker.image.camera_motion import small_grey
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
+from vehicle_pf_tracker.trackers.fusion.flow_evidence import weigh_by_flow
 from vehicle_pf_tracker.trackers.fusion.follow import follow, learn
 from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import observe, predict
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.state import Memory, State, Step
+from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
+from vehicle_pf_tracker.trackers.fusion.state import State, Wholeness
+from vehicle_pf_tracker.trackers.fusion.step import Memory, Step
+from vehicle_pf_tracker.trackers.fusion.verdict import Gone, Hidden
 from vehicle_pf_tracker.trackers.fusion.visibility import judge
 
 __all__ = ["FusionParameters", "FusionTracker"]
@@ -50,6 +55,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     _state: State | None = None
     _memory: Memory | None = None
+    _tasks: Tasks = Tasks()
 
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `BaseTracker.start`."""
@@ -78,7 +84,9 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
         positions = np.asarray(position + spread[0] * motion.position_sigma)
         particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - DOUBT)
-        self._state, self._memory = State(particles, position, size, size), None
+        self._state = State(particles, position, size, Wholeness.at_start(size))
+        self._memory = None
+        self._tasks = Tasks()
         return positions
 
     def _learn(self) -> None:
@@ -101,26 +109,45 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         state, memory = self._track
-        step = Step(frame, min(elapsed, _LONGEST_STEP), self.parameters, self._rng, memory)
-        state = predict(state, step)
-        state, seen = observe(state, step)
-        state = judge(state, seen, step)
-        state = follow(state, seen, step)
+        elapsed = min(elapsed, _LONGEST_STEP)
+        step = Step(frame, elapsed, self.parameters, self._rng, memory, self._tasks)
+        state, prediction = predict(state, step)
+        state, seen = observe(state, prediction, step)
+        state = weigh_by_flow(state, seen, step)
+        verdict = judge(state, seen, prediction, step)
+        state = follow(state, verdict, seen, step)
         state = learn(state, seen, step)
         particles = state.particles.resampled(self._rng, self.parameters.num_particles)
         self._state = state._replace(particles=particles)
-        return self._outcome(state, seen.response, step)
+        self._tasks = seen.tasks
+        has_left = prediction.left_image or isinstance(verdict, Gone)
+        return _outcome(state, seen.response, step, has_left=has_left)
 
-    def _outcome(self, state: State, response: float, step: Step) -> Outcome:
-        particles, departure = state.particles, state.departure
-        (x, y), (vx, vy) = state.position.tolist(), particles.mean_velocity.tolist()
-        width, height = state.size.tolist()
-        response = min(max(response, 0.0), 1.0)
-        regime = "visible" if state.visibility.is_visible else "occluded"
-        return Outcome(
-            Cloud(step.inside(particles.positions), particles.weights), (x, y), (vx, vy),
-            regime if departure is None else departure.reason,
-            particles.probability_visible,
-            {"response": response, "points": state.surface.share, "whole": state.whole},
-            left_image=state.left_image or departure is not None, size=(width, height),
-        )  # fmt: skip
+
+def _outcome(state: State, response: float, step: Step, *, has_left: bool) -> Outcome:
+    particles = state.particles
+    x, y = state.position.tolist()
+    vx, vy = particles.mean_velocity.tolist()
+    width, height = state.size.tolist()
+    match state.verdict:
+        case Gone(departure=departure):
+            regime = departure.reason
+        case Hidden():
+            regime = "occluded"
+        case _:
+            regime = "visible"
+    values = {
+        "response": min(max(response, 0.0), 1.0),
+        "points": state.surface.share,
+        "whole": state.whole.probability,
+    }
+    return Outcome(
+        Cloud(step.inside(particles.positions), particles.weights),
+        (x, y),
+        (vx, vy),
+        regime,
+        particles.probability_visible,
+        values,
+        left_image=has_left,
+        size=(width, height),
+    )

@@ -140,15 +140,18 @@ class Branch(NamedTuple):
 PaintDifference = Callable[[Array, Array], float]
 
 
-class Turning(NamedTuple):
+class Outlines(NamedTuple):
     """Outlines of a vehicle in doubt: beside its path, or coming out there."""
 
     branch: Branch | None = None
     emergence: Emergence | None = None
 
     @classmethod
-    def begun(cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting) -> Turning:
-        """Begin where the vehicle was last seen clearly, of which `last.age` frames passed."""
+    def begun(cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting) -> Outlines:
+        """Begin where the vehicle was last seen clearly, of which `last.age` frames passed.
+
+        Without a background there are none; it has to be learnt.
+        """
         if not foreground.is_known:
             return cls()
         emergence = Emergence(last, motion, foreground.extent)
@@ -157,7 +160,7 @@ class Turning(NamedTuple):
 
     def followed(
         self, foreground: Foreground, elapsed: float, view: View, difference: PaintDifference
-    ) -> Turning:  # fmt: skip
+    ) -> Outlines:  # fmt: skip
         """Follow the outline into the present frame.
 
         Parameters
@@ -171,9 +174,9 @@ class Turning(NamedTuple):
         emergence, emerged = self._emerged(foreground, elapsed, difference)
         branch = branch or emerged
         if branch is None:
-            return Turning(None, emergence)
+            return Outlines(None, emergence)
         branch = branch.judged(view)
-        return Turning(None if branch.is_over else branch, None if branch.is_proven else emergence)
+        return Outlines(None if branch.is_over else branch, None if branch.is_proven else emergence)
 
     @property
     def vehicle(self) -> Branch | None:
@@ -195,6 +198,13 @@ class Turning(NamedTuple):
             return emergence, None
         branch = Branch(emergence.motion, outline.size, margins, outline, velocity, is_proven=True)
         return emergence, branch
+
+
+def proven(outlines: Outlines) -> Branch:
+    """Return the vehicle of outlines that prove a turn."""
+    vehicle = outlines.vehicle
+    assert vehicle is not None, "only a proven turn makes a vehicle turn"
+    return vehicle
 
 
 def _leaves(branch: Branch, position: Array, size: Array) -> bool:

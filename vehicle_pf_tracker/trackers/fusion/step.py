@@ -1,0 +1,138 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The material of one step: the frame, what was learnt before it, and what it shows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.camera_motion import CameraFlow
+from vehicle_pf_tracker.image.foreground import Foreground
+from vehicle_pf_tracker.image.window import keep_inside
+from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
+from vehicle_pf_tracker.trackers.fusion.departure import Departure
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
+from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
+
+_LEAST_SIDE, _LARGEST_SIDE = 3.0, 1.5
+"""Bounds of the sides: px, as less has no gradient inside; and of the image's longer side, as a
+vehicle that passes the camera is partly outside before it fills the image."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Memory:
+    """Appearance of the vehicle, and earlier frames: all that changes in place.
+
+    `learn` trains `appearance`, whose level `observe` sets in the first frame after a start, as all
+    responses are relative to it. `predict` adds each frame to `camera` and `foreground`, which
+    compare it with earlier ones; `follow` lets the latter learn its background where an occlusion
+    begins.
+    """
+
+    appearance: Appearance
+    camera: CameraFlow = field(default_factory=CameraFlow)
+    foreground: Foreground = field(default_factory=Foreground)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """A frame, and what all parts of its step use.
+
+    Attributes
+    ----------
+    frame : Frame
+        The image.
+    elapsed : float
+        Frame periods since the one before.
+    parameters : FusionParameters
+        Parameters in use.
+    rng : Generator
+        Source of everything random.
+    memory : Memory
+        What was learnt of the vehicle and of the camera.
+    tasks : Tasks
+        Costly tasks of the frame before.
+    """
+
+    frame: Frame
+    elapsed: float
+    parameters: FusionParameters
+    rng: np.random.Generator
+    memory: Memory
+    tasks: Tasks
+
+    def inside(self, positions: Array) -> Array:
+        """Move positions (..., 2) into the image."""
+        return keep_inside(self.frame, positions)
+
+    def bounded(self, size: Array) -> Array:
+        """Bound width and height."""
+        largest = _LARGEST_SIDE * max(frame_size(self.frame))
+        return np.minimum(np.maximum(size, _LEAST_SIDE), largest)
+
+    def share_inside(self, position: Array, size: Array) -> float:
+        """Share of a box, whose centre is inside the image, that is inside."""
+        low, high = np.maximum(position - size / 2, 0), position + size / 2
+        return float(((np.minimum(high, frame_size(self.frame)) - low) / size).prod())
+
+    def hidden_velocity_sigma(self, sightings: Sightings) -> float:
+        """Change of a hidden vehicle's velocity, of the size, per frame squared.
+
+        Larger where sightings were carried along with a camera that moved: the background's motion
+        is not quite that of the road under the vehicle.
+        """
+        motion = self.parameters.motion
+        camera = 0.0 if sightings.are_steady else motion.camera_velocity_sigma
+        return math.hypot(motion.hidden_velocity_sigma, camera)
+
+
+class Prediction(NamedTuple):
+    """What a prediction tells beside the state that is predicted.
+
+    Attributes
+    ----------
+    left_image : bool
+        True where the mean of the hypotheses is outside the image.
+    sets_off : bool
+        True in the first step if it has measured what moves in the first box.
+    """
+
+    left_image: bool
+    sets_off: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Observation:
+    """The vehicle as it was observed in the present frame.
+
+    Attributes
+    ----------
+    view : View
+        The response around it.
+    position : (2,) array
+        Centre, px.
+    response : float
+        Height of the peak there, relative to the usual one.
+    was_hidden : bool
+        True if the vehicle was hidden or gone in the frame before, so that what was kept of that
+        frame shows an occluder, and no displacement since then is known.
+    tasks : Tasks
+        Costly tasks of this frame.
+    departure : Departure or None
+        Of a vehicle that was gone: whether it returns.
+    """
+
+    view: View
+    position: Array
+    response: float
+    was_hidden: bool
+    tasks: Tasks
+    departure: Departure | None = None
