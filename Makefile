@@ -5,6 +5,8 @@ PYTHON =
 NOBLE_PYTHON =
 PYTEST_ARGS =
 BENCH_ARGS =
+# File of a network, for `make detector`.
+MODEL =
 FIGURES = all
 # Where `bench` and `reproduce` write their pages.
 PAGES = docs
@@ -30,7 +32,7 @@ COVERED := 92
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
 # Each target that says of itself what it does, with two hashes, is listed by `make help`.
-.PHONY: help demo test test-all test-research test-rest test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs dist clean
+.PHONY: help demo test test-all test-research test-rest test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs detector dist clean
 
 demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
@@ -114,6 +116,9 @@ config: .venv/installed  ## write what follows from the parameters: config/, tab
 
 docs: .venv/docs  ## build the site of the pages, into results/site
 	NO_MKDOCS_2_WARNING=true $(BIN)/python -m mkdocs build --quiet --strict
+
+detector: .venv/installed  ## build the wheel vehicle-pf-detector of a network, MODEL=yolox_nano.onnx
+	$(BIN)/python -m tools.detector_wheel $(MODEL) -o results/dist
 
 dist: .venv/docs  ## build the wheel and the source archive, into results/dist
 	rm -rf results/dist

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.core.errors import InputError, suggestion
 EXTRAS: Mapping[str, str] = {
     **dict.fromkeys(("matplotlib", "jinja2", "optuna"), "evaluation"),
     # `evaluation` brings scipy too, and says so before.
-    **dict.fromkeys(("scipy", "av", "onnxruntime"), "video"),
+    **dict.fromkeys(("scipy", "av", "onnxruntime", "pooch"), "video"),
     "numba": "numba",
 }
 """The smallest extra that brings a module, by its name."""

@@ -22,6 +22,7 @@ from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.detection.parameters import MODEL, MOTION, NONE, TOPIC
 from vehicle_pf_tracker.following.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.following.detectors import DetectionFile, call
+from vehicle_pf_tracker.following.known_networks import NETWORKS
 from vehicle_pf_tracker.following.model_files import model_file
 from vehicle_pf_tracker.following.traffic_following import TrafficRun
 from vehicle_pf_tracker.parameters.configuration import Configuration
@@ -57,7 +58,9 @@ class Request(TrackingRequest):
         "follow only the vehicles given with --target",
     )  # fmt: skip
     model: str | None = option(
-        metavar="FILE", help="the network, .onnx, or its URL: YOLOX, YOLOv8 or SSD"
+        metavar="FILE",
+        help="a network, YOLOX, YOLOv8 or SSD: an .onnx file, its URL, or one of the names "
+        f"{', '.join(NETWORKS)}, which are fetched once from their makers",
     )
     lines: Path | None = option(help="lines, zones and regions of interest, lines.yaml")
     serve: int | None = option(

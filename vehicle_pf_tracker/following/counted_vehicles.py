@@ -14,7 +14,7 @@ from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
 from vehicle_pf_tracker.counting.plausibility import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.following.detectors import PacedDetector, Run, call, detector_maker
-from vehicle_pf_tracker.following.model_files import Progress, silent
+from vehicle_pf_tracker.following.fetching import Progress, silent
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan

@@ -26,7 +26,8 @@ from vehicle_pf_tracker.detection.motion_detector import MotionDetector
 from vehicle_pf_tracker.detection.network import Network
 from vehicle_pf_tracker.detection.network_detector import NetworkDetector
 from vehicle_pf_tracker.detection.parameters import MODEL, MOTION, DetectorParameters
-from vehicle_pf_tracker.following.model_files import Progress, model_file, silent
+from vehicle_pf_tracker.following.fetching import Progress, silent
+from vehicle_pf_tracker.following.model_files import discard, model_file
 from vehicle_pf_tracker.recordings.box_sizes import misfit
 from vehicle_pf_tracker.recordings.text_tables import numbers_in, table_rows
 
@@ -56,7 +57,8 @@ def open_network(model: str, progress: Progress = silent) -> Network:
         )
     except Exception as error:  # ONNX Runtime's errors have no base of their own
         reason = " ".join(str(error).split())[:200]
-        raise InputError(f"the network {model} cannot be loaded: {reason}") from None
+        kept = discard(model)
+        raise InputError(f"the network {model} cannot be loaded: {reason}{kept}") from None
     return network
 
 

@@ -1,36 +1,24 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Files of networks: on this machine, or fetched once into the user's cache."""
+"""Files of networks, by path, address or name."""
 
 from __future__ import annotations
 
 import hashlib
 import os
 import re
-from collections.abc import Callable, Iterator
-from http.client import HTTPException
 from pathlib import Path, PurePosixPath
-from typing import TypeAlias
-from urllib.error import HTTPError
 from urllib.parse import unquote, urldefrag, urlsplit
-from urllib.request import urlopen
 
-from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.results.output_files import make_folder, replacing
+from vehicle_pf_tracker.core.errors import InputError, suggestion
+from vehicle_pf_tracker.following.fetching import Progress, fetch, silent
+from vehicle_pf_tracker.following.known_networks import NETWORKS, installed
 
-_SECONDS = 30.0
-"""Silence of a server after which it is given up: a slow one sends something meanwhile."""
-_CHUNK = 1 << 16
 _UNSAFE = re.compile(r"[^A-Za-z0-9._-]")
-
-
-Progress: TypeAlias = Callable[[str, float | None], None]
-"""Takes words about a transfer, and its share done, None if unknown."""
-
-
-def silent(words: str, share: float | None) -> None:
-    """Show no progress."""
+_LONGEST_NAME = 80
+"""Letters of a file's own name that are kept: with sum and endings less than the 255 of Linux."""
+_CHUNK = 1 << 20
 
 
 def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
@@ -39,8 +27,8 @@ def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
     Parameters
     ----------
     model : str
-        A path; or a URL, whose file is fetched unless the cache has it. At its end may stand
-        ``#sha256=`` with the sum that the file must have.
+        A path; a name of `NETWORKS`; or a URL, at whose end ``#sha256=`` may stand with the sum
+        that the file must have. What a name or a URL means is fetched unless the cache has it.
     progress : Progress
         Shows the transfer.
 
@@ -49,76 +37,86 @@ def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
     InputError
         If there is none, it cannot be fetched or kept, or has another sum.
     """
-    if not is_url(model):
+    if model in NETWORKS:
+        brought = installed(model)
+        if brought is not None:
+            return brought, _sum_of(brought)
+        model = NETWORKS[model].address
+    if not _is_url(model):
         return Path(model), _sum_of(Path(model))
     url, demand = urldefrag(model)
-    if urlsplit(url).scheme not in {"http", "https"}:
-        raise InputError(f"the network {url} is at no http or https address")
     demand = demand.lower()
     if demand and not re.fullmatch(r"sha256=[0-9a-f]{64}", demand):
         raise InputError(f"after # of a network's URL stands sha256= and 64 digits, not {demand!r}")
+    demanded = demand.removeprefix("sha256=")
     path = cached(url)
     if not path.is_file():
-        _fetch(url, path, demand[7:], progress)
+        fetch(url, path, demanded, progress)
     found = _sum_of(path)
-    _check(url, found, demand[7:], f"delete {path} to fetch it again")
+    if demanded and found != demanded:
+        raise InputError(
+            f"the network {url} has the SHA-256 {found}, not {demanded}; delete {path} to fetch it "
+            "again"
+        )
     return path, found
 
 
-def is_url(model: str) -> bool:
-    """Tell whether a network is named by a URL."""
-    return "://" in model
+def is_fetched(model: str) -> bool:
+    """Tell whether a network is one that is fetched, by a URL or a name."""
+    return model in NETWORKS or _is_url(model)
+
+
+def discard(model: str) -> str:
+    """Remove what the cache has of a network that cannot be used; returns words about it.
+
+    A file whose sum was demanded is as it should be, and stays.
+    """
+    url, demand = urldefrag(model)
+    if not _is_url(url) or demand:
+        return ""
+    path = cached(url)
+    path.unlink(missing_ok=True)
+    return "; it is not kept"
 
 
 def cached(url: str) -> Path:
-    """Return the path in the user's cache at which the file of a URL is kept."""
+    """Return the path in the user's cache at which the file of a URL is kept.
+
+    Raises
+    ------
+    InputError
+        If it is no address.
+    """
+    try:
+        parts = urlsplit(url)
+        is_usable = parts.scheme in {"http", "https"} and bool(parts.hostname)
+        _ = parts.port
+    except ValueError as error:  # brackets, a port that is no number
+        raise InputError(f"the network {url} has no address that can be read: {error}") from None
+    if not is_usable:
+        raise InputError(f"the network {url} is at no http or https address")
     cache = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser()
-    name = _UNSAFE.sub("_", unquote(PurePosixPath(urlsplit(url).path).name))[-80:]
+    name = _UNSAFE.sub("_", unquote(PurePosixPath(parts.path).name))[-_LONGEST_NAME:]
     digest = hashlib.sha256(url.encode()).hexdigest()[:12]
     return cache / "vehicle_pf_tracker" / "models" / f"{digest}-{name}"
 
 
+def _is_url(model: str) -> bool:
+    return "://" in model
+
+
 def _sum_of(path: Path) -> str:
+    digest = hashlib.sha256()
+    if path.exists() and not path.is_file():
+        raise InputError(f"the network {path} is not a regular file")
     try:
-        return hashlib.sha256(path.read_bytes()).hexdigest()
+        with path.open("rb") as file:
+            while chunk := file.read(_CHUNK):
+                digest.update(chunk)
     except OSError:
-        raise InputError(f"there is no network {path}") from None
-
-
-def _check(url: str, found: str, demanded: str, remedy: str) -> None:
-    if demanded and found != demanded:
-        raise InputError(f"the network {url} has the SHA-256 {found}, not {demanded}; {remedy}")
-
-
-def _fetch(url: str, path: Path, demanded: str, progress: Progress) -> None:
-    """Fetch a file, which is there when it is whole and has the sum demanded."""
-    make_folder(path.parent)
-    with replacing(path) as partial:
-        with partial.open("wb") as file:
-            for chunk, share in _chunks(url):
-                file.write(chunk)
-                progress(f"fetching {url}", share)
-        _check(url, _sum_of(partial), demanded, "it is not kept")
-
-
-def _chunks(url: str) -> Iterator[tuple[bytes, float | None]]:
-    """Yield the parts of a file, with the share of it that is there by then."""
-    done = 0
-    try:
-        with urlopen(url, timeout=_SECONDS) as answer:  # noqa: S310 - the scheme was checked
-            length = int(answer.headers.get("Content-Length") or 0)
-            while chunk := answer.read(_CHUNK):
-                done += len(chunk)
-                yield chunk, done / length if length else None
-    except HTTPError as error:
+        meant = suggestion(str(path), NETWORKS) if path.suffix != ".onnx" else ""
         raise InputError(
-            f"the network {url}: the server answers {error.code} {error.reason}"
+            f"there is no network {path}{meant}; give a file, its URL, or one of the names "
+            f"{', '.join(NETWORKS)}"
         ) from None
-    except (OSError, HTTPException, ValueError) as error:
-        reason = getattr(error, "reason", error)
-        raise InputError(
-            f"the network {url} cannot be fetched: {reason}; without a network connection, name a "
-            "file"
-        ) from None
-    if done < length or not done:
-        raise InputError(f"the network {url} broke off after {done} bytes; try again")
+    return digest.hexdigest()

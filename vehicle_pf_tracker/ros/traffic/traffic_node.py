@@ -14,7 +14,7 @@ from std_msgs.msg import Int64
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.parameters import TOPIC
-from vehicle_pf_tracker.following.model_files import is_url
+from vehicle_pf_tracker.following.model_files import is_fetched
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import box_of_region, detections_type, finite
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
@@ -65,7 +65,7 @@ class TrafficNode(ImageNode):
                 "detector.kind is topic, and vision_msgs, which detections come in, is not "
                 "installed (apt: ros-<release>-vision-msgs)"
             )
-        if is_url(configuration.tracker.detector.model):
+        if is_fetched(configuration.tracker.detector.model):
             self.get_logger().info("fetching the network, unless it is in the cache")
         outputs = TrafficOutputs(self, image_topic(self, configuration.node.image_transport))
         self.held.callback(outputs.close)

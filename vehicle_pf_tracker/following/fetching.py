@@ -1,0 +1,228 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Files from the internet, fetched once into the user's cache.
+
+pooch keeps a file once it is whole and has its sum. It has no limit of size, does not go on where
+a fetch broke off, and leaves what a killed process left; this adds these.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import IO, Any, TypeAlias
+from urllib.parse import quote, unquote
+
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.outputs import output_errors
+from vehicle_pf_tracker.results.output_files import make_folder
+
+Progress: TypeAlias = Callable[[str, float | None], None]
+"""Takes words about a transfer, and its share done, None if unknown."""
+
+_SECONDS = 30.0
+"""Silence of a server after which it is given up: a slow one sends something meanwhile."""
+_CHUNK = 1 << 16
+"""Bytes between two reports of progress: some ten a second at the rate of a slow line."""
+_MOST_BYTES = 2**31
+"""Size of the largest file of a network: protobuf, which ONNX is written in, has no larger ones."""
+_LEFT_SECONDS = 7 * 86400.0
+"""Age after which what is left of a fetch that nobody went on with is removed: a week."""
+_LONGEST_TAG = 60
+"""Letters of a server's name for a file's state that fit into a file's name, three bytes each."""
+_NO_RANGE = 416
+"""Answer of a server that has nothing after what is there already."""
+
+
+def silent(words: str, share: float | None) -> None:
+    """Show no progress."""
+
+
+def fetch(url: str, path: Path, demanded: str, progress: Progress = silent) -> None:
+    """Fetch a file, which is there when it is whole and has the sum demanded.
+
+    A part of it that an earlier fetch has left is gone on with where the server can.
+
+    Parameters
+    ----------
+    url : str
+        Its address, http or https.
+    path : Path
+        Where it is kept.
+    demanded : str
+        SHA-256 that it must have; empty where none is known.
+    progress : Progress
+        Shows the transfer.
+
+    Raises
+    ------
+    InputError
+        If it cannot be fetched or kept, or has another sum.
+    ModuleNotFoundError
+        If pooch is not installed.
+    """
+    import pooch  # noqa: PLC0415 - an extra
+
+    pooch.get_logger().setLevel("WARNING")  # it would print the sum
+    make_folder(path.parent)
+    _remove_leftovers(path.parent)
+    download = _Download(url, path, progress)
+    with output_errors(path):
+        try:
+            pooch.retrieve(
+                url,
+                f"sha256:{demanded}" if demanded else None,
+                fname=path.name,
+                path=path.parent,
+                downloader=download,
+            )
+        except ValueError as error:
+            if isinstance(error, InputError) or not download.digest:
+                raise
+            raise InputError(
+                f"the network {url} has the SHA-256 {download.digest}, not {demanded}; it is not "
+                "kept"
+            ) from None
+
+
+class _Download:
+    """One fetch, called by pooch with the file to fill.
+
+    Attributes
+    ----------
+    digest : str
+        SHA-256 of the whole file; empty before.
+    """
+
+    def __init__(self, url: str, path: Path, progress: Progress) -> None:
+        self._url, self._path, self._progress = url, path, progress
+        self.digest = ""
+
+    def __call__(self, url: str, output_file: str, _pooch: Any) -> None:
+        """Fill the file, going on with the part that is there."""
+        from pooch import file_hash  # noqa: PLC0415 - an extra
+        from requests import RequestException  # noqa: PLC0415
+
+        try:
+            with _reserved(self._part()) as part:
+                if not self._fill(part, Path(output_file)) and part is not None:
+                    part.unlink()  # it was no beginning of what the server has now
+                    self._fill(None, Path(output_file))
+        except RequestException as error:
+            answer = error.response
+            if answer is not None:
+                raise InputError(
+                    f"the network {url}: the server answers {answer.status_code} {answer.reason}"
+                ) from None
+            raise InputError(
+                f"the network {url} cannot be fetched: {_reason(error)}; without a network "
+                f"connection, fetch it elsewhere and put it at {self._path}"
+            ) from None
+        self.digest = file_hash(output_file)
+
+    def _part(self) -> Path | None:
+        """Return what an earlier fetch has left; None where there is nothing."""
+        found = self._path.parent.glob(f"{self._path.name}.*.part")
+        return max(found, key=lambda one: one.stat().st_size, default=None)
+
+    def _fill(self, part: Path | None, output: Path) -> bool:
+        """Fetch into `part`, or a new one, and move it to `output`; False if it does not fit."""
+        import requests  # noqa: PLC0415 - an extra, and slow to load
+
+        done = part.stat().st_size if part else 0
+        headers = {"Accept-Encoding": "identity"}
+        if part is not None and done:
+            tag = unquote(part.name.removesuffix(".part")[len(self._path.name) + 1 :])
+            headers |= {"Range": f"bytes={done}-", "If-Range": tag}
+        with requests.get(self._url, stream=True, timeout=_SECONDS, headers=headers) as answer:
+            if answer.status_code == _NO_RANGE and part is not None:
+                return False
+            answer.raise_for_status()
+            goes_on = answer.status_code == requests.codes.partial_content
+            if not goes_on:
+                done = 0
+                part = self._new_part(answer.headers.get("ETag", ""), part)
+            target = part or output
+            length = answer.headers.get("Content-Length", "")
+            total = done + int(length) if length.isdecimal() else None
+            try:
+                with target.open("ab" if goes_on else "wb") as file:
+                    self._receive(answer.iter_content(_CHUNK), file, done, total)
+            finally:
+                if target is not output and not target.stat().st_size:
+                    target.unlink()  # refused: nothing to go on with
+        if target is not output:
+            target.replace(output)
+        return True
+
+    def _new_part(self, tag: str, reserved: Path | None) -> Path | None:
+        """Return a file to go on with later, by what the server calls this state of its file.
+
+        None where it has no name for it, or another process is at that file.
+        """
+        if not tag.startswith('"') or len(tag) > _LONGEST_TAG:
+            return None
+        part = self._path.with_name(f"{self._path.name}.{quote(tag, safe='')}.part")
+        return part if part == reserved or not part.exists() else None
+
+    def _receive(
+        self, chunks: Iterator[bytes], file: IO[bytes], done: int, total: int | None
+    ) -> None:
+        """Write the chunks of a file that has `done` bytes already, of `total` if it is known."""
+        from requests import RequestException  # noqa: PLC0415 - an extra
+
+        if total is not None and total > _MOST_BYTES:
+            raise InputError(f"the network {self._url} has {total} bytes; no network is so large")
+        try:
+            for chunk in chunks:
+                if not done and chunk.lstrip()[:1] == b"<":
+                    raise InputError(
+                        f"the network {self._url} is a page, not a network: open the address in a "
+                        "browser; a page to log in may be before it"
+                    )
+                done += file.write(chunk)
+                if done > _MOST_BYTES:
+                    raise InputError(f"the network {self._url} does not end; it is not kept")
+                self._progress(f"fetching {self._url}", done / total if total else None)
+        except InputError:
+            file.truncate(0)
+            raise
+        except RequestException:
+            total = total or done + 1
+        if not done or (total is not None and done < total):
+            raise InputError(f"the network {self._url} broke off after {done} bytes; try again")
+
+
+@contextmanager
+def _reserved(part: Path | None) -> Iterator[Path | None]:
+    """Give a part to go on with; None where there is none, or another process is at it."""
+    if part is None:
+        yield None
+        return
+    with part.open("ab") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield None
+        else:
+            yield part
+
+
+def _reason(error: Exception) -> str:
+    """Return the innermost reason of an error of requests, in a few words."""
+    while isinstance(inner := (error.__cause__ or error.__context__), Exception):
+        error = inner
+    return str(getattr(error, "strerror", None) or error)
+
+
+def _remove_leftovers(folder: Path) -> None:
+    """Remove parts of files that nobody went on with, as of a process that was killed."""
+    for path in [*folder.glob("*.part"), *folder.glob("tmp*")]:
+        with suppress(OSError):
+            if time.time() - path.stat().st_mtime > _LEFT_SECONDS:
+                os.unlink(path)  # noqa: PTH108
