@@ -412,3 +412,18 @@ def test_a_disk_that_is_full_costs_the_video(run, video, tmp_path, capsys):
         f"cannot write {tmp_path / 'made.mp4'}: File too large; all else is written"
     ]
     assert list(tmp_path.iterdir()) == [video]
+
+
+def test_a_target_that_stands_while_others_drive_is_a_notice(run, tmp_path, capsys):
+    def with_a_sign(index):
+        frame = frame_of(index)
+        frame[42:58, 70:90] = (40, 160, 60)
+        return frame
+
+    street = write_video(tmp_path / "street.avi", map(with_a_sign, range(COUNT)))
+    assert run(street, "--fps", "2", "--target", f"car:{TARGET}", "--target", "70,42,20,16") == 0
+    notes = [line for line in capsys.readouterr().err.splitlines() if "has not moved" in line]
+    assert notes == [
+        "vehicle-pf-tracker: note: 1: frame 11: the target has not moved for 5 s while other "
+        "things did: it stands, or it is no vehicle"
+    ]

@@ -18,6 +18,7 @@ from vehicle_pf_tracker.core.clock import MAX_DIFF, is_nearest, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.image.stillness import Stillness
 from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.recordings.reader import StampedFrame
@@ -30,7 +31,7 @@ from vehicle_pf_tracker.results.estimates import (
 from vehicle_pf_tracker.showing.drawing import Annotator, annotated
 from vehicle_pf_tracker.showing.estimates_recording import OnFrame
 from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
-from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
 from vehicle_pf_tracker.trackers.image_stream import StrayImageError
 from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS, Localisation
 from vehicle_pf_tracker.trackers.registry import Variant
@@ -90,6 +91,7 @@ class OfflineTracker:
         self._on_road: list[Mapping[str, float]] = []
         self._off_road: Counter[str] = Counter()
         self._targets = dict(targets)
+        self._stillness = Stillness()
         self.estimate: Estimate | None = None
 
     def rows(
@@ -174,6 +176,11 @@ class OfflineTracker:
             return EstimateRow.without(number, stamp_ns, WAITING)
         if self.start_frame is None:
             self.start_frame = number
+        if estimate.regime == START:
+            self._stillness.begin(estimate.box, stamp_ns)
+        if estimate.mode is Mode.TRACKING:
+            warnings = self._stillness.look(frame, estimate.box, stamp_ns)
+            self._notices += [f"frame {number}: {sentence}" for sentence in warnings]
         self._locate(estimate, stamp_ns)
         return EstimateRow.from_scalars(number, stamp_ns, estimate.scalars())
 

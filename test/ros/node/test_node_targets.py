@@ -243,3 +243,26 @@ def test_a_doubtful_target_is_followed_with_a_warning(waiting):
     answer = rig.show_frame(frame, 0)
     assert answer.status[0].message == "TRACKING"
     assert "the target is doubtful: nothing in it stands out" in values_of(answer)["event"]
+
+
+@pytest.mark.parametrize("drives", [False, True])
+def test_a_target_that_stands_while_others_drive_is_warned_of(bench, drives, capfd):
+    x, y, width, height = map(float, TARGET if drives else (100, 15, 30, 20))
+    target = overrides(target__x=x, target__y=y, target__width=width, target__height=height)
+    rig = Rig(bench, target)
+    answers = []
+    for index, frame in enumerate(road(16)):
+        frame[15:35, 100:130] = (40, 160, 60)  # a sign
+        frame[20:25, 105:125] = (220, 220, 220)
+        answers.append(rig.show_frame(frame, 10 * index))  # 0.4 s later
+    assert {answer.status[0].message for answer in answers} == {"TRACKING"}
+    levels = [answer.status[0].level for answer in answers]
+    events = [values_of(answer).get("event", "") for answer in answers]
+    if drives:
+        assert set(levels) == {b"\x00"}
+        assert not any(events)
+    else:
+        assert levels == [b"\x00"] * 13 + [b"\x01"] * 3
+        assert "the target has not moved for 5 s while other things did" in events[13]
+        assert not events[14]
+        assert capfd.readouterr().err.count("has not moved for 5 s") == 1

@@ -231,9 +231,11 @@ class NodeStream(ABC):
         except Exception as error:  # OpenCV's errors, memory
             self.warnings.say(product, f"cannot make {product}: {error or type(error).__name__}")
 
-    def publish_mode(self, header: Header, mode: str, values: Mapping[str, object]) -> None:
+    def publish_mode(
+        self, header: Header, mode: str, values: Mapping[str, object], *, is_doubtful: bool = False
+    ) -> None:
         """Publish the one `~/mode` of an image; see `Outputs.publish_mode`."""
-        answer = self._publish_mode(header, mode, values)
+        answer = self._publish_mode(header, mode, values, is_doubtful=is_doubtful)
         if self.incidents is not None:
             self.incidents.keep(answer, self.followed)
 

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import (
     PointStamped,
     PolygonStamped,
@@ -98,13 +98,17 @@ class Outputs:
             self.send("velocity", messages.velocity_message, header, estimate.velocity, period)
 
     def publish_mode(
-        self, header: Header, mode: str, values: Mapping[str, object]
+        self, header: Header, mode: str, values: Mapping[str, object], *, is_doubtful: bool = False
     ) -> DiagnosticArray:
         """Publish the one `~/mode` of an image: of an estimate, `WAITING` or `REJECTED`.
 
-        Its values are the estimate's, or a reason.
+        Its values are the estimate's, or a reason. The level is the mode's, and at least WARN where
+        the target `is_doubtful`.
         """
-        one = messages.LEVELS[mode], "target", mode, {"mode": mode, **values}
+        level = messages.LEVELS[mode]
+        if is_doubtful:
+            level = max(level, DiagnosticStatus.WARN)
+        one = level, "target", mode, {"mode": mode, **values}
         message = self.statuses(header, [one])
         self.send("mode", lambda: message)
         return message

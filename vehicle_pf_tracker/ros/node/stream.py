@@ -20,8 +20,9 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import MAX_SIDE
+from vehicle_pf_tracker.image.stillness import Stillness
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import WAITING
+from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
@@ -77,6 +78,7 @@ class Stream(NodeStream):
         self._session: Session | None = None
         self._loading = KernelLoading(configuration.tracker.kernels)
         self._target_problem = ""
+        self._stillness = Stillness()
         self.localisation = StreamLocalisation(variant.name, configuration.session.road, cameras)
         self.estimate: Estimate | None = None
         if not self.get_ready():
@@ -226,7 +228,7 @@ class Stream(NodeStream):
             self._outputs.publish_estimate(header, estimate, own, self.localisation, period)
             words = self.localisation.words
             self.health.road = self.localisation.values
-            sentences += self._doubts(frame, estimate)
+            sentences += self._doubts(header, frame, estimate)
             values = {**estimate.scalars(), **self.health.road}
         if own.publish.overlay:
             with self.drawing("the overlay"):
@@ -234,11 +236,17 @@ class Stream(NodeStream):
         self.health.answered(mode, estimate.duration * 1e3 if estimate else None)
         if sentences:
             values["event"] = "; ".join(sentences)
-        self.publish_mode(header, mode, values)
+        is_doubtful = estimate is not None and self._stillness.is_suspect
+        self.publish_mode(header, mode, values, is_doubtful=is_doubtful)
 
-    def _doubts(self, frame: Frame, estimate: Estimate) -> list[str]:
-        """Log what speaks against a new target, and return it, a sentence each."""
-        sentences = self.doubts(frame, estimate.box) if estimate.regime == START else []
+    def _doubts(self, header: Header, frame: Frame, estimate: Estimate) -> list[str]:
+        """Log what speaks against the target, and return it, a sentence each."""
+        sentences = []
+        if estimate.regime == START:
+            self._stillness.begin(estimate.box, stamp_ns(header))
+            sentences += self.doubts(frame, estimate.box)
+        if estimate.mode is Mode.TRACKING:
+            sentences += self._stillness.look(frame, estimate.box, stamp_ns(header))
         for sentence in sentences:
             self.log.warning(sentence)
         return sentences
