@@ -11,35 +11,47 @@ import sys
 import pytest
 
 from vehicle_pf_tracker.cli import main as command
+from vehicle_pf_tracker.cli.missing_modules import EVALUATING, EVALUATION_MODULES
 
 
-@pytest.fixture(params=command.EVALUATION_MODULES)
+@pytest.fixture(params=EVALUATION_MODULES)
 def absent(request, monkeypatch):
     """The name of a library that cannot be imported, as if it were not installed."""
     monkeypatch.setitem(sys.modules, request.param, None)
     return request.param
 
 
-@pytest.mark.parametrize("verb", sorted(command.EVALUATING))
+WORDS = {
+    "evaluate": ["somewhere", "-o", "nowhere"],
+    "tune": ["somewhere", "--variant", "pf", "-o", "nowhere"],
+    "merge": ["somewhere", "-o", "nowhere"],
+    "report": ["somewhere"],
+}
+
+
+@pytest.mark.parametrize("verb", sorted(EVALUATING))
 def test_a_verb_that_lacks_its_extra_says_what_to_install(capsys, absent, verb):
-    assert command.main([verb, "somewhere", "-o", "nowhere"]) == 1
+    assert command.main([verb, *WORDS[verb]]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert f"{verb} needs the Python module {absent}" in line
     assert "pip install 'vehicle_pf_tracker[evaluation]'" in line
 
 
+ABSENT = (*EVALUATION_MODULES, "optuna", "av", "onnxruntime", "pooch", "numba", "rclpy")
+
+
 def on_a_robot(*words, **options):
     """Run the command in a process in which none of the libraries can be imported."""
     code = (
-        "import sys; from vehicle_pf_tracker.cli.main import EVALUATION_MODULES, main\n"
-        "sys.modules.update(dict.fromkeys(EVALUATION_MODULES)); sys.exit(main())"
+        "import sys; from vehicle_pf_tracker.cli.main import main\n"
+        f"sys.modules.update(dict.fromkeys({ABSENT!r})); sys.exit(main())"
     )
     command_line = [sys.executable, "-c", code, *map(str, words)]
     return subprocess.run(command_line, capture_output=True, text=True, check=False, **options)
 
 
-@pytest.mark.parametrize("verb", sorted(set(command.VERBS) - command.EVALUATING))
-def test_the_other_verbs_load_without_it(verb):
+@pytest.mark.parametrize("verb", command.VERBS)
+def test_every_verb_has_its_help_without_it(verb):
     done = on_a_robot(verb, "--help")
     assert done.returncode == 0, done.stderr
     assert f"usage: vehicle-pf-tracker {verb}" in done.stdout
@@ -52,3 +64,23 @@ def test_a_recording_is_made_and_tracked_without_it(tmp_path):
     run = on_a_robot("run", tmp_path / "recording", *words)
     assert run.returncode == 0, run.stderr
     assert (tmp_path / "out" / "metrics.json").is_file()
+
+
+def test_a_shell_s_completion_is_written_without_it():
+    code = (
+        f"import sys; sys.modules.update(dict.fromkeys({ABSENT!r}))\n"
+        "from vehicle_pf_tracker.cli.main import make_parser\n"
+        "print(len(make_parser()._subparsers._group_actions[0].choices))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert int(done.stdout) == len(command.VERBS)
+
+
+@pytest.mark.parametrize(
+    ("words", "status"),
+    [(["evaluate", "a", "-o", "b", "--seeds", "x"], 2), (["tune", "--help"], 0), (["report"], 2)],
+)
+def test_usage_is_told_before_what_is_missing(words, status):
+    done = on_a_robot(*words)
+    assert done.returncode == status
+    assert "needs the Python module" not in done.stderr

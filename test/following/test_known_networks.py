@@ -3,6 +3,7 @@
 
 """Networks by name."""
 
+import hashlib
 import re
 import sys
 
@@ -56,7 +57,7 @@ def test_a_file_put_there_is_taken_if_it_is_the_makers(monkeypatch):
 
 
 def _sum(content):
-    return model_files.hashlib.sha256(content).hexdigest()
+    return hashlib.sha256(content).hexdigest()
 
 
 def test_a_package_of_an_organisation_brings_the_file(tmp_path, monkeypatch):
@@ -81,3 +82,9 @@ def test_a_package_of_an_organisation_brings_the_file(tmp_path, monkeypatch):
 def test_a_name_that_is_none_is_one_sentence(model, said):
     with pytest.raises(InputError, match=said):
         model_file(model)
+
+
+def test_without_pooch_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pooch", None)
+    with pytest.raises(InputError, match=r"need pooch: install the extra \[video\]"):
+        model_file("yolox-nano")

@@ -14,7 +14,7 @@ import pytest
 import setuptools
 
 import vehicle_pf_tracker
-from vehicle_pf_tracker.cli.main import EVALUATION_MODULES, EXTRAS
+from vehicle_pf_tracker.cli.missing_modules import EVALUATION_MODULES, EXTRAS
 from vehicle_pf_tracker.evaluation.baselines import LOCK
 from vehicle_pf_tracker.ros import executables
 from vehicle_pf_tracker.trackers.registry import NODES

@@ -80,7 +80,7 @@ setuptools.setup = lambda **facts: print(*facts["entry_points"]["console_scripts
 runpy.run_path("setup.py", run_name="__main__")
 """
 SEARCH = """
-from vehicle_pf_tracker.evaluation.tuning import default_search
+from vehicle_pf_tracker.evaluation.tuning_aims import default_search
 from vehicle_pf_tracker.trackers.registry import find_variant
 print(*default_search(find_variant("toy")))
 """

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, tell_notice
-from vehicle_pf_tracker.cli.main import EVALUATION_MODULES
+from vehicle_pf_tracker.cli.missing_modules import EVALUATION_MODULES
 from vehicle_pf_tracker.cli.requests import OverwriteOption, option
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.results.estimates import EstimateRow, read_estimates

@@ -1,52 +1,23 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The command `vehicle-pf-tracker`: chooses a verb, turns errors into a sentence and a status.
-
-Remedies for Python modules that are not installed.
-"""
+"""The command `vehicle-pf-tracker`: chooses a verb, turns errors into a sentence and a status."""
 
 from __future__ import annotations
 
 import argparse
 import importlib
-import importlib.util
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 
 from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.cli import console
+from vehicle_pf_tracker.cli.missing_modules import check_extra, remedy
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
 from vehicle_pf_tracker.core.addresses import shown
 from vehicle_pf_tracker.core.errors import InputError, suggestion
-
-EXTRAS: Mapping[str, str] = {
-    **dict.fromkeys(("matplotlib", "jinja2", "optuna"), "evaluation"),
-    # `evaluation` brings scipy too, and says so before.
-    **dict.fromkeys(("scipy", "av", "onnxruntime", "pooch"), "video"),
-    "numba": "numba",
-}
-"""The smallest extra that brings a module, by its name."""
-
-_ROS_ENDINGS = ("_msgs", "_interfaces", "_srvs")
-
-
-def remedy(module: str) -> str:
-    """Return one sentence that names `module` and what to install or source."""
-    name = module.partition(".")[0]
-    if name == "rclpy" or name.endswith(_ROS_ENDINGS):
-        how = "source ROS's setup.bash, or install the extra [ros], "
-        how += "pip install 'vehicle_pf_tracker[ros]'"
-    elif name in EXTRAS:
-        extra = EXTRAS[name]
-        how = f"install the extra [{extra}], pip install 'vehicle_pf_tracker[{extra}]'"
-    else:
-        how = "it belongs to every installation by pip; where the others are apt's, "
-        how += "`pip install mcap lz4 zstandard rosbags rich`"
-    return f"the Python module {name} is not there: {how}"
-
 
 VERBS: Mapping[str, tuple[str, str]] = {
     "demo": ("demo", "try everything on a synthetic scene: track, replay to a node, score"),
@@ -65,12 +36,6 @@ VERBS: Mapping[str, tuple[str, str]] = {
     "compile": ("compile_kernels", "compile the extra [numba] now, so that no start waits"),
 }
 """Module in this package and one line of help, by verb."""
-
-EVALUATING = frozenset({"evaluate", "tune", "merge", "report"})
-"""Verbs that need the extra `evaluation`: nodes, `replay`, `run` and `import` do without it."""
-
-EVALUATION_MODULES = ("matplotlib", "scipy", "jinja2")
-"""Modules of the extra `evaluation` that each of these verbs needs."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -121,6 +86,7 @@ def _run(words: list[str]) -> int:
         args = make_parser(words).parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say
         return ended.code if isinstance(ended.code, int) else console.USAGE
+    check_extra(args.verb)
     status: int = args.module.run(request_of(args.module.Request, args))
     return status
 
@@ -148,19 +114,9 @@ def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
         description = f"{line[0].upper()}{line[1:]}."
         verb = verbs.add_parser(name, help=line, description=description)
         if words is None or name == asked:
-            _check_extra(name)
             module = importlib.import_module(f"vehicle_pf_tracker.cli.{module_name}")
             add_options(verb, module.Request)
-            verb.set_defaults(module=module, command=[console.PROGRAM, *map(shown, words or ())])
-    return parser
-
-
-def _check_extra(verb: str) -> None:
-    """Raise at the start, not after hours of work, if the libraries of `verb` are missing."""
-    for name in EVALUATION_MODULES if verb in EVALUATING else ():
-        if importlib.util.find_spec(name) is None:
-            raise InputError(
-                f"{verb} needs the Python module {name}: install the extra [evaluation], "
-                "pip install 'vehicle_pf_tracker[evaluation]', or with apt python3-matplotlib "
-                "python3-scipy python3-jinja2"
+            verb.set_defaults(
+                verb=name, module=module, command=[console.PROGRAM, *map(shown, words or ())]
             )
+    return parser

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import (
     PROGRAM,
@@ -31,18 +32,19 @@ from vehicle_pf_tracker.cli.tracking_options import StartOptions, configure
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.evaluation import tuning
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete
 from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
-from vehicle_pf_tracker.evaluation.report.writing import write_report
-from vehicle_pf_tracker.evaluation.tables import markdown
+from vehicle_pf_tracker.evaluation.tuning_aims import OBJECTIVES, default_search
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.table import Value, parse_assignments
 from vehicle_pf_tracker.results.output_files import make_folder, write_csv, write_text
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.evaluation.tuning import SearchTask
 
 TRIALS, SEEDS, SEARCH_SEED = 60, 3, 100
 BEST, EVALUATION = "best.yaml", "evaluation"
@@ -72,7 +74,7 @@ class Request(StartOptions, TopicOption, MaxDiffOption, SchedulerOption):
     search: Sequence[str] = option(
         action="append", default=[], metavar="NAME[=LOW:HIGH],…",
         help="parameters to search (default: those marked as tuned, "
-        f"{', '.join(tuning.default_search(find_variant('apf')))} for apf)",
+        f"{', '.join(default_search(find_variant('apf')))} for apf)",
     )  # fmt: skip
     trials: int = option(
         type=positive, default=TRIALS, metavar="N",
@@ -84,14 +86,16 @@ class Request(StartOptions, TopicOption, MaxDiffOption, SchedulerOption):
         f"{SEARCH_SEED} on, so that the gain is judged by others",
     )  # fmt: skip
     objective: str = option(
-        default="success_auc", choices=tuning.OBJECTIVES, metavar="METRIC",
-        help=f"what to improve, of {', '.join(tuning.OBJECTIVES)} (default: %(default)s): its mean "
+        default="success_auc", choices=OBJECTIVES, metavar="METRIC",
+        help=f"what to improve, of {', '.join(OBJECTIVES)} (default: %(default)s): its mean "
         "over the runs of a recording and then over the recordings",
     )  # fmt: skip
 
 
 def run(request: Request) -> int:
     """Search, write the results, and print whether the gain holds or how to find out."""
+    from vehicle_pf_tracker.evaluation import tuning
+
     variant = find_variant(request.variant)
     given = [] if request.params is None else [request.params]
     assigned = parse_assignments(settable(variant), request.assignments)
@@ -120,9 +124,12 @@ def run(request: Request) -> int:
 
 
 def _tune(
-    request: Request, configuration: Configuration, what: tuning.SearchTask, recordings: Recordings
+    request: Request, configuration: Configuration, what: SearchTask, recordings: Recordings
 ) -> int:
-    folder, variant = make_folder(request.output), what.base.kind
+    from vehicle_pf_tracker.evaluation import tuning
+
+    folder = make_folder(request.output)
+    variant = what.base.kind
     study = tuning.open_study(what, folder / "study.log")
     with counting("tuned", "runs") as on_progress:
         trials = tuning.search(what, request.trials, study, runner_of(request), on_progress)
@@ -152,10 +159,15 @@ def _tune(
 
 
 def _judge(
-    request: Request, what: tuning.SearchTask, values: Mapping[str, Value], recordings: Recordings
+    request: Request, what: SearchTask, values: Mapping[str, Value], recordings: Recordings
 ) -> int:
     """Compare the best parameters with those before, by other seeds, and print the verdict."""
-    systems, seeds = [what.base, what.base.changed("best", values)], range(request.seeds)
+    from vehicle_pf_tracker.evaluation import tuning
+    from vehicle_pf_tracker.evaluation.report.writing import write_report
+    from vehicle_pf_tracker.evaluation.tables import markdown
+
+    systems = [what.base, what.base.changed("best", values)]
+    seeds = range(request.seeds)
     plan = Plan(dict(recordings), systems, seeds, list(request.command), request.max_diff)
     folder = request.output / EVALUATION
     with counting("compared", "runs") as on_progress:

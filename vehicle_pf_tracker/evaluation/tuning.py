@@ -27,7 +27,6 @@ from optuna.distributions import (
 )
 from optuna.storages import JournalStorage
 from optuna.storages.journal import JournalFileBackend
-from optuna.study import StudyDirection
 from optuna.trial import FrozenTrial, TrialState
 
 from vehicle_pf_tracker.core.array import Array
@@ -39,17 +38,10 @@ from vehicle_pf_tracker.evaluation.grid.running import Runner
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means, summarise
 from vehicle_pf_tracker.evaluation.systems import System
+from vehicle_pf_tracker.evaluation.tuning_aims import OBJECTIVES, default_search
 from vehicle_pf_tracker.following.processes import OnProgress
 from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import Variant
-
-OBJECTIVES = {
-    **dict.fromkeys(
-        ("success_auc", "precision_auc", "on_target", "p_error_lt_15px"), StudyDirection.MAXIMIZE
-    ),
-    "rmse_px": StudyDirection.MINIMIZE,
-}
-"""Direction of the search by the name of a metric."""
 
 BATCH = 6
 """Trials proposed before the first of them is known: enough to keep a few workers busy, few enough
@@ -60,17 +52,6 @@ _DONE = (TrialState.COMPLETE, TrialState.PRUNED)
 
 Space = Mapping[str, BaseDistribution]
 """Distribution that Optuna draws from, by the name of the parameter."""
-
-
-def default_search(variant: Variant) -> list[str]:
-    """Return the parameters of `variant` marked as tuned, as `search_space` takes them."""
-    return [
-        f"{spec.name}={spec.tuned[0]:g}:{spec.tuned[1]:g}"
-        if isinstance(spec.tuned, tuple)
-        else spec.name
-        for spec in specs(variant.parameters).values()
-        if spec.tuned
-    ]
 
 
 def search_space(variant: Variant, values: Mapping[str, Value], words: Sequence[str]) -> Space:
@@ -196,7 +177,7 @@ def open_study(what: SearchTask, journal: Path) -> optuna.Study:
     study = optuna.create_study(
         storage=JournalStorage(JournalFileBackend(str(journal))),
         study_name=what.key(),
-        direction=OBJECTIVES[what.objective],
+        direction="maximize" if OBJECTIVES[what.objective] else "minimize",
         load_if_exists=True,
     )
     for left in study.get_trials(states=[TrialState.RUNNING]):  # when it was interrupted
@@ -275,7 +256,7 @@ def check_gain(
     verdict : str
         Sentence on whether the gain holds on the recordings held out.
     """
-    sign = 1 if OBJECTIVES[objective] is StudyDirection.MAXIMIZE else -1
+    sign = 1 if OBJECTIVES[objective] else -1
     scores: dict[str, dict[str, Array]] = {"tuned on": {}, "held out": {}}
     for name in (entry.name for entry in evaluation.folder.recordings):
         runs = [evaluation.of(name, system.label) for system in evaluation.folder.systems]

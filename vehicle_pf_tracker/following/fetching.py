@@ -10,6 +10,8 @@ a fetch broke off, and leaves what a killed process left; this adds these.
 from __future__ import annotations
 
 import fcntl
+import hashlib
+import importlib
 import os
 import time
 from collections.abc import Callable, Iterator
@@ -29,6 +31,8 @@ _SECONDS = 30.0
 """Silence of a server after which it is given up: a slow one sends something meanwhile."""
 _CHUNK = 1 << 16
 """Bytes between two reports of progress: some ten a second at the rate of a slow line."""
+_BLOCK = 1 << 20
+"""Bytes of a file that are summed at once, so that a large one needs no memory."""
 _MOST_BYTES = 2**31
 """Size of the largest file of a network: protobuf, which ONNX is written in, has no larger ones."""
 _LEFT_SECONDS = 7 * 86400.0
@@ -62,16 +66,13 @@ def fetch(url: str, path: Path, demanded: str, progress: Progress = silent) -> N
     Raises
     ------
     InputError
-        If it cannot be fetched or kept, or has another sum.
-    ModuleNotFoundError
-        If pooch is not installed.
+        If it cannot be fetched or kept, has another sum, or pooch is not installed.
     """
-    import pooch  # noqa: PLC0415 - an extra
-
+    pooch, requests = _libraries()
     pooch.get_logger().setLevel("WARNING")  # it would print the sum
     make_folder(path.parent)
     _remove_leftovers(path.parent)
-    download = _Download(url, path, progress)
+    download = _Download(url, path, progress, requests)
     with output_errors(path):
         try:
             pooch.retrieve(
@@ -90,6 +91,26 @@ def fetch(url: str, path: Path, demanded: str, progress: Progress = silent) -> N
             ) from None
 
 
+def _libraries() -> tuple[Any, Any]:
+    """Load pooch and requests, which it brings."""
+    try:
+        return importlib.import_module("pooch"), importlib.import_module("requests")
+    except ImportError:
+        raise InputError(
+            "networks at an address need pooch: install the extra [video], "
+            "pip install 'vehicle_pf_tracker[video]'; or give a file"
+        ) from None
+
+
+def sum_of(path: Path) -> str:
+    """Return the SHA-256 of a file."""
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(_BLOCK):
+            digest.update(block)
+    return digest.hexdigest()
+
+
 class _Download:
     """One fetch, called by pooch with the file to fill.
 
@@ -99,21 +120,19 @@ class _Download:
         SHA-256 of the whole file; empty before.
     """
 
-    def __init__(self, url: str, path: Path, progress: Progress) -> None:
+    def __init__(self, url: str, path: Path, progress: Progress, requests: Any) -> None:
         self._url, self._path, self._progress = url, path, progress
+        self._requests = requests
         self.digest = ""
 
     def __call__(self, url: str, output_file: str, _pooch: Any) -> None:
         """Fill the file, going on with the part that is there."""
-        from pooch import file_hash  # noqa: PLC0415 - an extra
-        from requests import RequestException  # noqa: PLC0415
-
         try:
             with _reserved(self._part()) as part:
                 if not self._fill(part, Path(output_file)) and part is not None:
                     part.unlink()  # it was no beginning of what the server has now
                     self._fill(None, Path(output_file))
-        except RequestException as error:
+        except self._requests.RequestException as error:
             answer = error.response
             if answer is not None:
                 raise InputError(
@@ -123,7 +142,7 @@ class _Download:
                 f"the network {url} cannot be fetched: {_reason(error)}; without a network "
                 f"connection, fetch it elsewhere and put it at {self._path}"
             ) from None
-        self.digest = file_hash(output_file)
+        self.digest = sum_of(Path(output_file))
 
     def _part(self) -> Path | None:
         """Return what an earlier fetch has left; None where there is nothing."""
@@ -132,8 +151,7 @@ class _Download:
 
     def _fill(self, part: Path | None, output: Path) -> bool:
         """Fetch into `part`, or a new one, and move it to `output`; False if it does not fit."""
-        import requests  # noqa: PLC0415 - an extra, and slow to load
-
+        requests = self._requests
         done = part.stat().st_size if part else 0
         headers = {"Accept-Encoding": "identity"}
         if part is not None and done:
@@ -174,8 +192,6 @@ class _Download:
         self, chunks: Iterator[bytes], file: IO[bytes], done: int, total: int | None
     ) -> None:
         """Write the chunks of a file that has `done` bytes already, of `total` if it is known."""
-        from requests import RequestException  # noqa: PLC0415 - an extra
-
         if total is not None and total > _MOST_BYTES:
             raise InputError(f"the network {self._url} has {total} bytes; no network is so large")
         try:
@@ -192,7 +208,7 @@ class _Download:
         except InputError:
             file.truncate(0)
             raise
-        except RequestException:
+        except self._requests.RequestException:
             total = total or done + 1
         if not done or (total is not None and done < total):
             raise InputError(f"the network {self._url} broke off after {done} bytes; try again")

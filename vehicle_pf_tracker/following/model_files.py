@@ -12,13 +12,12 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import unquote, urldefrag, urlsplit
 
 from vehicle_pf_tracker.core.errors import InputError, suggestion
-from vehicle_pf_tracker.following.fetching import Progress, fetch, silent
+from vehicle_pf_tracker.following.fetching import Progress, fetch, silent, sum_of
 from vehicle_pf_tracker.following.known_networks import NETWORKS, installed
 
 _UNSAFE = re.compile(r"[^A-Za-z0-9._-]")
 _LONGEST_NAME = 80
 """Letters of a file's own name that are kept: with sum and endings less than the 255 of Linux."""
-_CHUNK = 1 << 20
 
 
 def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
@@ -106,17 +105,13 @@ def _is_url(model: str) -> bool:
 
 
 def _sum_of(path: Path) -> str:
-    digest = hashlib.sha256()
     if path.exists() and not path.is_file():
         raise InputError(f"the network {path} is not a regular file")
     try:
-        with path.open("rb") as file:
-            while chunk := file.read(_CHUNK):
-                digest.update(chunk)
+        return sum_of(path)
     except OSError:
         meant = suggestion(str(path), NETWORKS) if path.suffix != ".onnx" else ""
         raise InputError(
             f"there is no network {path}{meant}; give a file, its URL, or one of the names "
             f"{', '.join(NETWORKS)}"
         ) from None
-    return digest.hexdigest()
