@@ -19,8 +19,9 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.road.camera import Lens, Pose
+from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.road.poses import Pose
 from vehicle_pf_tracker.scenes.compositing import Image, Sprite, cells_inside
 from vehicle_pf_tracker.scenes.models import SHADOW_OPACITY, all_round, turned
 from vehicle_pf_tracker.scenes.scene import Actor

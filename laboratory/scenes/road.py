@@ -22,7 +22,7 @@ from laboratory.scenes.perspective import (
     looking,
 )
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.road.camera import Lens
+from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.drive import PAINTS
 from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.road.camera import Lens
+from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.scenes.compositing import Image, stream
 from vehicle_pf_tracker.scenes.scene import MARGIN, Disturbance, OutdoorCamera
 

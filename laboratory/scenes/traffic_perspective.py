@@ -27,7 +27,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.road import format_pairs
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.road.camera import Lens
+from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.scenes.compositing import stream
 from vehicle_pf_tracker.scenes.roads import PAINTS

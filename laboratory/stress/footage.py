@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle_pf_tracker.core.clock import MAX_DIFF, associate
+from vehicle_pf_tracker.core.association import MAX_DIFF, associate
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth

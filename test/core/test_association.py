@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.core.clock import associate
+from vehicle_pf_tracker.core.association import associate
 from vehicle_pf_tracker.core.errors import InputError
 
 MS = 1_000_000

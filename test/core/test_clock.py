@@ -3,7 +3,9 @@
 
 import pytest
 
-from vehicle_pf_tracker.core.clock import StampClock, StampEvent, header_stamp_ns, is_nearest
+from vehicle_pf_tracker.core.association import is_nearest
+from vehicle_pf_tracker.core.cdr import header_stamp_ns
+from vehicle_pf_tracker.core.clock import StampClock, StampEvent
 
 MS = 1_000_000
 

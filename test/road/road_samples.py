@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle_pf_tracker.road.camera import Lens, Pose
+from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
+from vehicle_pf_tracker.road.poses import Pose
 
 LENS = Lens((800.0, 800.0), (319.5, 239.5))
 BENT = Lens((800.0, 800.0), (319.5, 239.5), "plumb_bob", (-0.3, 0.1, 0.001, -0.002, 0.0))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.plane import Homography, fit_homography
+from vehicle_pf_tracker.road.homography import Homography, fit_homography
 
 SQUARE = np.array([[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]])
 

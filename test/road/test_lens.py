@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.camera import Lens
+from vehicle_pf_tracker.road.lens import Lens
 
 FOCAL, CENTRE = (800.0, 820.0), (319.5, 239.5)
 MODELS = {

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from road_samples import BENT, LENS, camera_plane, pairs_of, pose
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.camera import Pose
 from vehicle_pf_tracker.road.plane import RoadPlane, convex_hull, is_inside, residuals
+from vehicle_pf_tracker.road.poses import Pose
 
 CORNERS = [(-5.0, 20.0), (5.0, 20.0), (5.0, 60.0), (-5.0, 60.0)]
 

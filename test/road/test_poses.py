@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.camera import Pose, PoseTree
+from vehicle_pf_tracker.road.poses import Pose, PoseTree
 
 HALF = np.sqrt(0.5)
 

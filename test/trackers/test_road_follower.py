@@ -7,8 +7,10 @@ from estimate_samples import estimate
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.road import RoadParameters
-from vehicle_pf_tracker.road.camera import Lens, Pose
-from vehicle_pf_tracker.road.plane import Homography, RoadPlane
+from vehicle_pf_tracker.road.homography import Homography
+from vehicle_pf_tracker.road.lens import Lens
+from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.road.poses import Pose
 from vehicle_pf_tracker.trackers.estimate import START, Mode
 from vehicle_pf_tracker.trackers.localisation import (
     ROAD_COLUMNS,

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from vehicle_pf_tracker.core.clock import MAX_DIFF
+from vehicle_pf_tracker.core.association import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 if TYPE_CHECKING:

@@ -29,7 +29,7 @@ from vehicle_pf_tracker.parameters.road import format_pairs, parse_pairs
 from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
 from vehicle_pf_tracker.recordings.source import Source, frame_at
 from vehicle_pf_tracker.results.output_files import write_picture, write_text
-from vehicle_pf_tracker.road.camera import MODELS
+from vehicle_pf_tracker.road.lens import MODELS
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
 from vehicle_pf_tracker.showing.drawing import draw_road_grid
 

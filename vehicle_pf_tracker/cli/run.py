@@ -14,7 +14,7 @@ from vehicle_pf_tracker.cli.requests import MaxDiffOption, Names, TruthOptions, 
 from vehicle_pf_tracker.cli.stopping import Stop, cut_short, numbered_part, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.addresses import short_name
-from vehicle_pf_tracker.core.clock import max_diff_ns
+from vehicle_pf_tracker.core.association import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.columns import COLUMNS, number_text
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure

@@ -21,7 +21,7 @@ import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.core.clock import MAX_DIFF, associate
+from vehicle_pf_tracker.core.association import MAX_DIFF, associate
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.results.estimates import WAITING, EstimateRow

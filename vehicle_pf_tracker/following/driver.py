@@ -13,8 +13,8 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any, TypeVar
 
+from vehicle_pf_tracker.core.association import MAX_DIFF, is_nearest, max_diff_ns
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.clock import MAX_DIFF, is_nearest, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth

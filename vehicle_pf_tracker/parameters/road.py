@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.road.camera import MODELS, Lens, Pose
+from vehicle_pf_tracker.road.lens import MODELS, Lens
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
+from vehicle_pf_tracker.road.poses import Pose
 
 _LARGEST = 1e7
 """Bound of every number: no image is as wide, and map coordinates (UTM) are below it."""

@@ -17,9 +17,10 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.road import RoadParameters
-from vehicle_pf_tracker.road.camera import Lens, Pose
+from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.motion import KMH, RoadMotion
 from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.road.poses import Pose
 from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
 from vehicle_pf_tracker.trackers.uncertainty import Uncertainty
 from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS

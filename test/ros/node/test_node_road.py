@@ -40,7 +40,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.following.driver import OfflineTracker, with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters
-from vehicle_pf_tracker.road.camera import Lens
+from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.ros.node import camera_inputs
 from vehicle_pf_tracker.ros.node.camera_inputs import lens_of_info
 from vehicle_pf_tracker.ros.replay.answers import Answers

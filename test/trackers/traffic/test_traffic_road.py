@@ -11,8 +11,9 @@ from laboratory.scenes import make_traffic_scene
 from laboratory.scenes.perspective import looking
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.road.camera import Lens, Pose
+from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.road.poses import Pose
 from vehicle_pf_tracker.trackers.traffic.horizon import calibrated_row
 from vehicle_pf_tracker.trackers.traffic.occlusion import nearest_first
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters

@@ -19,7 +19,8 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.parameters.road import RoadParameters
-from vehicle_pf_tracker.road.camera import FIRST_PIXEL, Lens, Pose, PoseTree
+from vehicle_pf_tracker.road.lens import FIRST_PIXEL, Lens
+from vehicle_pf_tracker.road.poses import Pose, PoseTree
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.image_input import image_topic
 from vehicle_pf_tracker.trackers.estimate import Estimate

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from vehicle_pf_tracker.core.association import MAX_DIFF, is_nearest, max_diff_ns
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.clock import MAX_DIFF, is_nearest, max_diff_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.following.driver import with_next
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording

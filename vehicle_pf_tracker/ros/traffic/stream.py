@@ -18,7 +18,7 @@ from std_msgs.msg import Header
 from visualization_msgs.msg import MarkerArray
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.clock import header_stamp_ns
+from vehicle_pf_tracker.core.cdr import header_stamp_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.detection.detections import MOST_DETECTIONS, Detections
