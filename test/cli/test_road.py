@@ -53,6 +53,18 @@ def test_the_file_runs(bag, tmp_path):
     assert "speed_kmh" in header
 
 
+def test_pairs_to_read_again_are_named(bag, capsys):
+    more = ["45,0=4.5,0", "45,60=4.5,6", "0,30=0,3"]
+    assert main(["road", "calibrate", bag, *words([*PAIRS, *more])]) == 0
+    assert "read again" not in capsys.readouterr().err
+    misread = [*PAIRS, *more[:2], "0,12=0,3"]
+    assert main(["road", "calibrate", bag, *words(misread)]) == 0
+    assert "read again: 0,12=0,3 is 18 px from where the others put it" in capsys.readouterr().err
+    crossed = [PAIRS[0], PAIRS[1], "90,60=0,6", "0,60=9,6"]
+    assert main(["road", "calibrate", bag, *words(crossed)]) == 1
+    assert "read again 0,0=0,0 and 90,0=9,0, or 90,60=0,6 and 0,60=9,6" in capsys.readouterr().err
+
+
 def test_pairs_from_a_file(bag, tmp_path, capsys):
     path = tmp_path / "pairs.yaml"
     rows = [f"  - {{pixel: [{p}], road: [{r}]}}" for p, r in (one.split("=") for one in PAIRS)]

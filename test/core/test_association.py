@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.core.association import associate
+from vehicle_pf_tracker.core.association import associate, is_nearest
 from vehicle_pf_tracker.core.errors import InputError
 
 MS = 1_000_000
@@ -62,3 +62,13 @@ def greedy(first, second, limit_ns):
 @given(stamps, stamps, st.integers(0, 30))
 def test_agrees_with_trying_all_pairs(first, second, limit_ms):
     assert associate(first, second, limit_ms / 1000) == greedy(first, second, limit_ms * MS)
+
+
+@pytest.mark.parametrize(
+    ("following", "moment", "nearest"),
+    [(20, 14, True), (20, 15, True), (20, 16, False), (None, 16, True), (None, 17, False)],
+)
+def test_a_moment_is_nearest_to_the_first_of_two_stamps_that_are_as_near(
+    following, moment, nearest
+):
+    assert is_nearest(10, following, moment, limit_ns=6) is nearest

@@ -3,8 +3,6 @@
 
 import pytest
 
-from vehicle_pf_tracker.core.association import is_nearest
-from vehicle_pf_tracker.core.cdr import header_stamp_ns
 from vehicle_pf_tracker.core.clock import StampClock, StampEvent
 
 MS = 1_000_000
@@ -70,24 +68,3 @@ def test_the_rate_can_be_given_and_taken_back_while_running():
 def test_a_second_repeat_after_a_good_stamp_is_a_first_one_again():
     elapsed = [t.elapsed for t in ticks(StampClock(10.0), [0, 0, 100, 100])]
     assert elapsed == pytest.approx([1.0, 0.0, 1.0, 0.0])
-
-
-@pytest.mark.parametrize("length", [0, 4, 8, 11])
-def test_a_message_too_short_for_a_header_has_no_stamp(length):
-    assert header_stamp_ns(memoryview(bytes(length))) is None
-
-
-@pytest.mark.parametrize(("order", "encapsulation"), [("little", 1), ("big", 0)])
-def test_a_header_begins_with_its_stamp_in_either_byte_order(order, encapsulation):
-    stamp = (-2).to_bytes(4, order, signed=True) + (7).to_bytes(4, order)
-    assert header_stamp_ns(bytes([0, encapsulation, 0, 0]) + stamp) == -1_999_999_993
-
-
-@pytest.mark.parametrize(
-    ("following", "moment", "nearest"),
-    [(20, 14, True), (20, 15, True), (20, 16, False), (None, 16, True), (None, 17, False)],
-)
-def test_a_moment_is_nearest_to_the_first_of_two_stamps_that_are_as_near(
-    following, moment, nearest
-):
-    assert is_nearest(10, following, moment, limit_ns=6) is nearest

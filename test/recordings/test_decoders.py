@@ -13,8 +13,8 @@ import pytest
 from small_recordings import COUNT, frame_of, write_video
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings import decoders
 from vehicle_pf_tracker.recordings.decoders import AvDecoder, OpenCVDecoder, open_decoder
+from vehicle_pf_tracker.recordings.recording_names import is_url
 from vehicle_pf_tracker.recordings.source import open_source
 from vehicle_pf_tracker.showing.video_file import video_writer
 
@@ -152,8 +152,8 @@ def test_a_video_of_any_name_is_written(tmp_path, monkeypatch):
 
 
 def test_a_url_that_is_no_file_stays_a_url():
-    assert decoders.is_url("rtsp://10.0.0.1/a")
-    assert decoders.is_url("https://example.org/" + "a" * 5000)
+    assert is_url("rtsp://10.0.0.1/a")
+    assert is_url("https://example.org/" + "a" * 5000)
     with pytest.raises(InputError, match="is not a video file"):
         open_decoder("file:///nothing.mp4")
 

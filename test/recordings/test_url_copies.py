@@ -13,7 +13,8 @@ import pytest
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.sources import find_recordings
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.url_copies import is_url, local_copy, recordings_at
+from vehicle_pf_tracker.recordings.recording_names import is_url
+from vehicle_pf_tracker.recordings.url_copies import local_copy, recordings_at
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 fsspec = pytest.importorskip("fsspec")

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle_pf_tracker.cli import pick
-from vehicle_pf_tracker.cli.console import counting
+from vehicle_pf_tracker.cli.console import counting, tell_notices
 from vehicle_pf_tracker.cli.requests import (
     OverwriteOption,
     SourceOptions,
@@ -22,6 +22,7 @@ from vehicle_pf_tracker.cli.requests import (
     positive,
 )
 from vehicle_pf_tracker.cli.tracking_options import read_list
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.files import to_yaml
@@ -29,8 +30,10 @@ from vehicle_pf_tracker.parameters.road import format_pairs, parse_pairs
 from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
 from vehicle_pf_tracker.recordings.source import Source, frame_at
 from vehicle_pf_tracker.results.output_files import write_picture, write_text
+from vehicle_pf_tracker.road.homography import LEAST_PAIRS
 from vehicle_pf_tracker.road.lens import MODELS
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
+from vehicle_pf_tracker.road.suspects import disagreement
 from vehicle_pf_tracker.showing.drawing import draw_road_grid
 
 _TITLE = "Road. Written by `vehicle-pf-tracker road calibrate`."
@@ -89,12 +92,12 @@ def _calibrate(request: Request, source: Source, pairs: tuple[Pair, ...]) -> int
     if not pairs:
         drawn = pick.ask(source, [pick.PAIRS], request.frame)
         pairs = tuple(map(pick.pair_of, drawn[pick.PAIRS]))
-    names = "intrinsics", "distortion_model", "distortion", "frame_id"
-    values = {f"road.{name}": getattr(request, name) for name in names}
-    session = from_mapping(SessionParameters, {"road.pairs": format_pairs(pairs), **values})
+    session = _session(request, pairs)
     road = session.road
     plane = road.plane(road.lens, None)
     print(_table(plane, pairs), end="")
+    if doubt := disagreement(pairs, road.lens):
+        tell_notices([doubt])
     if request.grid is not None:
         write_picture(request.grid, draw_road_grid(frame, plane, pairs))
     if request.output is not None:
@@ -102,6 +105,24 @@ def _calibrate(request: Request, source: Source, pairs: tuple[Pair, ...]) -> int
         write_text(request.output, to_yaml(table, to_mapping(session), _TITLE))
         print(f"{request.output}: use it with --params, or as params_file of a node")
     return 0
+
+
+def _session(request: Request, pairs: tuple[Pair, ...]) -> SessionParameters:
+    """Make the parameters; where the pairs determine no road, the error says which to read again.
+
+    Raises
+    ------
+    InputError
+        If an option is invalid, or the pairs determine no road.
+    """
+    names = ("intrinsics", "distortion_model", "distortion", "frame_id")
+    values = {f"road.{name}": getattr(request, name) for name in names}
+    lens = from_mapping(SessionParameters, values).road.lens
+    try:
+        return from_mapping(SessionParameters, {"road.pairs": format_pairs(pairs), **values})
+    except InputError as error:
+        doubt = disagreement(pairs, lens) if len(pairs) >= LEAST_PAIRS else ""
+        raise InputError(f"{error}; {doubt}" if doubt else str(error)) from None
 
 
 def _table(plane: RoadPlane, pairs: Sequence[Pair]) -> str:

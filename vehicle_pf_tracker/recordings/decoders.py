@@ -23,6 +23,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.recordings.recording_names import is_url
 
 _SILENT = 0
 """OpenCV's level at which it logs nothing."""
@@ -208,9 +209,3 @@ def _tried(kind: Callable[[str], Decoder], name: str) -> tuple[str, str]:
     is_decoded = decoder.read() is not None
     decoder.close()
     return decoder.codec, "" if is_decoded else "cannot decode it"
-
-
-def is_url(source: Path | str) -> bool:
-    """Return whether a source is a URL: a file of that name, as ``a:/b.mp4``, is none."""
-    # Path.exists raises for names that are too long, as URLs may be.
-    return "://" in str(source) and not os.path.exists(source)  # noqa: PTH110

@@ -1,13 +1,14 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Recordings by the names of their files, and the command that converts other bags.
+"""Sources by their names: recordings, URLs, and the command that converts other bags.
 
 Without the readers: a node that only asks whether something is a recording has no MCAP.
 """
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 MCAP, SQLITE = ".mcap", ".db3"
@@ -19,3 +20,9 @@ CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
 def is_recording(path: Path) -> bool:
     """Return whether `path` is a rosbag2 folder or a file of one, by its name and content."""
     return path.suffix in {MCAP, SQLITE} or (path / "metadata.yaml").exists()
+
+
+def is_url(source: Path | str) -> bool:
+    """Return whether a source is a URL: a file of that name, as ``a:/b.mp4``, is none."""
+    # Path.exists raises for names that are too long, as URLs may be.
+    return "://" in str(source) and not os.path.exists(source)  # noqa: PTH110

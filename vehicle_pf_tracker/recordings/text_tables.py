@@ -1,7 +1,11 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Tables in text files: lines of cells, whichever separator, quotes and decimal sign they use."""
+"""Tables in text files: lines of cells, whichever separator, quotes and decimal sign they use.
+
+Not by `numpy.loadtxt` or `genfromtxt`: these take one separator for a whole file, no decimal comma
+beside it, and name no cell that is wrong.
+"""
 
 from __future__ import annotations
 

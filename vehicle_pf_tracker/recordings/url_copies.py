@@ -24,11 +24,6 @@ from vehicle_pf_tracker.core.errors import InputError
 AnswerT = TypeVar("AnswerT")
 
 
-def is_url(location: str) -> bool:
-    """Return whether `location` is a URL rather than a path."""
-    return "://" in location
-
-
 def recordings_at(url: str) -> list[str]:
     """Return the URLs of the recordings that a URL names: itself, or those in its folder.
 

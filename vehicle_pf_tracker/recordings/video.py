@@ -18,7 +18,6 @@ from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings.decoders import (
     Decoder,
     OpenCVDecoder,
-    is_url,
     open_decoder,
     quiet_opencv,
 )
@@ -31,7 +30,7 @@ from vehicle_pf_tracker.recordings.footage import (
     stamp_of,
 )
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
-from vehicle_pf_tracker.recordings.recording_names import CONVERSION
+from vehicle_pf_tracker.recordings.recording_names import CONVERSION, is_url
 from vehicle_pf_tracker.recordings.truth_files import Beside, Table, read_truth
 from vehicle_pf_tracker.recordings.truth_labels import Images
 

@@ -106,7 +106,12 @@ class Lens:
         return np.asarray(bent, np.float64).reshape(rays.shape)
 
     def _undistorted(self, distorted: Array) -> Array:
-        """Invert the distortion by Newton's method, with derivatives by differences."""
+        """Invert the distortion by Newton's method, with derivatives by differences.
+
+        OpenCV's `undistortPoints`, which `image_geometry` calls too, ends after five steps: with
+        k1 = -0.3 it is off by 1e-5 focal lengths at half a focal length from the centre, and at a
+        whole one, where no ray belongs to a pixel, it returns a point as if there were one.
+        """
         rays = np.array(distorted)
         with np.errstate(all="ignore"):
             for _ in range(_ROUNDS):

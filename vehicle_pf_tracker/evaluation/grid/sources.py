@@ -19,9 +19,9 @@ from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.footage import Footage as RecordedFootage
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder, image_files
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.recording_names import is_recording
+from vehicle_pf_tracker.recordings.recording_names import is_recording, is_url
 from vehicle_pf_tracker.recordings.source import open_source
-from vehicle_pf_tracker.recordings.url_copies import is_url, local_copy, recordings_at
+from vehicle_pf_tracker.recordings.url_copies import local_copy, recordings_at
 
 
 def find_recordings(locations: Sequence[str]) -> list[str]:
