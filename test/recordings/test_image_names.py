@@ -56,6 +56,7 @@ def paths(names):
         [f"20130510{n:05d}" for n in range(9, 12)],
         [f"20130510_100000_{n:03d}" for n in range(9, 12)],
         [*"abcd"],
+        ["a_640x480", "b_640x480", "c_640x480"],
     ],
 )
 def test_counts_and_words_are_in_natural_order_one_period_apart(folder, names):
@@ -144,6 +145,8 @@ AMBIGUOUS = {
     "ns that lost zeros": (["1305031102_95", "1305031103_5", "1305031103_80"], "not together"),
     "a date and a count": (["20261126_100000_1", "20261126_100000_2", "20261126_100001_1"],
                            "not together"),
+    "images and depth": (["f0001", "f0001_depth", "f0002", "f0002_depth"],
+                         "different words have the same numbers"),
     "one time twice": (["1305031102", "1305031102.0"], "the same time"),
 }  # fmt: skip
 

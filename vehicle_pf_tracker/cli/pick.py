@@ -31,7 +31,7 @@ from vehicle_pf_tracker.parameters.counting_plan import parse_counting_plan
 from vehicle_pf_tracker.parameters.files import read_yaml_file
 from vehicle_pf_tracker.parameters.road import format_pairs
 from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.recordings.source import Source, frame_at
+from vehicle_pf_tracker.recordings.source import ImageSource, frame_at
 from vehicle_pf_tracker.results.output_files import write_picture, write_text
 from vehicle_pf_tracker.road.plane import Pair
 from vehicle_pf_tracker.showing.drawing import draw_pixel_grid
@@ -91,11 +91,11 @@ class FrameStore:
 
     Parameters
     ----------
-    source : Source
+    source : ImageSource
         A source; of one that never ends there is the first frame only.
     """
 
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: ImageSource) -> None:
         self.count = source.frame_count or 1
         self._frames: Iterator[StampedFrame] = source.frames()
         self._file = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the store
@@ -190,7 +190,7 @@ class _Handler(PageHandler):
 
 
 def ask(
-    source: Source, sections: Sequence[str], first: int, document: Document | None = None
+    source: ImageSource, sections: Sequence[str], first: int, document: Document | None = None
 ) -> Document:
     """Let the user draw in the frames of `source`, over what is there already.
 
@@ -254,7 +254,7 @@ def run(request: Request) -> int:
         return 0
 
 
-def _draw(request: Request, source: Source, output: Path | None) -> int:
+def _draw(request: Request, source: ImageSource, output: Path | None) -> int:
     before = None
     if request.edit is not None:
         where = f"the file {request.edit}"

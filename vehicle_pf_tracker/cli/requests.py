@@ -18,7 +18,7 @@ from vehicle_pf_tracker.core.association import MAX_DIFF
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.recordings.source import Source
+    from vehicle_pf_tracker.recordings.source import ImageSource
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -189,7 +189,7 @@ class SourceOptions(TopicOption):
         metavar="HZ", help="frame rate, instead of the one that SOURCE states"
     )
 
-    def open_source(self) -> Source:
+    def open_source(self) -> ImageSource:
         """Open the source; the truth beside its images is not read."""
         from vehicle_pf_tracker.recordings.source import open_source
         from vehicle_pf_tracker.recordings.truth_files import Beside

@@ -28,7 +28,7 @@ from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.parameters.road import format_pairs, parse_pairs
 from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
-from vehicle_pf_tracker.recordings.source import Source, frame_at
+from vehicle_pf_tracker.recordings.source import ImageSource, frame_at
 from vehicle_pf_tracker.results.output_files import write_picture, write_text
 from vehicle_pf_tracker.road.homography import LEAST_PAIRS
 from vehicle_pf_tracker.road.lens import MODELS
@@ -86,7 +86,7 @@ def run(request: Request) -> int:
         return _calibrate(request, source, pairs)
 
 
-def _calibrate(request: Request, source: Source, pairs: tuple[Pair, ...]) -> int:
+def _calibrate(request: Request, source: ImageSource, pairs: tuple[Pair, ...]) -> int:
     with counting("read") as progress:
         frame = frame_at(source, request.frame, progress)
     if not pairs:

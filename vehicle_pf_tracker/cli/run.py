@@ -20,7 +20,7 @@ from vehicle_pf_tracker.evaluation.columns import COLUMNS, number_text
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.following.driver import OfflineTracker, follow
-from vehicle_pf_tracker.recordings.source import Source, open_source
+from vehicle_pf_tracker.recordings.source import ImageSource, open_source
 from vehicle_pf_tracker.recordings.truth_files import Beside
 from vehicle_pf_tracker.results.estimates import EstimateRow, summary, write_tracks
 from vehicle_pf_tracker.results.output_files import write_json
@@ -75,7 +75,9 @@ def run(request: Request) -> int:
     return stop.ended(status)
 
 
-def _track(request: Request, variant: Variant, source: Source, folder: Path, stop: Stop) -> int:
+def _track(
+    request: Request, variant: Variant, source: ImageSource, folder: Path, stop: Stop
+) -> int:
     sheet = folder / SHEET
     pictures = Pictures(request.video, particles=request.particles, sheet=sheet)
     trackers, rows = _follow(request, variant, source, stop, pictures)
@@ -111,7 +113,7 @@ def _track(request: Request, variant: Variant, source: Source, folder: Path, sto
 
 
 def _follow(
-    request: Request, variant: Variant, source: Source, stop: Stop, pictures: Pictures
+    request: Request, variant: Variant, source: ImageSource, stop: Stop, pictures: Pictures
 ) -> tuple[dict[str, OfflineTracker], dict[str, list[EstimateRow]]]:
     """Follow all targets to the end or to a signal; return their trackers and rows by name."""
     with stopping(stop), counting("tracked") as progress:
@@ -131,7 +133,7 @@ def _recording_of(request: Request) -> str:
 
 
 def _trackers(
-    request: Request, variant: Variant, source: Source, first: int, first_ns: int
+    request: Request, variant: Variant, source: ImageSource, first: int, first_ns: int
 ) -> dict[str, OfflineTracker]:
     """Make a tracker for each target given; without any, for the one configured, or for truth."""
     configuration = chosen(variant, request)
@@ -156,7 +158,9 @@ def _trackers(
     }  # fmt: skip
 
 
-def _score(request: Request, source: Source, folder: Path, rows: Sequence[EstimateRow]) -> None:
+def _score(
+    request: Request, source: ImageSource, folder: Path, rows: Sequence[EstimateRow]
+) -> None:
     """Write and print the metrics of the run of one target, where there is truth."""
     metrics = measure(score_frames(rows, source.truth(), request.max_diff))
     if metrics.frames_scored:

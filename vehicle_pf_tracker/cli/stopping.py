@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.cli.tracking_options import Moment
     from vehicle_pf_tracker.following.processes import OnProgress
     from vehicle_pf_tracker.recordings.reader import StampedFrame
-    from vehicle_pf_tracker.recordings.source import Source
+    from vehicle_pf_tracker.recordings.source import ImageSource
     from vehicle_pf_tracker.showing.pictures import Numbered
 
 T = TypeVar("T")
@@ -145,7 +145,7 @@ def stopping(stop: Stop) -> Iterator[None]:
 
 
 def numbered_part(
-    source: Source, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
+    source: ImageSource, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
 ) -> tuple[tuple[int, StampedFrame], Numbered]:
     """Return the first frame from `start` on, and all to `end`, with their numbers in the source.
 
@@ -164,7 +164,7 @@ def numbered_part(
 
 
 def _numbered(
-    source: Source, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
+    source: ImageSource, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
 ) -> Iterator[tuple[int, StampedFrame]]:
     first_ns: int | None = None
     number, is_empty = 0, True
@@ -195,7 +195,7 @@ def _leavable(frames: Iterator[StampedFrame], stop: Stop) -> Iterator[StampedFra
             yield found
 
 
-def cut_short(stop: Stop, source: Source, done: int) -> list[str]:
+def cut_short(stop: Stop, source: ImageSource, done: int) -> list[str]:
     """Say that a signal ended the run after `done` frames; empty if it is whole.
 
     A live source ends by a signal, and so its run is whole then.

@@ -27,7 +27,7 @@ from vehicle_pf_tracker.following.model_files import model_file
 from vehicle_pf_tracker.following.traffic_following import TrafficRun
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import to_mapping
-from vehicle_pf_tracker.recordings.source import Source
+from vehicle_pf_tracker.recordings.source import ImageSource
 from vehicle_pf_tracker.results.output_files import make_folder, write_json
 from vehicle_pf_tracker.results.run_folder import RUN, describe
 from vehicle_pf_tracker.results.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
@@ -114,7 +114,7 @@ def _tracking(request: Request, configuration: Configuration, stop: Stop) -> Tra
 def _follow(
     request: Request,
     tracking: TrafficRun,
-    source: Source,
+    source: ImageSource,
     folder: Path,
     stop: Stop,
     pictures: Pictures,

@@ -182,8 +182,12 @@ def _column(paths: Sequence[Path], *, is_given: bool) -> list[Numeral] | None:
     if any(len(parts) == 1 for parts in names):
         return None
     if any(parts[::2] != names[0][::2] for parts in names):
-        has_endings = not any(parts[-1] for parts in names)
-        return [_numeral(parts[-2]) for parts in names] if has_endings else None
+        last = [_numeral(parts[-2]) for parts in names]
+        if len(set(last)) > 1 and not any(parts[-1] for parts in names):
+            return last
+        if len(set(last)) in {1, len(last)} or is_given:
+            return None
+        raise InputError(_refusal(paths, "different words have the same numbers"))
     columns = _with_fractions(list(zip(*[parts[1::2] for parts in names], strict=True)))
     varying = [column for column in columns if len(set(column)) > 1] or columns[-1:]
     chosen = next((column for column in varying if epoch_unit(column)), varying[-1])

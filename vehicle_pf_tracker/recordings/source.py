@@ -17,7 +17,7 @@ from vehicle_pf_tracker.recordings.recording_names import is_recording
 from vehicle_pf_tracker.recordings.truth_files import Beside
 from vehicle_pf_tracker.recordings.video import open_footage
 
-Source: TypeAlias = Recording | Footage
+ImageSource: TypeAlias = Recording | Footage
 """A stream of stamped images, with truth where it is known."""
 
 
@@ -29,7 +29,7 @@ def open_source(
     truth: Path | None = None,
     identity: int | None = None,
     beside: Beside = Beside.NEEDED,
-) -> Source:
+) -> ImageSource:
     """Open a recording, a video file, a folder of images, a camera or a stream.
 
     Parameters
@@ -67,7 +67,7 @@ def open_source(
 
 
 def frame_at(
-    source: Source, number: int, progress: Callable[[int, int], object] = lambda *_: None
+    source: ImageSource, number: int, progress: Callable[[int, int], object] = lambda *_: None
 ) -> Frame:
     """Return frame `number` of a source, from 1; `progress` takes the frames read, and `number`.
 
