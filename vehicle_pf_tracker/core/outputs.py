@@ -152,10 +152,13 @@ def _is_same(one: Path, other: Path) -> bool:
 def _alone_with(output: Output) -> Iterator[None]:
     """Hold a lock file, gone afterwards, which the system frees if the process dies."""
     if isinstance(output, Products):
-        folder, lock, named = output.folder, output.folder / ".lock", output.folder
+        folder = output.folder
+        lock = output.folder / ".lock"
+        named = output.folder
     else:
         folder = output.resolve().parent
-        lock, named = folder / f".{output.resolve().name}.lock", output
+        lock = folder / f".{output.resolve().name}.lock"
+        named = output
     with output_errors(folder):
         if folder.exists() and not folder.is_dir():
             raise InputError(f"the output {folder} is a file; name a folder")

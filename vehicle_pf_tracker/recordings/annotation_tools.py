@@ -60,7 +60,8 @@ def _cvat_label(
     stated = {**parent.attrib, **shape.attrib}
     names = ("id", "frame", "xtl", "ytl", "xbr", "ybr", "occluded", "outside", "rotation")
     values = {name: number_of(where, name, stated.get(name)) for name in names}
-    identity, index = values["id"], values["frame"]
+    identity = values["id"]
+    index = values["frame"]
     if parent.tag == "image":
         identity, index = 1 if shape.tag == "box" else OTHER_SHAPES, identity
     number = images.names.get(stated.get("name", "").rpartition("/")[2])
@@ -115,7 +116,8 @@ def _studio_labels(path: Path, document: Any, images: Images) -> Iterator[Label]
                 yield Label(where, math.nan, ABSENT, identity=OTHER_SHAPES, fault=fault)
         rectangles = [one for one in regions if "rectangle" in one["type"]]
         for identity, region in enumerate(rectangles, start=1):
-            where, value = f"region {identity} of the truth {path}", region["value"]
+            where = f"region {identity} of the truth {path}"
+            value = region["value"]
             is_video = "sequence" in value
             boxes = _key_frames if is_video else partial(_named, task["data"])
             for number, box in boxes(value, images):

@@ -19,6 +19,23 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.messages import type_hash
 from vehicle_pf_tracker.recordings.recording_names import CONVERSION, MCAP, SQLITE
 
+VERSION = 9
+_INFINITE = {"sec": 9223372036, "nsec": 854775807}
+RELIABLE_QOS: list[dict[str, Any]] = [
+    {
+        "history": "keep_last",
+        "depth": 10,
+        "reliability": "reliable",
+        "durability": "volatile",
+        "deadline": _INFINITE,
+        "lifespan": _INFINITE,
+        "liveliness": "automatic",
+        "liveliness_lease_duration": _INFINITE,
+        "avoid_ros_namespace_conventions": False,
+    }
+]
+"""The QoS profiles that every topic of our recordings offers."""
+
 
 def recording_files(path: Path) -> tuple[list[Path], list[str]]:
     """List the files of a rosbag2 folder, or the one file that `path` is.
@@ -110,25 +127,6 @@ def _listed_files(folder: Path, information: dict[str, Any]) -> tuple[list[Path]
 def _natural_order(path: Path) -> list[tuple[int, str]]:
     """Sort `bag_2` before `bag_10`."""
     return [(int(digits or 0), text) for text, digits in re.findall(r"(\D*)(\d*)", path.stem)]
-
-
-VERSION = 9
-_INFINITE = {"sec": 9223372036, "nsec": 854775807}
-
-RELIABLE_QOS: list[dict[str, Any]] = [
-    {
-        "history": "keep_last",
-        "depth": 10,
-        "reliability": "reliable",
-        "durability": "volatile",
-        "deadline": _INFINITE,
-        "lifespan": _INFINITE,
-        "liveliness": "automatic",
-        "liveliness_lease_duration": _INFINITE,
-        "avoid_ros_namespace_conventions": False,
-    }
-]
-"""The QoS profiles that every topic of our recordings offers."""
 
 
 class _PlainDumper(yaml.SafeDumper):

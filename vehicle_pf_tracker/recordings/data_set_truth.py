@@ -79,7 +79,8 @@ def in_order(path: Path, text: str, images: Images) -> Iterator[Label]:
     polygons stay as they are, as in its toolkit; of a polygon the upright hull is taken.
     TC128's ``NAME_frames.txt`` has the numbers of the first and the last image.
     """
-    folder, begin = path.parent, 0
+    folder = path.parent
+    begin = 0
     first_px = 0 if (folder / "sequence").is_file() or any(folder.glob("*.tag")) else 1
     span = folder / path.name.replace("_gt.", "_frames.")
     if span != path and span.is_file():

@@ -178,7 +178,8 @@ def _stamps(named: NamedImages, stated: float | None) -> tuple[list[int], float]
     """Return the stamps of images in ns, and their frame rate in 1/s."""
     times = named.times_ns
     if times is None:
-        fps, first = stated or ASSUMED_FPS, min(named.images)
+        fps = stated or ASSUMED_FPS
+        first = min(named.images)
         return [stamp_of(number - first, fps) for number in named.images], fps
     origin = 0 if named.since_1970 else START_NS - times[0]
     if times[-1] + origin > LAST_STAMP_NS:

@@ -42,6 +42,9 @@ _FOOTER = struct.pack("<BQ", Opcode.FOOTER, 20)
 _TAIL = len(_FOOTER) + 20 + len(MAGIC)
 
 
+_WHOLE_BLOCK = -1
+
+
 @dataclass
 class McapIndex:
     """The table of contents of an MCAP file.
@@ -140,7 +143,9 @@ def _read_summary(stream: BinaryIO, size: int) -> Summary | None:
 
 def _is_complete(summary: Summary, size: int) -> bool:
     """Return whether channels, schemas and chunks of all messages are listed and in the file."""
-    statistics, chunks, channels = summary.statistics, summary.chunk_indexes, summary.channels
+    statistics = summary.statistics
+    chunks = summary.chunk_indexes
+    channels = summary.channels
     if statistics is None:
         return False
     counts = statistics.channel_message_counts
@@ -156,7 +161,8 @@ def _is_complete(summary: Summary, size: int) -> bool:
 
 def _scanned(path: Path, stream: BinaryIO, size: int) -> McapIndex:
     """Make the index in one pass over a file whose summary is missing or wrong."""
-    index, offset = McapIndex(path, is_truncated=True), len(MAGIC)
+    index = McapIndex(path, is_truncated=True)
+    offset = len(MAGIC)
     while True:
         stream.seek(offset)
         head = stream.read(RECORD_HEAD)
@@ -199,8 +205,6 @@ def _add_record(index: McapIndex, opcode: int, offset: int, content: memoryview)
 
 _READERS = {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.CHUNK, Opcode.MESSAGE}
 
-
-_WHOLE_BLOCK = -1
 
 _Entry: TypeAlias = "tuple[int, int, int, int, Block | Message]"
 """Log time, number of the file, offset of the block, index within it, and the block or message.

@@ -58,6 +58,10 @@ IMAGE_ANNOTATIONS = "foxglove_msgs/msg/ImageAnnotations"
 _BROKEN = (SerdeError, struct.error, ValueError, IndexError, AssertionError)
 
 
+OK, WARN, ERROR = 0, 1, 2
+"""Levels of a diagnostic status."""
+
+
 @cache
 def _store() -> Typestore:
     store = get_typestore(Stores.ROS2_JAZZY)
@@ -127,10 +131,6 @@ def as_token(name: str) -> str:
     return f"_{token}" if token[:1].isdigit() else token
 
 
-OK, WARN, ERROR = 0, 1, 2
-"""Levels of a diagnostic status."""
-
-
 def header(stamp_ns: int, frame_id: str = CAMERA_FRAME) -> Any:
     """Make a `std_msgs/Header` with this stamp in ns."""
     seconds, nanoseconds = divmod(stamp_ns, 1_000_000_000)
@@ -198,7 +198,8 @@ TRUTH_TYPES = {
 
 def truth_to_messages(truth: Truth) -> dict[str, Any]:
     """Make the messages that carry `truth`, by topic."""
-    stamp, name = truth.stamp_ns, truth.occlusion.name.lower()
+    stamp = truth.stamp_ns
+    name = truth.occlusion.name.lower()
     visible = math.nan if truth.visible_fraction is None else float(truth.visible_fraction)
     level = WARN if truth.occlusion is Occlusion.TOTAL else OK
     values = {"occlusion": name, "visible_fraction": repr(visible)}

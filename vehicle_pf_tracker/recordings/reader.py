@@ -125,7 +125,8 @@ class Recording:
         """
         # Held back until one can be read, so that a recording of rubbish is an error.
         held: list[StampedFrame] = []
-        readable, count = False, 0
+        readable = False
+        count = 0
         for count, (_, message) in enumerate(self._select({self.image_topic}), start=1):
             held.append(self._decode_or_note(message))
             readable = readable or held[-1].frame is not None

@@ -90,7 +90,8 @@ def truth_beside(
     """
     if use is Beside.IGNORED:
         return {}, []
-    folder, notices = folder.resolve(), list[str]()
+    folder = folder.resolve()
+    notices = list[str]()
     seen: set[Path] = set()
     for pattern in _PLACES:
         paths = [path for path in _at(folder, pattern) if path not in seen]
@@ -219,9 +220,8 @@ def _check_fit(table: Table, path: Path, images: Images) -> list[str]:
         size = images.size()
     except InputError:  # of an image that cannot be read, which is said elsewhere
         return notices
-    boxes = np.array([[row.box.x, row.box.y, row.box.width, row.box.height]
-                      for row in table.values()])  # fmt: skip
-    found = misfit(boxes, size)
+    boxes = [(row.box.x, row.box.y, row.box.width, row.box.height) for row in table.values()]
+    found = misfit(np.array(boxes), size)
     if found is None:
         return notices
     if found.is_fatal:

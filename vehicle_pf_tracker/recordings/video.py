@@ -74,7 +74,8 @@ class VideoFile(Footage):
         self._keeps_times = fps is None
         with closing(self._open()) as video:
             self.fps = video.fps if fps is None else check_fps(fps, "--fps")
-            self.frame_count, size = video.frame_count, video.size
+            self.frame_count = video.frame_count
+            size = video.size
         if not math.isfinite(self.fps) or self.fps <= 0:
             raise InputError(f"the video {path} states no frame rate; give it with --fps")
         check_fps(self.fps, path)

@@ -97,11 +97,13 @@ class Lens:
     def _distorted(self, rays: Array) -> Array:
         if not rays.size:  # OpenCV refuses none
             return rays
-        points, coefficients = rays.reshape(1, -1, 2), np.array(self.coefficients)
+        points = rays.reshape(1, -1, 2)
+        coefficients = np.array(self.coefficients)
         if self.model == "equidistant":
             bent = cv2.fisheye.distortPoints(points, np.eye(3), coefficients)
         else:
-            forward, still = np.dstack([points, np.ones(points.shape[:2])]), np.zeros(3)
+            forward = np.dstack([points, np.ones(points.shape[:2])])
+            still = np.zeros(3)
             bent = cv2.projectPoints(forward, still, still, np.eye(3), coefficients)[0]
         return np.asarray(bent, np.float64).reshape(rays.shape)
 

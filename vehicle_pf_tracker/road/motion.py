@@ -80,7 +80,8 @@ class RoadMotion:
     @property
     def speed_deviation(self) -> float:
         """Standard deviation of the speed, m/s: of the velocity along its direction."""
-        covariance, speed = self.covariance[2:, 2:], self.speed
+        covariance = self.covariance[2:, 2:]
+        speed = self.speed
         if speed == 0:
             return float(np.sqrt(np.linalg.norm(covariance, 2)))
         along = self.velocity / speed

@@ -105,7 +105,8 @@ def scene_of(
     known = specs(kind.parameters)
     for key in (word.partition("=")[0] for word in settings):
         if key not in known:
-            meant, has = suggestion(key, known), ", ".join(known) or "none"
+            meant = suggestion(key, known)
+            has = ", ".join(known) or "none"
             raise InputError(f"the scene {name} has no setting {key!r}{meant}; it has {has}")
     if not isinstance(settings, Mapping):
         settings = parse_assignments(known, settings)

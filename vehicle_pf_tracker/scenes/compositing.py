@@ -74,7 +74,8 @@ class Sprite:
     """
 
     def __init__(self, colour: npt.ArrayLike, opacity: npt.ArrayLike) -> None:
-        self._colour, self._opacity = np.asarray(colour), np.asarray(opacity)
+        self._colour = np.asarray(colour)
+        self._opacity = np.asarray(opacity)
         self._last: tuple[Box, PixelWindow, Image] | None = None
 
     @cached_property

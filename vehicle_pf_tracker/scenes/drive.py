@@ -67,6 +67,21 @@ PAINTS: tuple[Colour, ...] = (
 """Colours of the target, by chance: most as muted as those of real traffic."""
 
 
+WIDTH = 640
+HEIGHT = 480
+FRAME_COUNT = 200
+START = 33
+"""Start of the target's middle, px from the left."""
+SPEED = 2.9
+"""Mean speed of the target, px/frame: it crosses the image in `FRAME_COUNT` frames."""
+OVERTAKING = 3.8
+"""Mean speed of the lorry over the target's, px/frame."""
+HIDDEN_AT = 133
+"""Frame in which the middle of the lorry's box is level with the target."""
+LOAD_MIDDLE = 0.39
+"""Middle of the lorry's box, as a share of its length."""
+
+
 @dataclass(frozen=True, slots=True)
 class DriveParameters:
     """Parameters of every drive."""
@@ -109,7 +124,8 @@ class Drive:
     """
 
     def __init__(self, parameters: DriveParameters, seed: int, pace: Pace | None = None) -> None:
-        self.parameters, self.seed = parameters, seed
+        self.parameters = parameters
+        self.seed = seed
         self.image_size = SIZES[parameters.resolution]
         self.width, self.height = (size + 2 * MARGIN for size in self.image_size)
         self.rightward = parameters.heading == "right"
@@ -223,19 +239,6 @@ def target_faces(kind: str, rng: np.random.Generator) -> list[Face]:
     if kind == "truck":
         return truck(paint, (216, 214, 206))
     return suv(paint) if kind == "suv" else car(paint)
-
-
-WIDTH, HEIGHT, FRAME_COUNT = 640, 480, 200
-START = 33
-"""Start of the target's middle, px from the left."""
-SPEED = 2.9
-"""Mean speed of the target, px/frame: it crosses the image in `FRAME_COUNT` frames."""
-OVERTAKING = 3.8
-"""Mean speed of the lorry over the target's, px/frame."""
-HIDDEN_AT = 133
-"""Frame in which the middle of the lorry's box is level with the target."""
-LOAD_MIDDLE = 0.39
-"""Middle of the lorry's box, as a share of its length."""
 
 
 @dataclass(frozen=True, slots=True)

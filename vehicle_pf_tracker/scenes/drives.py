@@ -25,6 +25,10 @@ BAR_MARGIN = 20
 _SOURCE = "Scharcanski 2011, section IV"
 
 
+COACH_LENGTH = 12.0
+"""Metres."""
+
+
 @dataclass(frozen=True, slots=True)
 class BarParameters:
     """Parameters of the artificial video."""
@@ -144,10 +148,6 @@ def trees(parameters: DriveParameters, seed: int) -> Scene:
     """Make the scene: trees along the road, each of which hides a part of the target."""
     drive = Drive(parameters, seed)
     return drive.scene(trees_at(drive, (0.25, 0.43, 0.6, 0.78)))
-
-
-COACH_LENGTH = 12.0
-"""Metres."""
 
 
 def coach_at(

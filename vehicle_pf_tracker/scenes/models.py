@@ -20,6 +20,11 @@ from vehicle_pf_tracker.scenes.scene import Actor, Path
 from vehicle_pf_tracker.scenes.solids import ELEVATION, Face, draw, extent, normal_of, shadow
 from vehicle_pf_tracker.scenes.vehicles import HEAD_LAMP, SILL, TAIL_LAMP
 
+PLATE: Colour = (226, 226, 216)
+SHADOW_OPACITY = 0.5
+HEADING_STEP = math.radians(2)
+"""Sprites are drawn for headings this far apart; their boxes are exact for every heading."""
+
 
 def standing(box: Box) -> Path:
     """Return the path of what stands for ever in `box`."""
@@ -120,9 +125,6 @@ def swaying(
     return swayed
 
 
-PLATE: Colour = (226, 226, 216)
-
-
 def all_round(faces: Sequence[Face]) -> list[Face]:
     """Complete a vehicle drawn for the view from its side: the far flank, lamps and plates.
 
@@ -168,11 +170,6 @@ def _ends(rear: float, front: float, width: float) -> list[Face]:
 def _upright(x: float, y: tuple[float, float], z: tuple[float, float], colour: Colour) -> Face:
     corners = ((x, y[0], z[0]), (x, y[0], z[1]), (x, y[1], z[1]), (x, y[1], z[0]))
     return Face(corners, colour, glow=True)
-
-
-SHADOW_OPACITY = 0.5
-HEADING_STEP = math.radians(2)
-"""Sprites are drawn for headings this far apart; their boxes are exact for every heading."""
 
 
 class Model:

@@ -32,6 +32,18 @@ SHOULDER = 8
 STEEL: Colour = (176, 180, 182)
 
 
+_FAR_ROAD, _NEAR_ROAD = slice(82, 194), slice(224, 352)
+_FAR_EDGES = (102, 186)
+_FAR_DIVIDERS = (130, 156)
+_NEAR_EDGES = (232, 326)
+_NEAR_DIVIDERS = (263, 294)
+PAINTS: tuple[Colour, ...] = (
+    (222, 222, 220), (168, 172, 176), (44, 46, 50), (96, 100, 104), (158, 34, 36), (40, 74, 58),
+    (186, 172, 140), (206, 208, 212),
+)  # fmt: skip
+"""Common colours of cars; none is near the target's."""
+
+
 @dataclass(frozen=True, slots=True)
 class Lane:
     """A lane: position and scale of its vehicles.
@@ -55,10 +67,6 @@ FAR_LANES = (Lane(123, 12.4, True), Lane(151, 12.4, True), Lane(176, 12.4, True)
 """Slow, middle and fast lane of the far carriageway; traffic keeps to the left."""
 NEAR_LANES = (Lane(256, 13.8, False), Lane(286, 13.8, False), Lane(316, 13.8, False))
 """Fast, middle and slow lane of the near carriageway."""
-
-_FAR_ROAD, _NEAR_ROAD = slice(82, 194), slice(224, 352)
-_FAR_EDGES, _FAR_DIVIDERS = (102, 186), (130, 156)
-_NEAR_EDGES, _NEAR_DIVIDERS = (232, 326), (263, 294)
 
 
 def dual_carriageway(width: int, height: int, rng: np.random.Generator) -> Image:
@@ -196,13 +204,6 @@ def _pave(picture: Image, roads: Sequence[Carriageway], rng: np.random.Generator
         first = rows.start + SHOULDER
         dividers = tuple(round(first + number * road.pitch) for number in range(1, road.lanes))
         mark(picture, (first - 2, rows.stop - SHOULDER), dividers, rng)
-
-
-PAINTS: tuple[Colour, ...] = (
-    (222, 222, 220), (168, 172, 176), (44, 46, 50), (96, 100, 104), (158, 34, 36), (40, 74, 58),
-    (186, 172, 140), (206, 208, 212),
-)  # fmt: skip
-"""Common colours of cars; none is near the target's."""
 
 
 class Vehicle:

@@ -23,6 +23,12 @@ STEEL: Colour = (128, 132, 134)
 BARK: Colour = (74, 62, 50)
 
 
+PARAPET = 11
+"""Width of the wall on each side of the deck, px."""
+SHADOW_REACH = 30
+"""Reach of the shadow to the left of the deck, px."""
+
+
 def value_noise(
     shape: tuple[int, int], cell: tuple[float, float], rng: np.random.Generator
 ) -> Array:
@@ -158,12 +164,6 @@ def tree(
         Actor(Sprite(colour.clip(0, 255), leaves.astype(float)),
               standing(Box(middle - width / 2, top, width, bottom - top))),
     ]  # fmt: skip
-
-
-PARAPET = 11
-"""Width of the wall on each side of the deck, px."""
-SHADOW_REACH = 30
-"""Reach of the shadow to the left of the deck, px."""
 
 
 def bridge(left: float, width: float, height: int, rng: np.random.Generator) -> tuple[Actor, Actor]:

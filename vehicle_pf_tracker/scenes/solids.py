@@ -130,7 +130,8 @@ def _nearness(face: Face, x: Array, y: Array) -> tuple[Array, float]:
     The second value is the depth along the view, in m, of a layer `SAME_PLACE` thick on it.
     """
     normal = normal_of(face)
-    level, slant = float(normal @ np.asarray(face.points[0])), float(normal @ _VIEW)
+    level = float(normal @ np.asarray(face.points[0]))
+    slant = float(normal @ _VIEW)
     return (level - normal[0] * x - float(normal @ _DOWN) * y) / slant, SAME_PLACE / slant
 
 

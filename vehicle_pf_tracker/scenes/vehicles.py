@@ -22,6 +22,11 @@ AMBER_LAMP: Colour = (236, 140, 30)
 Contour = Sequence[tuple[float, float]]
 
 
+_TUMBLEHOME = 0.2
+"""Inward lean of the cabin from sill to roof, m."""
+ROOF_UNIT: Colour = (170, 172, 174)
+
+
 def _panel(
     x: tuple[float, float], z: tuple[float, float], colour: Colour, *, glow: bool = False
 ) -> Face:
@@ -122,10 +127,6 @@ def _flank(body: Contour, paint: Colour, door: float) -> list[Face]:
     ]  # fmt: skip
 
 
-_TUMBLEHOME = 0.2
-"""Inward lean of the cabin from sill to roof, m."""
-
-
 def _cabin(cabin: Contour, width: float, paint: Colour) -> list[Face]:
     """Rear and front screens, roof and the painted near side of a cabin of four (x, z) points."""
     (xr, zr), (x1, z1), (x2, z2), (xf, zf) = cabin
@@ -168,12 +169,11 @@ def wheels(axles: Sequence[float], radius: float) -> list[Face]:
     ]
 
 
-ROOF_UNIT: Colour = (170, 172, 174)
-
-
 def lorry(cab: Colour, box: Colour, stripe: Colour) -> list[Face]:
     """Build a box lorry, 10.6 m long: a box of 8.3 m, without an end wall, behind a cab."""
-    width, floor, top = 2.5, 1.1, 4.0
+    width = 2.5
+    floor = 1.1
+    top = 4.0
     load = [(0.0, floor), (0.0, top), (8.3, top), (8.3, floor)]
     tractor = [(8.4, 0.7), (8.4, 3.8), (9.1, 3.7), (10.2, 2.9), (10.55, 1.9), (10.6, 0.7)]
     screen = Face(((10.15, 0.15, 2.85), (10.52, 0.15, 1.95), (10.52, 2.35, 1.95),
@@ -218,7 +218,8 @@ def truck(cab: Colour, box: Colour) -> list[Face]:
 
 def coach(paint: Colour, stripe: Colour, length: float = 12.0) -> list[Face]:
     """Build a coach, 3.75 m high and `length` m long, with a row of dark windows over a hold."""
-    width, top = 2.5, 3.75
+    width = 2.5
+    top = 3.75
     body = [(0.0, 0.4), (0.0, top - 0.1), (0.15, top), (length - 0.3, top),
             (length - 0.05, top - 0.3), (length, 0.4)]  # fmt: skip
     count = round((length - 1.0) / 1.5)
