@@ -32,7 +32,7 @@ COVERED := 92
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
 # Each target that says of itself what it does, with two hashes, is listed by `make help`.
-.PHONY: help demo test test-all test-research test-rest test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs detector dist clean
+.PHONY: help demo test test-all test-research mutants test-rest test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs detector dist clean
 
 demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
@@ -75,6 +75,10 @@ test-ros test-footage test-programs: .venv/installed
 
 test-research: .venv/installed kernels  ## tests of reproduction, laboratory and benchmarks, slow ones too
 	$(BIN)/python -m pytest $(or $(PYTEST_ARGS),$(RESEARCH))
+
+# Hours for a room of trackers; the toy is one module, so that the target is known to work.
+mutants: .venv/mutants  ## mutation testing of ROOMS=toy, filtering, road, counting or papers
+	$(BIN)/python -m tools.mutants $(or $(ROOMS),toy)
 
 test-noble: .venv-noble/installed  ## numbers, pixels and messages with the NumPy and OpenCV of Ubuntu 24.04
 	.venv-noble/bin/python -m pytest -m "not slow" $(PYTEST_ARGS) $(VERSIONED)
@@ -151,6 +155,6 @@ clean:  ## remove what the other targets made
 	$*/bin/python $(INSTALL) --no-build-isolation --editable .
 	touch $@
 
-.venv/colcon .venv/docs: .venv/%: .venv/installed requirements/%.txt
+.venv/colcon .venv/docs .venv/mutants: .venv/%: .venv/installed requirements/%.txt
 	$(BIN)/python $(INSTALL) --requirement requirements/$*.txt
 	touch $@

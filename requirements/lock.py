@@ -3,8 +3,8 @@
 
 """Write the lock files anew: `python requirements/lock.py python3.10 python3.11 python3.12 ...`.
 
-`--only NAME` before the interpreters writes that lock alone (docs needs none); `--hashes` and no
-interpreters keep all versions and write the hashes anew.
+`--only NAME` before the interpreters writes that lock alone (docs and mutants need none);
+`--hashes` and no interpreters keep all versions and write the hashes anew.
 
 For every interpreter and every lock file, pip resolves the extras of setup.py in a throw-away
 environment. A version that all interpreters share is written once; where they differ, each line
@@ -39,7 +39,10 @@ COLCON = (
     "colcon-ros",
     "colcon-test-result",
 )
-DOCS = ("mkdocs-material", "mkdocstrings[python]", "build", "twine")
+BESIDE = {  # installed beside locked.txt by the targets that need them
+    "docs": ("mkdocs-material", "mkdocstrings[python]", "build", "twine"),
+    "mutants": ("mutmut>=3.8",),
+}
 NOBLE = (  # what Ubuntu 24.04 has from apt; its Python is 3.12
     SETUPTOOLS,
     f"{ROOT}[test]",
@@ -71,7 +74,7 @@ for found in distributions():
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--only", choices=["baselines", "docs"])
+    parser.add_argument("--only", choices=["baselines", *BESIDE])
     parser.add_argument("--hashes", action="store_true")
     parser.add_argument("interpreters", nargs="*")
     args = parser.parse_args()
@@ -80,10 +83,11 @@ def main() -> None:
             header, *pins = pins_of(path)
             path.write_text(hashed(header, pins))
         return
-    if args.only != "docs":
+    if args.only not in BESIDE:
         lock_by_interpreters(args.interpreters, args.only)
-    if args.only != "baselines":
-        lock_docs()
+    for lock in BESIDE:
+        if args.only in (None, lock):
+            lock_beside(lock)
 
 
 def lock_by_interpreters(interpreters: list[str], only: str | None) -> None:
@@ -108,13 +112,13 @@ def path_of(lock: str) -> Path:
     return folder / f"{lock}.txt"
 
 
-def lock_docs() -> None:
-    """Write the lock of what is installed beside locked.txt, resolved for all Pythons at once."""
+def lock_beside(lock: str) -> None:
+    """Write a lock of what is installed beside locked.txt, resolved for all Pythons at once."""
     base = pins_of(HERE / "locked.txt")[1:]
-    found = compiled([*base, *DOCS], "--no-annotate")
+    found = compiled([*base, *BESIDE[lock]], "--no-annotate")
     known = {key_of(pin) for pin in base}
     pins = [pin for pin in found if key_of(pin) not in known]
-    (HERE / "docs.txt").write_text(hashed("# Written by requirements/lock.py.", pins))
+    (HERE / f"{lock}.txt").write_text(hashed("# Written by requirements/lock.py.", pins))
 
 
 def own_pins(interpreter: str, version: str) -> dict[str, set[str]]:

@@ -136,3 +136,27 @@ def test_systematic_and_residual_stay_within_one_copy_of_the_expectation(weights
     assert np.all(np.abs(systematic_counts - expected) < 1 + 1e-9)
     residual_counts = np.bincount(residual(weights, count, rng), minlength=len(weights))
     assert np.all(residual_counts >= np.floor(expected - 1e-9))
+
+
+class Given:
+    """A source of uniform numbers that are given."""
+
+    def __init__(self, *numbers):
+        self.numbers = np.array(numbers)
+
+    def random(self, count):
+        assert count == len(self.numbers)
+        return self.numbers
+
+
+def test_stratified_draws_a_number_in_each_stratum():
+    # Eight equal weights in four strata of two each: the first or the second of the two.
+    drawn = SCHEMES["stratified"](np.full(8, 1 / 8), 4, Given(0.1, 0.9, 0.1, 0.9))
+    assert drawn.tolist() == [0, 3, 4, 7]
+
+
+@pytest.mark.parametrize(("point", "last"), [(0.1, 1), (0.5, 2)])
+def test_residual_draws_the_rest_by_what_is_left_of_the_expectations(point, last):
+    # Expected 2, 1.2 and 0.8 of four: 2, 1 and 0 are certain, 0, 0.2 and 0.8 are left.
+    drawn = SCHEMES["residual"](np.array([0.5, 0.3, 0.2]), 4, Given(point))
+    assert sorted(drawn.tolist()) == [0, 0, 1, last]

@@ -1,0 +1,90 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Effects of interpretations that have no experiment of their own: RMSE with a switch either way.
+
+`python -m reproduction.effects` prints the table of docs/interpretations.md. Its seeds are not
+those of the verdicts.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+from reproduction import apf_systems as apf
+from reproduction import mfpf_systems as mfpf
+from reproduction import resampling_systems as resampling
+from reproduction.cells import RunCell, SceneChoice, System
+from reproduction.experiment import PAPER, DataTable, Entry
+from reproduction.running import run_together
+from vehicle_pf_tracker.parameters.table import Value
+
+SEEDS = range(100, 102)
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """One switch, and the runs that show what it does.
+
+    Attributes
+    ----------
+    number : int
+        Number of the interpretation in docs/interpretations.md.
+    system : System
+        Filter by the paper's rule.
+    settings : mapping
+        The other side of the switch.
+    scenes : sequence of str
+        Scenes that both run on.
+    """
+
+    number: int
+    system: System
+    settings: Mapping[str, Value]
+    scenes: Sequence[str]
+
+    def rmse(self, settings: Mapping[str, Value]) -> float:
+        """Mean RMSE over scenes and seeds, px."""
+        cells = [
+            RunCell(SceneChoice.of(scene).seeded(seed), self.system.but(settings), seed, ())
+            for scene in self.scenes
+            for seed in SEEDS
+        ]
+        return fmean(run_together((cell,))[0]["metrics"]["rmse_px"] for cell in cells)
+
+
+_APF = apf.with_sigma(apf.APF, apf.LARGEST_SIGMA)
+_MFPF = mfpf.read_as(mfpf.MFPF, PAPER)
+_ADAPTIVE = resampling.VIEWS[PAPER].adaptive
+_VIDEOS = "video03", "video12"
+_SCENES = "overlap", "phases"
+EFFECTS = (
+    Effect(33, _APF, {"reference.alpha": 1.0}, _VIDEOS),
+    Effect(34, _MFPF, {"delayed_reference": True}, mfpf.CASES),
+    Effect(35, _MFPF, {"weight_recursion": False}, mfpf.CASES),
+    Effect(39, _APF, {"window.width": 61.0, "window.height": 41.0}, _VIDEOS),
+    Effect(40, _ADAPTIVE, {"weight_recursion": True}, _SCENES),
+)
+
+
+def table(effects: Sequence[Effect] = EFFECTS) -> DataTable:
+    """Run both sides of each switch."""
+    rows: list[tuple[Entry, ...]] = [
+        (
+            str(effect.number),
+            ", ".join(f"`{name}: {value}`" for name, value in effect.settings.items()),
+            f"{effect.system.variant} on {', '.join(effect.scenes)}",
+            effect.rmse({}),
+            effect.rmse(effect.settings),
+        )
+        for effect in effects
+    ]
+    columns = ("", "switch", "runs", "RMSE without, px", "with, px")
+    return DataTable(columns, tuple(rows))
+
+
+if __name__ == "__main__":
+    sys.stdout.write(table().to_markdown())

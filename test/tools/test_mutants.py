@@ -1,0 +1,40 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Mutation testing: which modules are changed, and what counts as noticed."""
+
+import pytest
+
+from tools import mutants
+
+
+def test_every_room_has_modules_and_tests():
+    for modules, tests in mutants.ROOMS.values():
+        assert list((mutants.ROOT / "vehicle_pf_tracker").glob(modules))
+        assert (mutants.ROOT / tests).exists()
+
+
+@pytest.mark.parametrize(("verdicts", "status"), [((20, 1), 0), ((20, 2), 1)])
+def test_too_many_survivors_are_a_failure(verdicts, status, monkeypatch, capsys):
+    count, alive = verdicts
+    monkeypatch.setattr(mutants, "survivors", lambda room: (count, ["change"] * alive))
+    assert mutants.main(["toy"]) == status
+    assert f"toy: {count - alive} of {count} changes are noticed" in capsys.readouterr().out
+
+
+def test_an_unknown_room_is_told():
+    with pytest.raises(SystemExit, match="no room attic; choose some of filtering"):
+        mutants.main(["attic"])
+
+
+def test_survivors_are_shown_and_changes_that_no_test_reaches_count(monkeypatch, capsys):
+    answers = {
+        "run": "",
+        "results": "    a.x_f__mutmut_1: killed\n    a.x_f__mutmut_2: survived\n"
+        "    a.x_g__mutmut_1: no tests\n    a.x_g__mutmut_2: timeout\n",
+        "show": "-a\n+b",
+    }
+    monkeypatch.setattr(mutants, "_NEEDED", ("pyproject.toml",))
+    monkeypatch.setattr(mutants, "_mutmut", lambda folder, *words: answers[words[0]])
+    assert mutants.survivors("toy") == (4, ["a.x_f__mutmut_2", "a.x_g__mutmut_1"])
+    assert capsys.readouterr().out == "-a\n+b\n-a\n+b\n"
