@@ -26,4 +26,4 @@ def test_reference_pages_have_every_verb_name_and_version():
     for verb in VERBS:
         assert f"## {verb}\n\n```text\nusage: vehicle-pf-tracker {verb}" in page
     assert "::: vehicle_pf_tracker.trackers.registry.make_tracker\n" in python_interface()
-    assert re.findall(r"^## (\S+)$", changes(), re.MULTILINE)[-2:] == ["0.2.0", "0.1.0"]
+    assert re.findall(r"^## (\S+)$", changes(), re.MULTILINE) == ["1.0.0"]
