@@ -51,11 +51,9 @@ def track(number, left, top=100.0, *, confirmed=False, **facts):
     return track_of(gaussians, number, confirmed=confirmed, **facts)
 
 
-def track_of(gaussians, number=1, *, confirmed=False, matches=None, **facts):
+def track_of(gaussians, number=1, *, confirmed=False, **facts):
     """Make the track of a vehicle in this state of one row."""
     tracks = Tracks.begun(gaussians, np.array([number]), np.zeros((1, 4)))
-    if matches is not None:
-        facts["sums"] = np.array([matches] + [0.0] * 7)
     return changed(tracks, identity=number if confirmed else 0, **facts)
 
 
@@ -71,7 +69,7 @@ def changed(rows, **facts):
         value = getattr(rows, name)
         if isinstance(value, Rows):
             values[name] = changed(value, **facts)
-        elif name in facts and not (name == "sums" and value.shape[1] != 8):
+        elif name in facts:
             values[name] = value.copy()
             values[name][:] = facts[name]
         else:

@@ -30,7 +30,8 @@ class Detections:
     boxes : array, shape (N, 4)
         Left, top, width and height in px.
     scores : array, shape (N,)
-        Scores of the detector, of any scale: only their order counts.
+        Scores of the detector: between 0 and 1 the probability of a vehicle, as it says; of
+        another scale, or 1, only their order counts.
     labels : tuple of str
         Class of each, or "".
     are_shapes : bool

@@ -95,7 +95,8 @@ class TrafficTracker(CountedVehicles):
             Detections: left, top, width and height in px; empty where the detector saw nothing.
             None: the tracker looks for vehicles itself.
         scores : array-like, shape (N,), optional
-            Their scores, of any scale; None: all alike.
+            Their scores: between 0 and 1 the probability of a vehicle, by which one that stands is
+            reported, too; of another scale only their order counts. None: all alike.
         labels : sequence of str, optional
             Their classes.
         stamp_ns : int, optional

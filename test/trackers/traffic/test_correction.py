@@ -163,7 +163,7 @@ def test_a_vehicle_that_drives_away_fast_before_a_wrong_horizon_is_followed(rate
             mean=gaussians.mean,
             covariance=gaussians.covariance,
             edges=gaussians.edges,
-            sums=np.array([number] + [0.0] * 7),
+            matches=number,
         )
         tracks, _ = correct(tracks, box[None], size, 0.05, uncoverings)
         assert overlaps(tracks.edges[0], box) > 0.6

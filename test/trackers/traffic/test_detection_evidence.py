@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
+    UNSAID,
     DetectionEvidence,
     Sample,
+    claims_of,
     places_of,
 )
 
@@ -31,11 +33,27 @@ def taught(transform=lambda score: score):
 def odds(evidence, edges, *scores):
     evidence.look()
     places = places_of(np.tile(edges, (len(scores), 1)), SIZE)
-    return evidence.log_odds(np.array(scores), places)
+    return evidence.log_odds(np.array(scores), np.full(len(scores), UNSAID), places)
 
 
 def test_nothing_is_known_at_first():
     assert odds(DetectionEvidence(), ROAD, 0.1, 0.9).tolist() == [0, 0]
+
+
+def test_before_anything_is_known_a_score_is_what_its_detector_says():
+    scores = np.array([0.1, 0.5, 0.9])
+    places = np.zeros(3, np.intp)
+    claimed = DetectionEvidence().log_odds(scores, claims_of(scores), places)
+    assert claimed == pytest.approx([-np.log(9), 0, np.log(9)])
+    evidence = taught(lambda score: 1 - score)
+    evidence.look()
+    low, _, high = evidence.log_odds(scores, claims_of(scores), places)
+    assert low > 2 > -2 > high  # it is worth few detections
+
+
+@pytest.mark.parametrize("scores", [(1.0, 1.0), (0.4, 7.0), (-0.2, 0.5), (0.0, 1.0)])
+def test_scores_of_other_scales_and_none_claim_nothing(scores):
+    assert (claims_of(np.array(scores)) == UNSAID).all()
 
 
 def test_scores_that_were_vehicles_speak_for_one():

@@ -26,7 +26,8 @@ from vehicle_pf_tracker.trackers.traffic.state import Experience, State
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 SIZE = (320, 240)
-SCORE = 0.8
+SCORE = 1.0
+"""That of a detector that claims nothing."""
 STEP = step_of(SIZE)
 ONLY = np.array([0])
 

@@ -45,3 +45,17 @@ def test_a_longer_drive_tells_more():
 )
 def test_what_stands_leaps_or_flickers_drives_not(places):
     assert evidence(*places) == 0
+
+
+@pytest.mark.parametrize("before", [15, 200])
+def test_what_has_stood_drives_off_as_if_it_had_just_come(before):
+    drive = [(2 * step, 0.3 * step) for step in range(12)]
+    stood = way(*[(0, 0)] * before, *drive)
+    assert stood.evidence() == pytest.approx(way(*drive).evidence(), rel=0.15)
+    assert stood.matches == before + 12
+    assert not stood.stands
+
+
+def test_what_creeps_by_a_third_of_its_width_in_a_second_does_not_stand():
+    assert not way(*[(0.11 * step, 0) for step in range(100)]).stands
+    assert way(*[(0.05 * step, 0) for step in range(100)]).stands

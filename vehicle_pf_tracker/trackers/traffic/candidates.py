@@ -14,12 +14,16 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.box_edges import sides_of
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
+    UNSAID,
     DetectionEvidence,
     Sample,
+    claims_of,
     places_of,
 )
 from vehicle_pf_tracker.trackers.traffic.rows import Integers
 
+_ORDINARY = 0.5
+"""Share of the vehicles' detections with lower scores above which a score is better than most."""
 SIZES = 2.0
 """Logarithm of the ratio of the largest and the smallest false alarms, by which they are spread. At
 1 vehicles that pass close and fast are found late: IDF1 of three scenes is 67 instead of 83."""
@@ -43,8 +47,10 @@ class Candidates:
         Where in the image each is.
     log_odds : (N,) array
         Log odds that each is a vehicle.
-    gains, ranks : (N,) arrays
-        How much likelier each score is a vehicle's, as a logarithm; and how high among theirs.
+    gains : (N,) array
+        How much likelier each score is a vehicle's, as a logarithm.
+    sure : (N,) array
+        Log odds that its score alone is worth where nothing has moved.
     clutter : (N,) array
         Logarithm of the false alarms per image as often as where each is.
     false : (N,) array
@@ -58,7 +64,7 @@ class Candidates:
     places: Integers
     log_odds: Array
     gains: Array
-    ranks: Array
+    sure: Array
     clutter: Array
     false: Array
 
@@ -89,6 +95,8 @@ def weighed(
     edges = np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
     places = places_of(edges, size)
     clutter = evidence.clutter(places)
+    claims = np.full(len(scores), UNSAID) if detections.are_shapes else claims_of(scores)
+    log_odds = evidence.log_odds(scores, claims, places)
     # False alarms are anywhere in the image, and of any size.
     false = clutter - math.log(size[0] * size[1]) - np.log(sides_of(edges) * SIZES).sum(axis=1)
     return Candidates(
@@ -97,9 +105,21 @@ def weighed(
         labels=detections.labels,
         are_shapes=detections.are_shapes,
         places=places,
-        log_odds=evidence.log_odds(scores, places),
-        gains=evidence.gains(scores),
-        ranks=evidence.ranks(scores),
+        log_odds=log_odds,
+        gains=evidence.gains(scores, claims),
+        sure=_sure(log_odds, claims, evidence.ranks(scores)),
         clutter=clutter,
         false=false,
     )
+
+
+def _sure(log_odds: Array, claims: Array, ranks: Array) -> Array:
+    """Log odds (N,) that scores are worth where nothing has moved.
+
+    A spot that looks a little like a vehicle does so each time, and many such scores are worth one:
+    both the detector and what became of such scores here have to be sure of each. Where a detector
+    makes no claims, most vehicles have to have lower scores.
+    """
+    claimed = np.log(claims / (1 - claims))
+    claimed[(claims == UNSAID) & (ranks >= _ORDINARY)] = np.inf
+    return np.minimum(log_odds, claimed)

@@ -3,8 +3,7 @@
 
 """Evidence that detections are vehicles, learnt from what became of earlier ones.
 
-Two things tell: the score, of which only the order counts, so that a detector whose scores are
-squared or halved is the same one; and the place, because a tree in the wind is reported again and
+Two things tell: the score, and the place, because a tree in the wind is reported again and
 again. A place only speaks against a detection: where many vehicles pass, parts of vehicles are
 detected as well.
 """
@@ -37,6 +36,10 @@ _FALSE_ALARMS, _ASSUMED_FOR = 1.0, 30
 that this, and the mean of all places for the number of one, is worth."""
 _CLUTTERED = 0.5
 """False alarms in a place from which it is said to be cluttered: one, halved once at most."""
+UNSAID = 0.5
+"""Probability of a vehicle where a detector claims nothing."""
+_LEAST_CLAIM = 0.01
+"""Least probability that a detector's own score is taken for, either way: one in a hundred."""
 _MOST = 7.0
 """Log odds, one in a thousand, beyond which scores and places say nothing surer."""
 
@@ -53,6 +56,19 @@ def places_of(edges: Array, size: tuple[int, int]) -> Integers:
     centres = (edges[:, :2] + edges[:, 2:]) / 2
     columns, rows = np.clip(centres / size * _GRID, 0, _GRID - 1).astype(np.intp).T
     return np.asarray(rows * _GRID + columns)
+
+
+def claims_of(scores: Array) -> Array:
+    """Probabilities (N,) that detections are vehicles, as their detector says them; a half: unsaid.
+
+    Networks give scores between 0 and 1. Of 34 000 boxes of two networks on two cameras, those of
+    .5 to .6 were vehicles in 77 to 100 %, and no false alarm that stayed in one place for half a
+    second had more than .37 in the mean. A score of 1 is that of a detector that gives none.
+    """
+    if not ((scores >= 0) & (scores <= 1)).all():
+        return np.full(len(scores), UNSAID)
+    says = (scores > 0) & (scores < 1)
+    return np.where(says, np.clip(scores, _LEAST_CLAIM, 1 - _LEAST_CLAIM), UNSAID)
 
 
 class DetectionEvidence:
@@ -95,23 +111,24 @@ class DetectionEvidence:
             self._false[place] += alone and not genuine
             self._places[int(genuine), place] += 1
 
-    def log_odds(self, scores: Array, places: Integers) -> Array:
-        """Logarithm of the odds that detections are vehicles, (N,); 0 where nothing is known.
+    def log_odds(self, scores: Array, claims: Array, places: Integers) -> Array:
+        """Logarithm of the odds that detections are vehicles, (N,).
 
-        A place only speaks against a detection: where many vehicles pass, parts of vehicles are
-        detected as well.
+        Before anything is known that is what their detector claims, (N,) probabilities. A place
+        only speaks against a detection: where many vehicles pass, parts of vehicles are detected
+        as well.
         """
         totals = self._places.sum(axis=1)
         here = self._places[:, places]
         by_place = np.log(here[1] / here[0]) - np.log(totals[1] / totals[0])
-        both = self._by_score(scores) + np.minimum(by_place, 0.0)
+        both = self._by_score(scores, claims) + np.minimum(by_place, 0.0)
         return np.asarray(np.clip(both, -_MOST, _MOST))
 
-    def gains(self, scores: Array) -> Array:
+    def gains(self, scores: Array, claims: Array) -> Array:
         """Logarithm of how much more often vehicles have scores (N,) than false alarms have."""
         genuine, total = self._sums[-1], len(self._sorted)
         usual = np.log((genuine + _PRIOR) / (total - genuine + _PRIOR))
-        return np.asarray(self._by_score(scores) - usual)
+        return np.asarray(self._by_score(scores, claims) - usual)
 
     def ranks(self, scores: Array) -> Array:
         """Share of the vehicles' detections with lower scores, (N,); 0 before enough are known."""
@@ -128,10 +145,11 @@ class DetectionEvidence:
         seen = self._false[places] * PLACES + _ASSUMED_FOR * usual
         return np.asarray(np.log(seen / images))
 
-    def _by_score(self, scores: Array) -> Array:
+    def _by_score(self, scores: Array, claims: Array) -> Array:
         left = np.searchsorted(self._sorted, scores, "left")
         middle = (left + np.searchsorted(self._sorted, scores, "right")) // 2
         low = np.maximum(middle - _NEIGHBOURS // 2, 0)
         high = np.minimum(middle + _NEIGHBOURS // 2, len(self._sorted))
         genuine = self._sums[high] - self._sums[low]
-        return np.asarray(np.log((genuine + _PRIOR) / (high - low - genuine + _PRIOR)))
+        yes, no = 2 * _PRIOR * claims, 2 * _PRIOR * (1 - claims)
+        return np.asarray(np.log((genuine + yes) / (high - low - genuine + no)))

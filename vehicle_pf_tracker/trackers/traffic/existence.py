@@ -14,6 +14,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import inside_image
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, places_of
+from vehicle_pf_tracker.trackers.traffic.parameters import IGNORE
 from vehicle_pf_tracker.trackers.traffic.returns import Returns
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State, Step
@@ -48,8 +49,6 @@ _MOVES = 3.0
 """Standard deviations of its speed above which a vehicle is said to drive: one in 400 is as far."""
 _STANDS = 0.1
 """Way, of its width, below which a track has not moved."""
-_ORDINARY = 0.5
-"""Share of the vehicles' detections with lower scores above which a score is better than most."""
 _KEPT_SAMPLES = 30
 """Latest detections, one second of 30 Hz, of what has not driven yet, that are not learnt from."""
 _BLIND_FROM = 2
@@ -111,15 +110,15 @@ def believed(
     gains = np.clip(gains, -_SCORE_DOUBT, _MOST)
     ways = beliefs.ways.added(edges)
     lengths = ways.lengths(tracks.edges)
-    # Scores prove what has not moved only if most vehicles' detections have lower ones: a spot
-    # that looks like a vehicle does so each time, and many such scores are worth one.
-    is_spot = (lengths < _STANDS) & (candidates.ranks[columns] < _ORDINARY)
-    proof = np.clip(log_odds - _SCORE_DOUBT, -_SCORE_DOUBT, _MOST)
+    proof = np.where(lengths < _STANDS, candidates.sure[columns], log_odds)
+    proof = np.clip(proof - _SCORE_DOUBT, -_SCORE_DOUBT, _MOST)
+    strength = beliefs.strength + proof
     beliefs = replace(
         beliefs,
         log_odds=np.minimum(beliefs.log_odds + gains + fits, CERTAIN),
-        doubt=np.maximum(beliefs.doubt - gains, 0.0),
-        strength=beliefs.strength + np.where(is_spot, -_SCORE_DOUBT, proof),
+        # A time of standing is no debt: having stood makes nothing less likely once it drives.
+        doubt=np.where(ways.stands, 0.0, np.maximum(beliefs.doubt - gains, 0.0)),
+        strength=np.where(ways.stands, np.maximum(strength, 0.0), strength),
         ways=ways,
     )
     tracks = replace(tracks, beliefs=beliefs)
@@ -131,6 +130,8 @@ def believed(
     if now_drives.any():
         now_drives &= drives(tracks, step.parameters.birth.displacement)
     proven = now_drives | (beliefs.strength > _PROVEN)
+    if step.parameters.birth.standing == IGNORE:
+        proven &= now_drives | (lengths >= _STANDS)
     tracks = _taught(tracks, now_drives, lengths, candidates, columns, experience)
     return tracks, np.asarray(~tracks.confirmed & ~settled & is_ripe & proven)
 

@@ -48,7 +48,9 @@ def named(state: State, proven: Bools, *, returning: bool) -> State:
     """
     tracks, kept = state.tracks, np.ones(len(proven), np.bool_)
     identity = state.last_identity
-    for row in np.flatnonzero(proven).tolist():
+    rows = np.flatnonzero(proven)
+    # Of those that are proven in the same image the one that was seen first gets the lower number.
+    for row in rows[np.argsort(tracks.names.serial[rows])].tolist():
         hidden = former(tracks, row, tracks.confirmed) if returning else None
         if hidden is not None:
             tracks = resumed(tracks, hidden, row, state.experience)

@@ -43,6 +43,9 @@ class DetectionParameters:
     )  # fmt: skip
 
 
+REPORT, IGNORE = "report", "ignore"
+
+
 @dataclass(frozen=True, slots=True)
 class BirthParameters:
     """Evidence that a new vehicle needs."""
@@ -54,6 +57,12 @@ class BirthParameters:
     displacement: float = parameter(
         0.4, "Larger: unless its scores speak for it, a vehicle is reported after a longer way.",
         bounds=(0.0, 10.0), unit="of the width", tuned=(0.1, 1.0),
+    )  # fmt: skip
+    standing: str = parameter(
+        REPORT,
+        "What is done with vehicles that have not moved yet, of whose scores the detector is sure: "
+        "report them, or ignore them until they drive. Counts at lines do not change.",
+        choices=(REPORT, IGNORE),
     )  # fmt: skip
 
 

@@ -3,7 +3,8 @@
 
 """Ways of vehicles through the image: how far, and how straight at constant speed.
 
-A regression of the places of detections on their times, of which only the sums are kept.
+A regression of the places of detections on their times, of which only the sums are kept. A time of
+standing is one place: what has stood drives off as if it had just come.
 """
 
 from __future__ import annotations
@@ -14,8 +15,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.traffic.rows import Rows, columns
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Rows, columns
 
+_STANDS_WITHIN = 0.1
+"""Distance, of its width, within which a vehicle that stands is detected: boxes of networks shake
+by half of it."""
+_STANDS_FROM = 15
+"""Detections in a row within this distance, half a second of 30 Hz, by which a vehicle stands: one
+that is slower than a fifth of its width per second is taken for one that does."""
 _STRAIGHT = 0.8
 """Straightness of a drive, which a leap between two places that flicker cannot reach (0.75)."""
 
@@ -31,22 +38,33 @@ class Ways(Rows):
     first : (N, 2) array
         Centre of the first detection, px.
     sums : (N, 8) array
-        Sums over the detections: one, time, its square, x, y, time x, time y, x² + y².
+        Sums over the detections since it stood: one, time, its square, x, y, time x, time y, x² +
+        y².
+    matches : (N,) array
+        Number of its detections.
+    halt : (N, 2) array
+        Place around which the latest detections are, px.
+    stood : (N,) array
+        Number of these.
     """
 
     age: Array
     first: Array
     sums: Array
+    matches: Integers
+    halt: Array
+    stood: Integers
 
     @classmethod
     def unknown(cls, count: int) -> Ways:
         """Ways before the first detection."""
-        return cls(np.zeros(count), np.zeros((count, 2)), np.zeros((count, 8)))
+        number, place = np.zeros(count, np.intp), np.zeros((count, 2))
+        return cls(np.zeros(count), place, np.zeros((count, 8)), number, place, number)
 
     @property
-    def matches(self) -> Array:
-        """Number (N,) of detections."""
-        return self.sums[:, 0]
+    def stands(self) -> Bools:
+        """True (N,) where it has stood for a while, up to the latest detection."""
+        return np.asarray(self.stood >= _STANDS_FROM)
 
     def older(self, elapsed: float) -> Ways:
         """Go on by `elapsed` nominal periods."""
@@ -57,8 +75,15 @@ class Ways(Rows):
         x, y = ((edges[:, :2] + edges[:, 2:]) / 2).T
         time, once = self.age, np.ones(len(self))
         terms = columns(once, time, time * time, x, y, time * x, time * y, x * x + y * y)
-        first = np.where(self.sums[:, :1] == 0, columns(x, y), self.first)
-        return Ways(self.age, first, self.sums + terms)
+        here, is_first = columns(x, y), self.matches == 0
+        first = np.where(is_first[:, np.newaxis], here, self.first)
+        away = np.hypot(*(here - self.halt).T)
+        stays = (away < _STANDS_WITHIN * (edges[:, 2] - edges[:, 0])) & ~is_first
+        stood = np.where(stays, self.stood + 1, 1)
+        halt = np.where(stays[:, np.newaxis], self.halt, here)
+        # Detections of one place tell nothing about the drive that follows, however many they are.
+        sums = np.where((stood >= _STANDS_FROM)[:, np.newaxis], 0.0, self.sums) + terms
+        return Ways(self.age, first, sums, self.matches + 1, halt, stood)
 
     def lengths(self, edges: Array) -> Array:
         """Distance (N,) of boxes (N, 4) from the first detection, in their widths; 0 before it."""
