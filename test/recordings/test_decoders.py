@@ -14,6 +14,7 @@ from small_recordings import COUNT, frame_of, write_video
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.decoders import AvDecoder, OpenCVDecoder, open_decoder
+from vehicle_pf_tracker.recordings.importing import import_recording
 from vehicle_pf_tracker.recordings.recording_names import is_url
 from vehicle_pf_tracker.recordings.source import open_source
 from vehicle_pf_tracker.showing.video_file import video_writer
@@ -105,6 +106,17 @@ def test_a_file_that_is_cut_ends_there(tmp_path):
     read = len(list(source.frames()))
     assert 2 < read < COUNT
     assert any(f"{read} could be read" in notice for notice in source.notices)
+
+
+def test_truth_after_the_cut_of_a_video_is_refused(tmp_path):
+    path = write_video(tmp_path / "v.avi", [frame_of(n) for n in range(COUNT)])
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) * 2 // 3])
+    truth = tmp_path / "t.csv"
+    truth.write_text(f"frame,x,y,w,h\n{COUNT},8,24,16,12\n")
+    with pytest.raises(InputError, match=r"no frame of the truth has an image: .* could be read"):
+        import_recording(path, tmp_path / "bag", truth=truth)
+    assert not (tmp_path / "bag").exists()
 
 
 @pytest.mark.parametrize("content", [b"", b"no video", b"\x00\x00\x00\x18ftypmp42" + bytes(99)])

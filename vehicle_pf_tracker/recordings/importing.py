@@ -57,12 +57,7 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
     InputError
         For every fault of the source, and if `out` cannot be written.
     """
-    if format is not None and format not in FORMATS:
-        raise InputError(f"the format {format!r} is unknown; choose from {', '.join(FORMATS)}")
-    if not source.exists():
-        raise InputError(f"there is no file or folder {source} to import")
-    if is_recording(source):
-        raise InputError(f"{source} is a recording already")
+    _check_request(source, format)
     footage = open_footage(source, truth=truth, fps=fps, identity=identity)
     frames, truths, size = 0, 0, (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
@@ -77,8 +72,24 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
                 truths += 1
             if progress is not None:
                 progress(frames, footage.frame_count)
+        _check_truth(footage, truths)
     made = f"{frames} frames of {size[0]}x{size[1]} px at {footage.fps:g} frames/s"
     return f"{made}, {truths} with truth", footage.notices
+
+
+def _check_request(source: Path, format: str | None) -> None:  # noqa: A002 (as the option)
+    if format is not None and format not in FORMATS:
+        raise InputError(f"the format {format!r} is unknown; choose from {', '.join(FORMATS)}")
+    if not source.exists():
+        raise InputError(f"there is no file or folder {source} to import")
+    if is_recording(source):
+        raise InputError(f"{source} is a recording already")
+
+
+def _check_truth(footage: Footage, truths: int) -> None:
+    """Refuse truth of which no frame has an image, as of a video that ends before."""
+    if footage.truth() and not truths:
+        raise InputError(f"no frame of the truth has an image: {'; '.join(footage.notices)}")
 
 
 def _pictures(footage: Footage) -> Iterator[Picture]:
