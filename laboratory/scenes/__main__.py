@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 from laboratory.scenes import SCENES, TRAFFIC_SCENES, make_scene, make_traffic_scene
+from laboratory.scenes.conditions import CONDITIONS
 from laboratory.scenes.mot_folder import SIMULATED_DETECTORS, write_mot_folder
 from laboratory.scenes.traffic_close import BRIEF, CloseScene
 from laboratory.scenes.traffic_perspective import PerspectiveScene, road_file
@@ -24,6 +25,8 @@ def main() -> int:
     parser.add_argument("scene", metavar="SCENE", choices=scenes, help=", ".join(scenes))
     parser.add_argument("out", metavar="OUT", type=Path)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seen", choices=CONDITIONS, help="of traffic: weather or light")
+    parser.add_argument("--every", type=int, default=1, help="of traffic: keep each k-th frame")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
     args = parser.parse_args()
     if args.scene in SCENES:
@@ -31,7 +34,15 @@ def main() -> int:
     else:
         scene = make_traffic_scene(args.scene, seed=args.seed, settings=args.set)
         more = {"brief": BRIEF} if isinstance(scene, CloseScene) else {}
-        write_mot_folder(scene, args.out, args.seed, detectors={**SIMULATED_DETECTORS, **more})
+        make = CONDITIONS[args.seen] if args.seen else None
+        write_mot_folder(
+            scene,
+            args.out,
+            args.seed,
+            detectors={**SIMULATED_DETECTORS, **more},
+            condition=make((scene.width, scene.height), args.seed) if make else None,
+            every=max(args.every, 1),
+        )
         if isinstance(scene, PerspectiveScene):
             (args.out / "road.yaml").write_text(road_file(scene), encoding="utf-8")
     return 0

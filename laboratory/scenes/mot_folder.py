@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from laboratory.scenes.conditions import Condition
 from laboratory.scenes.traffic_scene import TrafficScene, VehicleTruth
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
@@ -177,6 +178,8 @@ def write_mot_folder(
     seed: int,
     progress: Callable[[int, int], None] = lambda number, total: None,
     detectors: Mapping[str, SimulatedDetector] = SIMULATED_DETECTORS,
+    condition: Condition | None = None,
+    every: int = 1,
 ) -> None:
     """Render `scene` with its truth and simulated detectors into `folder`.
 
@@ -194,6 +197,10 @@ def write_mot_folder(
         Called with the number of frames done and of all.
     detectors : mapping of str to SimulatedDetector
         Detectors by name.
+    condition : Condition or None
+        Weather or light in which the scene is seen.
+    every : int
+        Only each of so many frames is kept, at as much lower a rate.
 
     Raises
     ------
@@ -207,20 +214,28 @@ def write_mot_folder(
             for name in ("img1", "gt", "det"):
                 (partial / name).mkdir()
             truths = []
-            for number, (frame, truth) in enumerate(scene.frames(), start=1):
-                (partial / "img1" / f"{number:06d}.jpg").write_bytes(jpeg(frame))
+            for index, (frame, truth) in enumerate(scene.frames()):
+                progress(index + 1, scene.frame_count)
+                if index % every:
+                    continue
                 truths.append(truth)
-                progress(number, scene.frame_count)
-            (partial / "seqinfo.ini").write_text(_information(scene, folder.resolve().name))
+                picture = frame
+                if condition is not None:
+                    after = scene.truth(min(index + 1, scene.frame_count - 1))
+                    picture = condition(frame, index, truth, after)
+                (partial / "img1" / f"{len(truths):06d}.jpg").write_bytes(jpeg(picture))
+            name = folder.resolve().name
+            (partial / "seqinfo.ini").write_text(_information(scene, name, every))
             _write_tables(scene, truths, partial, seed, detectors)
     except OSError as error:
         raise InputError(f"cannot write {folder}: {error.strerror}") from error
 
 
-def _information(scene: TrafficScene, name: str) -> str:
+def _information(scene: TrafficScene, name: str, every: int) -> str:
+    count = -(-scene.frame_count // every)  # rounded up: the first frame is always kept
     return (
-        f"[Sequence]\nname={name}\nimDir=img1\nframeRate={scene.frame_rate:g}\n"
-        f"seqLength={scene.frame_count}\nimWidth={scene.width}\nimHeight={scene.height}\n"
+        f"[Sequence]\nname={name}\nimDir=img1\nframeRate={scene.frame_rate / every:g}\n"
+        f"seqLength={count}\nimWidth={scene.width}\nimHeight={scene.height}\n"
         "imExt=.jpg\n"
     )
 
