@@ -18,12 +18,10 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.detection.illumination import Pixels, Planes, Values, shadows_and_edges
 from vehicle_pf_tracker.detection.motion_thresholds import MotionThresholds
 
 Colours = npt.NDArray[np.uint8]
-Planes = npt.NDArray[np.uint8]
-"""Channels of an image, one below the other: sums over them are ten times as fast."""
-Pixels = npt.NDArray[np.bool_]
 
 _SAMPLES = 10
 """Colours that are remembered of each pixel."""
@@ -31,17 +29,10 @@ _BETWEEN = 2
 """Images from one of the first samples to the next: most pixels are free in two of ten."""
 _AGREEING = 2
 """Least samples of the pixel's colour for it to be background: one may be of a vehicle."""
+_LOOKED_AT = 4
+"""Samples that all pixels are compared with: nine in ten are background by two of these."""
 _RENEWED = 40
 """Images after which a sample is renewed, on average: light and leaves change within a second."""
-_SHADE = 20.0
-"""Largest distance in colour of a shadow from the darkened background."""
-_COMPARED = 3
-"""Every this many of the samples make the background that shadows are told by: a mean is enough."""
-_EDGE = 0.04
-"""Largest change per px of the brightness, of the background's, inside a shadow: noise is half of
-it. At .03 noisy shadows are vehicles; at .06 half the dark cars of a cloudy day are shadows."""
-_RIM = np.ones((5, 5), np.uint8)
-"""Surroundings of a change's pixel that have to have changed, too, for an edge there to count."""
 _SPARSE = (slice(None), slice(None, None, 4), slice(None, None, 4))
 """Pixels that the camera's gain is taken from."""
 _MOST_GAIN = 1.3
@@ -88,14 +79,31 @@ class Background:
             self._samples.append(_planes(image))
         self._age += 1
 
-    def compare(self, image: Colours) -> Pixels:
-        """Mark the pixels that have changed and are not just in a shadow."""
+    def compare(self, image: Colours) -> tuple[Pixels, Values]:
+        """Mark the pixels that have changed and are in no shadow; and measure edges there."""
         planes = self._with_former_gain(_planes(image))
-        agreeing = np.zeros(image.shape[:2], np.uint8)
-        for sample in self._samples:
-            agreeing += _sum(cv2.absdiff(planes, sample)) < self._thresholds.colour_threshold
-        changed = agreeing < _AGREEING
-        return np.asarray(changed & ~self._shadows(planes, changed))
+        changed = self._unlike(planes)
+        shadows, edges = shadows_and_edges(planes, self._samples, changed, self._thresholds.shadow)
+        return np.asarray(changed & ~shadows), edges
+
+    def _unlike(self, planes: Planes) -> Pixels:
+        """Mark the pixels whose colour too few samples have."""
+        limit = self._thresholds.colour_threshold
+        height, width = len(planes) // 3, planes.shape[1]
+        agreeing = np.zeros((height, width), np.uint8)
+        for sample in self._samples[:_LOOKED_AT]:
+            agreeing += _sum(cv2.absdiff(planes, sample)) < limit
+        # Most pixels are background by then; the further samples are compared at the others.
+        index = np.flatnonzero(agreeing < _AGREEING)
+        if not len(index):
+            return np.zeros((height, width), np.bool_)
+        colours = np.take(planes.reshape(3, -1), index, axis=1)
+        few = agreeing.ravel()[index]
+        for sample in self._samples[_LOOKED_AT:]:
+            apart = cv2.absdiff(colours, np.take(sample.reshape(3, -1), index, axis=1))
+            few += apart.sum(axis=0, dtype=np.uint16) < limit
+        agreeing.ravel()[index] = few
+        return np.asarray(agreeing < _AGREEING)
 
     def learn(self, image: Colours, changed: Pixels, held: Pixels) -> None:
         """Renew samples, but where something has changed lately or is held."""
@@ -132,35 +140,6 @@ class Background:
         few = self._noise[start : start + size] < 256 * _SAMPLES // _RENEWED
         return np.asarray(few.reshape(shape))
 
-    def _shadows(self, planes: Planes, changed: Pixels) -> Pixels:
-        """Find pixels that have the background's colour, but darker, and none of their own edges.
-
-        The inside of a shadow shows the road as it is, at one brightness; a dark vehicle has
-        windows, lights and edges. The rim of a change has an edge in either case.
-        """
-        index = np.flatnonzero(changed)
-        if not len(index):
-            return changed
-        colours = np.take(planes.reshape(3, -1), index, axis=1).astype(np.float32)
-        background = np.zeros_like(colours)
-        for sample in self._samples[::_COMPARED]:
-            cv2.accumulate(np.take(sample.reshape(3, -1), index, axis=1), background)
-        background /= len(self._samples[::_COMPARED])
-        power = np.maximum((background**2).sum(axis=0), 1)
-        share = (colours * background).sum(axis=0) / power
-        apart = (colours**2).sum(axis=0) - share**2 * power
-        shares, dark = np.ones(changed.shape, np.float32), np.zeros(changed.shape, np.bool_)
-        shares.flat[index] = share
-        dark.flat[index] = (self._thresholds.shadow <= share) & (share <= 1)
-        dark.flat[index] &= apart < (_SHADE * share) ** 2
-        smooth = cv2.blur(shares, (3, 3))
-        slope = cv2.magnitude(
-            cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=1 / 8),
-            cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=1 / 8),
-        )
-        inner = cv2.erode(changed.astype(np.uint8), _RIM) > 0
-        return np.asarray(dark & ~(inner & (slope > _EDGE)))
-
 
 def _planes(image: Colours) -> Planes:
     return np.ascontiguousarray(np.concatenate(cv2.split(image)), np.uint8)
@@ -168,7 +147,8 @@ def _planes(image: Colours) -> Planes:
 
 def _sum(planes: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """Add the channels; bytes end at 255, far above every threshold."""
-    first, second, third = np.split(planes, 3)
+    height = len(planes) // 3
+    first, second, third = planes[:height], planes[height : 2 * height], planes[2 * height :]
     return np.asarray(cv2.add(cv2.add(first, second), third), planes.dtype)
 
 

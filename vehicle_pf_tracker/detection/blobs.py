@@ -107,6 +107,25 @@ class Piece(NamedTuple):
         return min(self.left, self.top) > 1 and inside
 
 
+class Blobs(NamedTuple):
+    """Vehicles in one mask.
+
+    Attributes
+    ----------
+    edges : (N, 4) array
+        Edges of their boxes, px of the mask.
+    fullness : (N,) array
+        Share of each box that moves.
+    ambiguous : int
+        Number of blobs that hold several vehicles which are followed, or that their shape alone
+        has divided.
+    """
+
+    edges: Array
+    fullness: Array
+    ambiguous: int
+
+
 class UsualSize:
     """Size of vehicles by where they stand: on a plane it is an affine function of the image."""
 
@@ -158,7 +177,7 @@ class BlobReader:
         self._unlearnt, self._motion = 1.0, np.zeros(2)
         self._sizes = UsualSize()
 
-    def read(self, mask: Mask, predicted: Array, velocities: Array) -> tuple[Array, Array]:
+    def read(self, mask: Mask, predicted: Array, velocities: Array) -> Blobs:
         """Find vehicles.
 
         Parameters
@@ -169,13 +188,6 @@ class BlobReader:
             Edges of the vehicles that are followed, px of the mask.
         velocities : (V, 2) array
             Velocities of all that may be vehicles, px per frame.
-
-        Returns
-        -------
-        edges : (N, 4) array
-            px of the mask.
-        fullness : (N,) array
-            Share of each box that moves.
         """
         self._sizes.settle()
         self._expect_aspect(velocities)
@@ -183,9 +195,13 @@ class BlobReader:
         found: list[Piece] = []
         pieces: dict[int, list[Piece]] = {}
         room = areas(predicted)
+        ambiguous = 0
         for part, box in _components(mask):
             members = int(np.count_nonzero(intersections(box, predicted) > _MEMBER * room))
-            for piece in self._apart(part, *box[:2].astype(int).tolist()):
+            x, y = box[:2].astype(int).tolist()
+            parts = self._apart(part, _piece(part, x, y), x, y)
+            ambiguous += members > 1 or len(parts) > 1
+            for piece in parts:
                 self._learn_shape(piece, mask.shape, members)
                 inside = intersections(piece.edges, predicted)
                 if len(inside) and inside.max() > _PIECE * math.prod(piece.sides):
@@ -196,7 +212,7 @@ class BlobReader:
             found += self._grouped(own)
         boxes = np.array([one for one in found if self._is_vehicle(one, least, mask.shape)])
         boxes = boxes.reshape(-1, len(Piece._fields))
-        return boxes[:, :4], boxes[:, 4] / areas(boxes[:, :4])
+        return Blobs(boxes[:, :4], boxes[:, 4] / areas(boxes[:, :4]), ambiguous)
 
     def _expect_aspect(self, velocities: Array) -> None:
         """Find the usual aspect: until it is learnt, the motion tells which side is seen."""
@@ -213,9 +229,8 @@ class BlobReader:
             return False
         return self._sizes.deviation(piece) > _SPECK or not piece.is_free(shape)
 
-    def _apart(self, part: Mask, x: int, y: int) -> list[Piece]:
+    def _apart(self, part: Mask, whole: Piece, x: int, y: int) -> list[Piece]:
         """Divide a blob again and again, while its parts look more like vehicles than the whole."""
-        whole = _piece(part, x, y)
         if whole.area < _ASPECT_SIDE**2 or self._shape_cost(whole) <= self._thresholds.apart:
             return [whole]
         cuts = [_cut(part, axis) for axis in (0, 1) if part.shape[axis] > 1]
@@ -223,7 +238,11 @@ class BlobReader:
         best = min(range(len(cuts)), key=lambda axis: self._worst(pieces[axis]))
         if not self._are_several(pieces[best], whole):
             return [whole]
-        return [piece for half, u, v in cuts[best] for piece in self._apart(half, x + u, y + v)]
+        return [
+            smaller
+            for (half, u, v), piece in zip(cuts[best], pieces[best], strict=True)
+            for smaller in self._apart(half, piece, x + u, y + v)
+        ]
 
     def _grouped(self, pieces: list[Piece]) -> list[Piece]:
         """Join the pieces in one prediction, unless they look like vehicles of their own."""
@@ -275,10 +294,10 @@ def _piece(part: Mask, x: int, y: int) -> Piece:
     edges = []
     for axis in (0, 1):
         sums = cv2.reduce(part, axis, cv2.REDUCE_SUM, dtype=cv2.CV_32S).ravel()
-        kept = np.flatnonzero(sums >= _LEAST_PART * sums.max())
-        edges.append((int(kept[0]), int(kept[-1]) + 1))
+        kept = sums >= _LEAST_PART * sums.max()
+        edges.append((int(kept.argmax()), len(kept) - int(kept[::-1].argmax())))
     (left, right), (top, bottom) = edges
-    return Piece(x + left, y + top, x + right, y + bottom, int(sums.sum()))
+    return Piece(x + left, y + top, x + right, y + bottom, cv2.countNonZero(part))
 
 
 def _cut(part: Mask, axis: int) -> list[tuple[Mask, int, int]]:
@@ -286,16 +305,19 @@ def _cut(part: Mask, axis: int) -> list[tuple[Mask, int, int]]:
 
     Each part comes with its left and upper end in the blob, whose borders all have pixels.
     """
-    lines = part if axis == 0 else part.T
-    full, length = lines.any(axis=1), lines.shape[1]
-    low = np.where(full, lines.argmax(axis=1), length)
-    high = np.where(full, length - lines[:, ::-1].argmax(axis=1), 0)
+    lines = np.ascontiguousarray(part if axis == 0 else part.T).view(np.bool_)
+    count, length = lines.shape
+    low, high = lines.argmax(axis=1), length - lines[:, ::-1].argmax(axis=1)
+    # A row without pixels extends nothing.
+    empty = ~lines[np.arange(count), low]
+    low[empty], high[empty] = length, 0
     before = np.maximum.accumulate(high) - np.minimum.accumulate(low)
     behind = (np.maximum.accumulate(high[::-1]) - np.minimum.accumulate(low[::-1]))[::-1]
-    counts = np.arange(1, len(lines))
-    first = int((before[:-1] * counts + behind[1:] * (len(lines) - counts)).argmin()) + 1
+    counts = np.arange(1, count)
+    first = int((before[:-1] * counts + behind[1:] * (count - counts)).argmin()) + 1
     halves = []
-    for half, start in zip(np.split(part, [first], axis=axis), (0, first), strict=True):
+    for start, end in ((0, first), (first, count)):
+        half = part[start:end] if axis == 0 else part[:, start:end]
         u, v, width, height = cv2.boundingRect(np.ascontiguousarray(half))
         cropped = half[v : v + height, u : u + width]
         halves.append((cropped, u + start * axis, v + start * (1 - axis)))

@@ -37,12 +37,16 @@ class Detections:
     are_shapes : bool
         True where they are shapes of what has changed, and may be of pieces of vehicles, which
         drive as well.
+    ambiguous : int
+        Number of blobs of which it is not sure how many vehicles they hold: of several vehicles
+        that are followed, or divided by their shape alone. 0 of detectors that report vehicles.
     """
 
     boxes: Array
     scores: Array
     labels: tuple[str, ...]
     are_shapes: bool = False
+    ambiguous: int = 0
 
     @classmethod
     def make(
