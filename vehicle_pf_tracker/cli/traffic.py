@@ -166,6 +166,7 @@ def _document(
         "parameters": {**to_mapping(configuration.tracker), **to_mapping(configuration.session)},
         "detector": str(request.detections or kind),
         "images_with_detections": tracking.session.found.images,
+        "images_with_ambiguous_blobs": tracking.session.found.ambiguous,
         "summary": tracking.summary.to_json(tracking.counter),
     }
     document = describe(request.command, request.source, topic, notices, **facts)

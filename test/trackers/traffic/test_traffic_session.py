@@ -3,6 +3,8 @@
 
 """Elapsed time, restarts and detections of a stream of many vehicles."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from traffic_samples import vehicle
@@ -170,3 +172,11 @@ def test_detections_count_in_inner_regions_and_in_no_outer_one():
         session = TrafficSession(Steps(), regions=regions)
         session.feed(FRAME, 0, Detections.make(boxes))
         assert session.tracker.seen[-1].boxes.tolist() == boxes[kept].tolist()
+
+
+def test_images_with_ambiguous_blobs_are_counted():
+    session = TrafficSession(Steps(), frame_rate=25.0)
+    for index, ambiguous in enumerate((0, 2, 1)):
+        detections = replace(Detections.none(), ambiguous=ambiguous)
+        session.feed(FRAME, index * PERIOD_NS, detections)
+    assert (session.found.images, session.found.ambiguous) == (3, 2)

@@ -46,12 +46,15 @@ class DetectionTotals:
         Detections.
     outside : int
         Those of them that are outside the regions.
+    ambiguous : int
+        Images with blobs of which the detector is not sure how many vehicles they hold.
     """
 
     images: int = 0
     disturbed: int = 0
     boxes: int = 0
     outside: int = 0
+    ambiguous: int = 0
 
 
 class TrafficSession(StreamSession[TrafficTracker]):
@@ -174,6 +177,7 @@ class TrafficSession(StreamSession[TrafficTracker]):
         if detections is not None:
             self.found.images += 1
             self.found.boxes += len(detections)
+            self.found.ambiguous += detections.ambiguous > 0
             if self._regions:
                 inside = detections.within(self._regions)
                 self.found.outside += len(detections) - len(inside)

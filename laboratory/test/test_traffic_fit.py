@@ -1,0 +1,58 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Decisions of `traffic`, fitted with one camera left out."""
+
+import pytest
+
+from laboratory.traffic_fit import DECISIONS, Decision, best_for_others, read_clip, row
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED
+
+REACH = Decision("detection.bodies:REACH", (0.5, 0.7), 0.0)
+SCORES = {
+    0.08: {"day": 60.0, "dusk": 40.0, "close": 50.0},
+    0.5: {"day": 90.0, "dusk": 30.0, "close": 45.0},
+    0.7: {"day": 50.0, "dusk": 45.0, "close": 52.0},
+    0.0: {"day": 99.0, "dusk": 10.0, "close": 10.0},
+}
+
+
+@pytest.mark.parametrize("decision", DECISIONS, ids=lambda one: one.place)
+def test_every_decision_exists_and_is_as_before_after_a_trial(decision):
+    shipped = decision.get()
+    with decision.at(decision.values[0]):
+        assert decision.get() == decision.values[0] != shipped
+    assert decision.get() == shipped
+
+
+def test_a_field_of_a_frozen_table_is_tried_and_put_back():
+    decision = Decision("detection.motion_thresholds:SHIPPED.shadow", (0.9,))
+    with pytest.raises(ZeroDivisionError), decision.at(0.9):
+        assert SHIPPED.shadow == 0.9
+        raise ZeroDivisionError
+    assert SHIPPED.shadow == 0.6
+
+
+def test_a_camera_has_no_vote_on_the_value_that_it_is_judged_with():
+    values = [0.08, 0.5, 0.7]
+    # Without the day: 45, 37.5 and 48.5; without the dusk: 55, 67.5 and 51.
+    assert best_for_others(SCORES, values, "day") == 0.7
+    assert best_for_others(SCORES, values, "dusk") == 0.5
+    assert best_for_others(SCORES, values, "close") == 0.5
+
+
+def test_a_row_has_what_is_seen_what_is_left_out_and_what_it_is_worth():
+    assert row(REACH, SCORES) == [
+        "detection.bodies:REACH",
+        "0.08",
+        "0.7, 0.5, 0.5",
+        "50.0",
+        f"{(50 + 30 + 45) / 3:.1f}",
+        f"{50 - (99 + 10 + 10) / 3:+.1f}",
+    ]
+
+
+def test_a_clip_without_a_camera_is_refused(tmp_path):
+    with pytest.raises(InputError, match="CAMERA=FOLDER"):
+        read_clip(str(tmp_path), "motion")
