@@ -75,6 +75,7 @@ def test_lines_zones_and_regions_are_read(read):
         ("lines: {a: {from: [0, 0], to: [9, 9], directions: [in]}}", "two different names"),
         ("lines: {a: {from: [0, 0], to: [9, 9], directions: [in, in]}}", "two different names"),
         ("lines: {a: {from: [0, 0], to: [9, 9], directions: in}}", "two different names"),
+        ("lines: {a: {from: [0, 0], to: [9, 9], directions: [on, off]}}", "put them in quotes"),
         ("zones: {a: [[0, 0], [9, 9]]}", "three corners or more"),
         ("zones: {a: [[0, 0], [9, 9], [18, 18]]}", "has no area"),
         ("zones: {a: [[0, 0], [9, 9], [9, 0], [0, 12]]}", "crosses itself"),

@@ -11,7 +11,7 @@ import pytest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.results.traffic_results import track_files
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 

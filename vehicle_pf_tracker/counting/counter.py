@@ -1,10 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Counting of vehicles at lines and in zones.
-
-A vehicle is where the middle of its box's lower edge is: that point touches the road.
-"""
+"""Counting of vehicles at lines and in zones."""
 
 from __future__ import annotations
 
@@ -13,16 +10,12 @@ from collections import Counter as Tally
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from vehicle_pf_tracker.core.box import Box, Position
-from vehicle_pf_tracker.counting.plausibility import Crossing, Life, Plausibility
-from vehicle_pf_tracker.counting.watches import (
-    ENTRY,
-    EXIT,
-    LineWatch,
-    PassageSpeed,
-    Place,
-    ZoneWatch,
-)
+from vehicle_pf_tracker.counting.crossing import Crossing
+from vehicle_pf_tracker.counting.foot_point import FootPoint
+from vehicle_pf_tracker.counting.line_watch import LineEdge, LineWatch
+from vehicle_pf_tracker.counting.plausibility import Life, Plausibility
+from vehicle_pf_tracker.counting.recent_path import RecentPath
+from vehicle_pf_tracker.counting.zone_watch import ENTRY, EXIT, ZoneEdge, ZoneWatch
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -35,27 +28,55 @@ CONFIRMED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
 """Modes of vehicles that count."""
 
 
+_Passages = list[tuple[str, str, FootPoint]]
+"""Place, direction, and where and when, of what a vehicle has passed."""
+
+
 @dataclass(slots=True)
 class _Vehicle:
     """Memory of one vehicle."""
 
     lines: list[LineWatch]
     zones: list[ZoneWatch]
-    speed: PassageSpeed
+    path: RecentPath
     last_ns: int
     life: Life
     is_confirmed: bool = False
     waiting: list[Crossing] = field(default_factory=list)
     counted: set[tuple[str, str]] = field(default_factory=set)
 
-    def join(self, other: _Vehicle) -> None:
-        """Go on as the track that this vehicle turned out to be after it was hidden."""
-        for own, line in zip(self.lines, other.lines, strict=True):
-            line.join(own)
-        self.lines, self.zones, self.speed = other.lines, other.zones, other.speed
+    def follow(self, foot: FootPoint) -> _Passages:
+        """Return what it has passed with the step to a point."""
+        self.path.add(foot)
+        lines = [
+            (line.line.name, *at) for line in self.lines for at in line.follow(foot, self.path)
+        ]
+        zones = [
+            (zone.zone.name, *at) for zone in self.zones for at in zone.follow(foot, self.path)
+        ]
+        return lines + zones
+
+    def join(self, other: _Vehicle) -> _Passages:
+        """Go on as the track that it turned out to be after it was hidden.
+
+        Returns what it has passed in between.
+        """
+        lines = [
+            (line.line.name, *at)
+            for own, line in zip(self.lines, other.lines, strict=True)
+            for at in line.resume(own)
+        ]
+        zones = [
+            (zone.zone.name, *at)
+            for own, zone in zip(self.zones, other.zones, strict=True)
+            for at in zone.resume(own)
+        ]
+        self.lines, self.zones = other.lines, other.zones
+        self.path = self.life.path = other.path
         self.waiting = [
             one for one in other.waiting if (one.place, one.direction) not in self.counted
         ]
+        return lines + zones
 
 
 class Counter:
@@ -83,6 +104,8 @@ class Counter:
 
     def __init__(self, plan: CountingPlan, plane: RoadPlane | None = None) -> None:
         self.plan = plan
+        self._lines = [LineEdge(line) for line in plan.lines]
+        self._zones = [ZoneEdge(zone) for zone in plan.zones]
         self.totals: Tally[tuple[str, str, str]] = Tally()
         self.plane = plane
         self.vehicles: dict[int, _Vehicle] = {}  # by their tracks
@@ -111,7 +134,7 @@ class Counter:
     def speed_kmh(self, serial: int) -> float | None:
         """Return the speed of the vehicle with this track; None where it is not known."""
         vehicle = self.vehicles.get(serial)
-        return None if vehicle is None else vehicle.speed.kmh()
+        return None if vehicle is None else vehicle.path.kmh()
 
     def forget_vehicles(self) -> None:
         """Discard where all vehicles were, as when a recording begins again; totals stay."""
@@ -157,22 +180,18 @@ class Counter:
             return []
         vehicle = self.vehicles.get(estimate.serial)
         if vehicle is None:
-            vehicle = self.vehicles[estimate.serial] = self._made(stamp_ns)
+            vehicle = self.vehicles[estimate.serial] = self._made(FootPoint.of(estimate, stamp_ns))
         elif vehicle.last_ns != self._before_ns:  # back after it was lost
-            vehicle.speed.clear()
+            vehicle.path.clear()
             mode = TrackMode.LOST
-        if estimate.joined in self.vehicles:
-            vehicle.join(self.vehicles.pop(estimate.joined))
+        joined = self.vehicles.pop(estimate.joined, None)
+        passages = [] if joined is None else vehicle.join(joined)
+        foot = replace(FootPoint.of(estimate, stamp_ns), mode=mode)
+        passages += vehicle.follow(foot)
         vehicle.last_ns = stamp_ns
-        if mode is not TrackMode.OCCLUDED:
-            vehicle.life.seen_ns = stamp_ns
-        vehicle.life.side = max(estimate.box.width, estimate.box.height)
-        vehicle.life.images += 1
-        vehicle.life.detected += not math.isnan(estimate.score)
-        place = Place(reference_point(estimate.box), stamp_ns, estimate.box.height, mode)
-        vehicle.speed.add(place.point, stamp_ns)
+        vehicle.life.add(foot, is_detected=not math.isnan(estimate.score))
         vehicle.is_confirmed = vehicle.is_confirmed or estimate.mode in CONFIRMED
-        vehicle.waiting += self._passed(vehicle, place, estimate)
+        vehicle.waiting += _crossings(passages, vehicle.path, estimate)
         if not vehicle.is_confirmed:
             return []
         for zone in vehicle.zones:
@@ -186,31 +205,11 @@ class Counter:
         one = replace(one, identity=estimate.identity, label=estimate.label or one.label)
         return replace(one, doubt=self._plausibility.doubt(one, life))
 
-    def _passed(self, vehicle: _Vehicle, place: Place, estimate: TrackEstimate) -> list[Crossing]:
-        """Return what the vehicle passed with the step to `place`."""
-        found = [
-            (line.line.name, *at_line)
-            for line in vehicle.lines
-            if (at_line := line.follow(place)) is not None
-        ] + [
-            (zone.zone.name, ENTRY if zone.is_inside else EXIT, at_edge)
-            for zone in vehicle.zones
-            if (at_edge := zone.follow(place)) is not None
-        ]
-        if not found:
-            return []
-        speeds = vehicle.speed.pixels(), vehicle.speed.kmh()
-        identity, label = estimate.identity, estimate.label
-        return [
-            Crossing(at.stamp_ns, name, direction, identity, label, at.mode, *speeds, at.point)
-            for name, direction, at in found
-        ]
-
-    def _made(self, stamp_ns: int) -> _Vehicle:
-        lines = [LineWatch(line) for line in self.plan.lines]
-        zones = [ZoneWatch(zone) for zone in self.plan.zones]
-        life = Life(stamp_ns, stamp_ns)
-        return _Vehicle(lines, zones, PassageSpeed(self.plane), stamp_ns, life)
+    def _made(self, first: FootPoint) -> _Vehicle:
+        lines = [LineWatch(edge) for edge in self._lines]
+        zones = [ZoneWatch(edge) for edge in self._zones]
+        path = RecentPath(self.plane)
+        return _Vehicle(lines, zones, path, first.stamp_ns, Life(first, first, path))
 
     def _drop_old(self, stamp_ns: int) -> None:
         old = [
@@ -222,6 +221,13 @@ class Counter:
             del self.vehicles[identity]
 
 
-def reference_point(box: Box) -> Position:
-    """Return the middle of a box's lower edge, px."""
-    return box.x + box.width / 2, box.y + box.height
+def _crossings(passages: _Passages, path: RecentPath, estimate: TrackEstimate) -> list[Crossing]:
+    """Return the crossings of a vehicle that has this path up to now."""
+    if not passages:
+        return []
+    speeds = path.pixels(), path.kmh()
+    identity, label = estimate.identity, estimate.label
+    return [
+        Crossing(at.stamp_ns, place, direction, identity, label, at.mode, *speeds, at.point)
+        for place, direction, at in passages
+    ]

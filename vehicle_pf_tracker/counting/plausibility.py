@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Crossings, and which of them cannot be those of one more vehicle."""
+"""Doubts about crossings that cannot be those of one more vehicle."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from collections import defaultdict, deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.core.box import Position
+from vehicle_pf_tracker.counting.crossing import Crossing
+from vehicle_pf_tracker.counting.foot_point import FootPoint
+from vehicle_pf_tracker.counting.recent_path import RecentPath
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
 FASTER, AGAINST, TWICE = "faster", "against", "twice"
@@ -26,72 +28,51 @@ _REMEMBERED = 200
 """Crossings of a place that are remembered: some minutes of a busy road."""
 
 
-@dataclass(frozen=True, slots=True)
-class Crossing:
-    """Passage of one vehicle over a line, or into or out of a zone.
-
-    Attributes
-    ----------
-    stamp_ns : int
-        Time at which it crossed, between the images before and after it, ns.
-    place : str
-        Name of the line or zone.
-    direction : str
-        Name of the line's direction; ``entry`` or ``exit`` of a zone.
-    identity : int
-        Number of the vehicle.
-    label : str
-        Class of the vehicle; "" where it is unknown.
-    mode : TrackMode
-        Claim about it when it crossed: where that is `OCCLUDED`, its path was predicted; where it
-        is `LOST`, it was seen before and after, and its path is taken to be straight.
-    speed_px : float or None
-        Speed of the lower edge's middle over the last half second, px/s; None where it was not
-        followed for long enough.
-    speed_kmh : float or None
-        The same on the road, km/h; None without a road, or outside its calibrated area.
-    point : (float, float)
-        Where it crossed, px.
-    doubt : str
-        Why it is left out of the totals: `FASTER`, `AGAINST` or `TWICE`; "" where it counts.
-    """
-
-    stamp_ns: int
-    place: str
-    direction: str
-    identity: int
-    label: str
-    mode: TrackMode
-    speed_px: float | None
-    speed_kmh: float | None
-    point: Position
-    doubt: str = ""
-
-
 @dataclass(slots=True)
 class Life:
-    """How long a vehicle was seen, and how well.
+    """Where and when a vehicle was seen, and how well.
 
     Attributes
     ----------
-    first_ns, seen_ns : int
-        First and last time that it was seen, ns.
-    side : float
-        Its longer side, px.
+    first, last : FootPoint
+        First and last point at which it was seen.
+    path : RecentPath
+        Its latest path.
     images, detected : int
         Number of images of it, and of its detections.
     """
 
-    first_ns: int
-    seen_ns: int
-    side: float = 0.0
+    first: FootPoint
+    last: FootPoint
+    path: RecentPath
     images: int = 0
     detected: int = 0
+
+    @property
+    def side(self) -> float:
+        """Its longer side, px."""
+        return max(self.last.size)
+
+    def add(self, foot: FootPoint, *, is_detected: bool) -> None:
+        """Take the next image of it."""
+        if foot.is_seen:
+            self.last = foot
+        self.images += 1
+        self.detected += is_detected
 
     @property
     def is_vague(self) -> bool:
         """True where it was predicted or held by its pixels for most of its way."""
         return self.detected < self.images / 2
+
+    def precedes(self, other: Life) -> bool:
+        """Tell whether the other began where this one must still have been, and it was not seen."""
+        gap_ns = other.first.stamp_ns - self.last.stamp_ns
+        if gap_ns <= 0:
+            return False
+        driven = (self.path.pixels() or 0.0) * gap_ns / 1e9
+        apart = math.dist(self.last.point, other.first.point)
+        return apart + driven < max(self.side, other.side)
 
 
 class Plausibility:
@@ -126,12 +107,15 @@ def _is_faster(crossing: Crossing, others: Iterable[Crossing]) -> bool:
 
 
 def _is_twin(crossing: Crossing, life: Life, other: Crossing, before: Life) -> bool:
-    """Test for the same vehicle: one was predicted, and born again when it was last seen."""
+    """Test for the same vehicle: it was lost, or predicted, and born again."""
     if crossing.direction != other.direction or crossing.identity == other.identity:
         return False
+    if before.precedes(life):
+        return True
     if TrackMode.OCCLUDED not in (crossing.mode, other.mode):
         return False
-    if life.first_ns <= before.seen_ns and before.first_ns <= life.seen_ns:
+    are_apart = life.first.stamp_ns > before.last.stamp_ns
+    if not (are_apart or before.first.stamp_ns > life.last.stamp_ns):
         return False  # both were seen at the same time
     speed = max(crossing.speed_px or 0.0, other.speed_px or 0.0)
     ahead = speed * abs(crossing.stamp_ns - other.stamp_ns) / 1e9

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
-from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.following.detectors import PacedDetector, Run, call, detector_maker
 from vehicle_pf_tracker.following.fetching import Progress, silent

@@ -13,7 +13,7 @@ from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.counting.counter import Counter
-from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.parameters import MODEL, MOTION
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles
 from vehicle_pf_tracker.following.detectors import DetectionFile

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame
-from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.parameters import MODEL
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter

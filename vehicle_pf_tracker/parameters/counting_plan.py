@@ -204,7 +204,9 @@ def _directions(value: Any, what: str) -> tuple[str, str]:
     names = value if isinstance(value, list) else []
     good = [name for name in names if isinstance(name, str) and name.strip()]
     if len(names) != 2 or len(good) != 2 or good[0] == good[1]:
-        raise InputError(f"{what} needs two different names as directions, as [in, out]")
+        # YAML reads the bare words on, off, yes and no as truth values.
+        hint = "; put them in quotes" if any(isinstance(name, bool) for name in names) else ""
+        raise InputError(f"{what} needs two different names as directions, as [in, out]{hint}")
     return good[0], good[1]
 
 

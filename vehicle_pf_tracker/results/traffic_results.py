@@ -18,7 +18,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.counting.counter import CONFIRMED
-from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.results.output_files import replacing
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
-from vehicle_pf_tracker.counting.watches import ENTRY, EXIT
+from vehicle_pf_tracker.counting.zone_watch import ENTRY, EXIT
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate, TrackMode
 
 

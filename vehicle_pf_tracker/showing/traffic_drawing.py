@@ -14,8 +14,9 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter, reference_point
-from vehicle_pf_tracker.counting.watches import ENTRY, EXIT
+from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
+from vehicle_pf_tracker.counting.foot_point import foot_of
+from vehicle_pf_tracker.counting.zone_watch import ENTRY, EXIT
 from vehicle_pf_tracker.showing import drawing
 from vehicle_pf_tracker.showing.drawing import Labels
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -48,7 +49,7 @@ class Trails:
         for one in estimates:
             if one.mode in CONFIRMED:
                 self.of[one.serial] = before.get(one.serial) or deque(maxlen=_TRAIL)
-                self.of[one.serial].append(reference_point(one.box))
+                self.of[one.serial].append(foot_of(one.box))
 
 
 def draw_vehicle(

@@ -22,7 +22,7 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
-from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.ros import messages
 from vehicle_pf_tracker.showing.drawing import NEUTRAL

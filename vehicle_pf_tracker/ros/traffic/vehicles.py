@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from vehicle_pf_tracker.core.box import Box, Position, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.image.compressed_image import CodedImage
