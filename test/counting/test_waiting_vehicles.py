@@ -15,13 +15,13 @@ from traffic_samples import vehicle
 
 from vehicle_pf_tracker import TrafficTracker
 from vehicle_pf_tracker.counting.counter import Counter
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.parameters.counting_plan import (
     CountingLine,
     CountingPlan,
     CountingZone,
     read_counting_plan,
 )
-from vehicle_pf_tracker.trackers.traffic.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -105,20 +105,20 @@ def line(angle=math.pi / 2, at=0.0, name="line"):
     return CountingLine(name, begin, end, ("back", "on"))
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(drive=drives(), angle=st.floats(0.35, math.pi - 0.35))
 def test_a_stop_anywhere_is_one_crossing_in_the_way_it_drove(drive, angle):
     assert crossings(CountingPlan(lines=(line(angle),)), drive) == ["on"]
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(drive=drives())
 def test_lines_close_together_count_once_each(drive):
     plan = CountingPlan(lines=(line(at=-3, name="a"), line(at=0, name="b"), line(at=3, name="c")))
     assert crossings(plan, drive) == ["on", "on", "on"]
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(drive=drives(slowest=5.0))
 def test_a_stop_at_either_edge_of_a_zone_enters_and_leaves_once(drive):
     # Rarer images than five a second see too little of a drive away to be sure of it within 8 m.
@@ -128,7 +128,7 @@ def test_a_stop_at_either_edge_of_a_zone_enters_and_leaves_once(drive):
         assert crossings(plan, drive) == ["entry", "exit"]
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(rate=st.floats(2.0, 60.0), speed=st.floats(100.0, 600.0), left=st.floats(-20.0, 20.0))
 def test_a_zone_smaller_than_a_vehicle_is_passed_also_between_two_images(rate, speed, left):
     zone = CountingZone(

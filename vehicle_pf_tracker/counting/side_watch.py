@@ -103,9 +103,9 @@ class SideWatch:
         self._furthest = 0.0  # distance of the furthest point that was seen on the present side
         self._over: FootPoint | None = None  # where the path last went over the edge
         self._changed_ns = 0  # when it came to the present side
-        self._has_passed = False
+        self._passages = 0  # without those that were predicted, and not made
         self._is_forecast = False  # the present side is predicted, and not yet confirmed
-        self._ahead = 0  # side of a passage that was counted too early, and is still to come
+        self._ahead = 0  # side of a passage that was returned while it was predicted
 
     def follow(self, foot: FootPoint, path: RecentPath) -> Passage | None:
         """Take the next point of a path that has it, and return a passage that it completes.
@@ -129,7 +129,7 @@ class SideWatch:
         if foot.is_seen:
             self._seen = foot
             if is_clear and self._is_forecast:  # confirmed: where it was predicted is no drive
-                self._is_forecast, self._furthest = False, distance
+                self._is_forecast, self._ahead, self._furthest = False, 0, distance
         if foot.is_seen or self._is_forecast:
             self._furthest = self.side * max(self.side * distance, self.side * self._furthest)
 
@@ -144,7 +144,7 @@ class SideWatch:
         """
         if not before.side:
             return None
-        self._has_passed = self._has_passed or before._has_passed
+        self._passages += before._passages
         self._ahead = self._ahead or before._ahead
         if not self.side:
             self.side = self._began = before.side
@@ -156,7 +156,8 @@ class SideWatch:
         # From the first detection of this track on, that of before followed something else.
         began_ns = self._first.stamp_ns if self._first else 0
         if before._is_forecast or before._changed_ns > began_ns:
-            self._ahead = before.side
+            self._ahead = before.side if before._passages else 0
+            self._passages -= self._ahead == before.side
             return None
         return self._between(before, side)
 
@@ -168,7 +169,7 @@ class SideWatch:
         # One of both may lie on the edge, within the noise, on the side that it did not come to.
         at = last.towards(first, begin / (begin - end)) if begin * end < 0 else first
         seen = min(abs(begin), abs(before._furthest))  # the rest of the way was predicted
-        is_back = before._has_passed and seen + abs(end) < first.extent(self.edge.normal(at.point))
+        is_back = before._passages and seen + abs(end) < first.extent(self.edge.normal(at.point))
         if is_back or not self.edge.has(at.point):
             return None
         return self._passed(side, replace(at, mode=TrackMode.LOST))
@@ -211,7 +212,7 @@ class SideWatch:
             return True
         driven, normal = side * (distance - self._furthest), self.edge.normal(foot.point)
         scatter = path.scatter(normal)
-        if not self._has_passed:
+        if not self._passages:
             return driven >= _AT_ONCE * scatter
         needed = max(_RANGE * scatter, min(foot.extent(normal), self.edge.room))
         if not foot.is_seen:
@@ -227,13 +228,17 @@ class SideWatch:
             self._began = side
             return None
         if self._is_forecast and foot.is_seen:
-            self._is_forecast, self._ahead = False, before
+            self._is_forecast = False
+            self._passages -= self._ahead == before
             return None
         self._is_forecast = not foot.is_seen
-        return None if over is None else self._passed(side, over)
+        passage = None if over is None else self._passed(side, over)
+        if passage is not None and self._is_forecast:
+            self._ahead = side
+        return passage
 
     def _passed(self, side: int, at: FootPoint) -> Passage | None:
-        self._has_passed = True
+        self._passages += 1
         if self._ahead == side:  # it was returned when it was predicted
             self._ahead = 0
             return None
