@@ -79,7 +79,7 @@ class RecentPath:
         if self._plane is None or len(latest) < _FEWEST:
             return None
         seconds, points = _arrays(latest)
-        if any(self._plane.objection(self._plane.ideal(foot.point)) for foot in latest):
+        if any(self._plane.objection(self._plane.ideal(point)) for point in points):
             return None
         speed = _speed(seconds, self._plane.to_road(points))
         return None if speed is None else speed * KMH
