@@ -17,7 +17,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image
 
-from vehicle_pf_tracker.ros.process import keep_image_memory
+from vehicle_pf_tracker.ros.image_memory import keep_image_memory
 
 
 class FloorNode(Node):  # type: ignore[misc]

@@ -61,9 +61,7 @@ def ros_domain():
 @pytest.fixture(scope="session", autouse=True)
 def compiled_kernels():
     """Compile the kernels once: a node with a cold cache answers WAITING for a minute."""
-    code = (
-        "from vehicle_pf_tracker.image.kernels.interface import load_kernels; load_kernels('auto')"
-    )
+    code = "from vehicle_pf_tracker.image.kernels.interface import compile_all; compile_all('auto')"
     subprocess.run([sys.executable, "-c", code], check=False, timeout=600)
 
 

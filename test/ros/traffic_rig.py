@@ -13,7 +13,7 @@ from tracker_rig import QUEUE, header
 
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node import node_stream
-from vehicle_pf_tracker.ros.node.node_stream import Notices
+from vehicle_pf_tracker.ros.node.notices import Notices
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
 
 WIDTH, HEIGHT = 160, 120

@@ -17,12 +17,12 @@ Request = VerbRequest
 
 def run(request: Request) -> int:
     """Compile what is not compiled yet, and say how long it took; 1 if it cannot be kept."""
-    from vehicle_pf_tracker.image.kernels.interface import load_kernels
+    from vehicle_pf_tracker.image.kernels.interface import compile_all
 
     print("compiling kernels, for up to a minute; later starts load them", flush=True)
     began = time.monotonic()
     try:
-        kernels = load_kernels("numba")
+        kernels = compile_all("numba")
     except InputError as error:
         raise InputError(
             "there is nothing to compile without Numba: install the extra [numba], pip install "

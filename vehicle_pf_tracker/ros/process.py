@@ -1,16 +1,10 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""A process of nodes: arguments, signals, memory, exit status.
-
-Memory for images is kept, instead of returned to the system after every one. By default glibc maps
-fresh pages for each block as large as an image, and the kernel has to clear them. Keeping them
-takes a third of the CPU time off a node that receives 640x480 at 30 Hz.
-"""
+"""A process of nodes: arguments, signals, exit status."""
 
 from __future__ import annotations
 
-import ctypes
 import itertools
 import os
 import signal
@@ -32,10 +26,20 @@ from rclpy.utilities import remove_ros_args
 from vehicle_pf_tracker.core.addresses import shown
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
+from vehicle_pf_tracker.ros.image_memory import keep_image_memory
 from vehicle_pf_tracker.ros.node.kernel_loading import is_loading
 from vehicle_pf_tracker.ros.node_executor import node_executor
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
 from vehicle_pf_tracker.ros.transport import image_transport
+
+_OVERLAY_BYTES = 1280 * 720 * 3
+"""Size of the largest overlay of which the segment holds four; a larger one still fits once.
+Whether the images themselves come through is decided by the camera's segment."""
+
+_MOST_FAILURES = 20
+_FAILING = 10.0
+"""This many failed callbacks within this many seconds mean a broken node, not malformed requests:
+it ends, so that ``respawn`` in a launch file can restart it."""
 
 
 class _Interrupts:
@@ -183,50 +187,6 @@ def _first_sentence(error: Exception) -> str:
         return f"unknown ROS arguments: {error}"
     text = str(error).replace("failed to initialize rcl: ", "")
     return text.partition(", at /")[0]
-
-
-_LARGEST_BLOCK = 32 * 2**20
-"""Bytes; the highest threshold that glibc takes, more than a 4K image."""
-
-_OPTIONS = {
-    "MALLOC_TRIM_THRESHOLD_": (-1, 2**30),
-    "MALLOC_TOP_PAD_": (-2, 2 * _LARGEST_BLOCK),
-    "MALLOC_MMAP_THRESHOLD_": (-3, _LARGEST_BLOCK),
-}
-"""Number and value of each of glibc's options, by its environment variable."""
-
-
-def keep_image_memory() -> bool:
-    """Make glibc reuse freed blocks of the size of images.
-
-    Returns
-    -------
-    bool
-        True if it was done: not where the C library has no such options, or where the environment
-        already says what to do.
-    """
-    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
-    if mallopt is None or any(name in os.environ for name in _OPTIONS):
-        return False
-    taken = [mallopt(number, value) for number, value in _OPTIONS.values()]
-    return all(taken)
-
-
-def return_memory() -> None:
-    """Return what is free to the system, once, where the C library can."""
-    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
-    if trim is not None:
-        trim(0)
-
-
-_OVERLAY_BYTES = 1280 * 720 * 3
-"""Size of the largest overlay of which the segment holds four; a larger one still fits once.
-Whether the images themselves come through is decided by the camera's segment."""
-
-_MOST_FAILURES = 20
-_FAILING = 10.0
-"""This many failed callbacks within this many seconds mean a broken node, not malformed requests:
-it ends, so that ``respawn`` in a launch file can restart it."""
 
 
 def run_nodes(

@@ -14,7 +14,7 @@ import pytest
 
 COUNT_FAULTS = """
 import resource, numpy as np
-from vehicle_pf_tracker.ros.process import keep_image_memory
+from vehicle_pf_tracker.ros.image_memory import keep_image_memory
 done = keep_image_memory()
 def faults():
     return resource.getrusage(resource.RUSAGE_SELF).ru_minflt

@@ -181,15 +181,15 @@ def numbered(number) -> dict[str, object]:
 def test_gaps_in_the_numbers_of_one_publisher_are_dropped_images(numbers, publishers, dropped):
     health = Health(Clock())
     for number in numbers:
-        health.arrived(numbered(number), 0.0, publishers)
+        health.arrived(numbered(number), 0.0, lambda: publishers)
     assert (health.images, health.dropped) == (len(numbers), dropped)
 
 
 def test_images_missed_while_not_listening_are_not_dropped():
     health = Health(Clock())
-    health.arrived(numbered(1), 0.0, 1)
+    health.arrived(numbered(1), 0.0, lambda: 1)
     health.listen()
-    health.arrived(numbered(50), 0.0, 1)
+    health.arrived(numbered(50), 0.0, lambda: 1)
     assert health.dropped == 0
 
 
@@ -197,7 +197,7 @@ def test_rates_are_those_since_the_last_report():
     clock = Clock()
     health = Health(clock)
     for number in range(1, 11):
-        health.arrived(numbered(number), 0.25, 1)
+        health.arrived(numbered(number), 0.25, lambda: 1)
     clock.now += 2.0
     health.answered("TRACKING", 1.25)
     clock.now += 2.0

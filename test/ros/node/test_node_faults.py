@@ -39,7 +39,7 @@ def test_a_publisher_that_dies_and_returns_is_heard_again(bench, other_bench):
     bench.node.destroy_publisher(rig.camera)
     bench.wait_for(lambda: rig.node.count_publishers("/image") == 0)
     camera = other_bench.publisher(Image, "image", QoSProfile(depth=10))
-    bench.wait_for(lambda: rig.node.diagnostics.source.publisher_count == 1)
+    bench.wait_for(lambda: rig.node.diagnostics.source.count_publishers() == 1)
     for index in range(4, 12):
         before = len(rig.modes)
         camera.publish(image_message(header(index), frames[index]))

@@ -7,7 +7,7 @@ import pytest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.node.node_stream import Notices
+from vehicle_pf_tracker.ros.node.notices import Notices
 from vehicle_pf_tracker.ros.traffic.vehicles import NONE, Selection
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 

@@ -79,7 +79,7 @@ CHOICES = ("auto", "opencv", "numba")
 
 
 def load_kernels(choice: str) -> Kernels:
-    """Make kernels that are ready for use, with everything compiled or loaded.
+    """Make kernels that are ready for use; numba's are compiled when they are first called.
 
     Parameters
     ----------
@@ -107,16 +107,22 @@ def load_kernels(choice: str) -> Kernels:
         return Kernels([why])
 
 
-def takes_long(choice: str) -> bool:
-    """Tell whether `load_kernels` would first import numba, and perhaps compile for a while."""
-    if choice == "opencv" or load_numba.cache_info().currsize:
-        return False
-    return importlib.util.find_spec("numba") is not None
+def compile_all(choice: str) -> Kernels:
+    """Make kernels as `load_kernels` does, with every one of them compiled."""
+    kernels = load_kernels(choice)
+    if kernels.name == "numba":
+        importlib.import_module(f"{__package__}.numba_kernels").load_all()
+    return kernels
+
+
+def may_compile(choice: str) -> bool:
+    """Tell whether the first use of these kernels imports numba, and perhaps compiles."""
+    return choice != "opencv" and importlib.util.find_spec("numba") is not None
 
 
 @functools.cache
 def load_numba() -> Kernels:
-    """Make numba's kernels, with everything compiled or loaded; once in a process."""
+    """Make numba's kernels; once in a process."""
     # Imported late: it takes half a second, and only here is it known to be needed.
     kernels: Kernels = importlib.import_module(f"{__package__}.numba_kernels").NumbaKernels()
     return kernels

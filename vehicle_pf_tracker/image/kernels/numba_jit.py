@@ -12,7 +12,7 @@ shape (P, H, W): a window's counts are those of all planes together.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias, TypeVar
 
 import numba
@@ -64,9 +64,9 @@ def inlined(function: FunctionT) -> FunctionT:
     return inner
 
 
-def notices() -> list[str]:
-    """Return the problems met while compiling, one sentence each."""
-    return list(_notices)
+def notices() -> Sequence[str]:
+    """Return the problems met while compiling, one sentence each; later ones join them."""
+    return _notices
 
 
 Cells: TypeAlias = npt.NDArray[np.uint16]

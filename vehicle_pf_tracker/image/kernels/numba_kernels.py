@@ -1,45 +1,62 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The kernels in numba, and windows and references in the form that they take."""
+"""The kernels in numba, and windows and references in the form that they take.
+
+A module of kernels is imported when one of them is first called: that compiles it, or loads what
+was compiled before, and a variant needs few of them.
+"""
 
 from __future__ import annotations
 
 import functools
-from typing import NamedTuple
+import importlib
+from types import ModuleType
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
+from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.gradients import GradientDirections, gradients_of
-from vehicle_pf_tracker.image.kernels import numba_cells, numba_jit
+from vehicle_pf_tracker.image.kernels import numba_jit
 from vehicle_pf_tracker.image.kernels.interface import Kernels
-from vehicle_pf_tracker.image.kernels.numba_edges import TANGENTS, count_edges
 from vehicle_pf_tracker.image.kernels.numba_jit import Cells, Table, marginal_cells, pair_cells
-from vehicle_pf_tracker.image.kernels.numba_mean_shift import (
-    compare_kernels,
-    ellipse,
-    shift_kernels,
-)
-from vehicle_pf_tracker.image.kernels.numba_windows import (
-    Pixels,
-    Reals,
-    compare_counts,
-    compare_joint,
-    compare_windows,
-    joint_cells,
-    place_windows,
-)
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
-from vehicle_pf_tracker.image.window import Coefficients, Positions, Window, WindowFeature, to_grey
+from vehicle_pf_tracker.image.window import (
+    Coefficients,
+    Grey,
+    Positions,
+    Window,
+    WindowFeature,
+    to_grey,
+)
+
+if TYPE_CHECKING:
+    from vehicle_pf_tracker.image.kernels.numba_windows import Pixels, Reals
+
+_MODULES = ("numba_windows", "numba_edges", "numba_mean_shift", "numba_cells")
+"""Modules whose kernels are compiled when they are imported, the commonest first."""
 
 _LANES = 16
 """Cells are padded to a multiple of this, so that loops over them fill vector registers."""
 
 _MOST_ROOTS = 1 << 16
 """Largest table of square roots: 512 KB, which fits the second-level cache of common processors."""
+
+
+@functools.cache
+def _kernels(module: str) -> ModuleType:
+    """Import one of `_MODULES`."""
+    return importlib.import_module(f"{__package__}.{module}")
+
+
+def load_all() -> None:
+    """Compile or load every kernel."""
+    for module in _MODULES:
+        _kernels(module)
 
 
 class CellTable(NamedTuple):
@@ -89,7 +106,11 @@ def kernel_similarity(
 ) -> Coefficients:
     """Compare kernel-weighted histograms; see `image.mean_shift`."""
     cells, pixels, _ = _placed_cells(frame, positions, window, reference, bits)
-    return compare_kernels(cells, pixels, *ellipse(window), table_of(reference).values)
+    kernels, values = _kernels("numba_mean_shift"), table_of(reference).values
+    similarity: Coefficients = kernels.compare_kernels(
+        cells, pixels, *kernels.ellipse(window), values
+    )
+    return similarity
 
 
 def mean_shift(
@@ -97,7 +118,8 @@ def mean_shift(
 ) -> Positions:
     """Move every position one mean-shift step; see `image.mean_shift`."""
     cells, pixels, first = _placed_cells(frame, positions, window, reference, bits)
-    steps = shift_kernels(cells, pixels, *ellipse(window), table_of(reference).values)
+    kernels, values = _kernels("numba_mean_shift"), table_of(reference).values
+    steps = kernels.shift_kernels(cells, pixels, *kernels.ellipse(window), values)
     return np.where(np.isnan(steps), positions, pixels + first + 0.5 + steps)
 
 
@@ -106,17 +128,26 @@ def _placed_cells(
 ) -> tuple[Cells, Pixels, tuple[int, int]]:
     """Return cells of the part that windows cover, their middles in it, and its first pixel."""
     half = window.half_width, window.half_height
-    pixels, (left, top, right, bottom) = place_windows(positions, frame_size(frame), half, 0)
-    cells = joint_cells(frame[top:bottom, left:right], bits, table_of(reference).cells)
+    kernels = _kernels("numba_windows")
+    pixels, (left, top, right, bottom) = kernels.place_windows(
+        positions, frame_size(frame), half, 0
+    )
+    cells = kernels.joint_cells(frame[top:bottom, left:right], bits, table_of(reference).cells)
     return cells, pixels, (left, top)
 
 
+def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
+    """Describe cells of a grey image; see `image.gradient_cells`."""
+    features: CellFeatures = _kernels("numba_cells").gradient_cells(grey, spare)
+    return features
+
+
 class NumbaKernels(Kernels):
-    """Compiled kernels; importing this module compiles them, or loads what was compiled before."""
+    """Compiled kernels, each of which is compiled, or loaded, when it is first called."""
 
     name = "numba"
 
-    gradient_cells = staticmethod(numba_cells.gradient_cells)
+    gradient_cells = staticmethod(gradient_cells)
     kernel_similarity = staticmethod(kernel_similarity)
     mean_shift = staticmethod(mean_shift)
 
@@ -144,19 +175,26 @@ def _compare_pixels(
     feature: WindowFeature, frame: Frame, positions: Positions, window: Window, table: CellTable
 ) -> Reals:
     """Compare windows by their pixels."""
+    kernels = _kernels("numba_windows")
     planes = 3 if type(feature) is RgbMarginals else 1
     scale = table.values, roots_up_to(planes * window.width * window.height)
     half = window.half_width, window.half_height
     if isinstance(feature, JointColour):
-        return compare_joint(frame, positions, feature.bits, half, table.cells, scale)
-    pixels, (left, top, right, bottom) = place_windows(positions, frame_size(frame), half, 0)
+        similarity: Reals = kernels.compare_joint(
+            frame, positions, feature.bits, half, table.cells, scale
+        )
+        return similarity
+    pixels, (left, top, right, bottom) = kernels.place_windows(
+        positions, frame_size(frame), half, 0
+    )
     part = frame[top:bottom, left:right]
     if isinstance(feature, RgbMarginals):
         cells, beside = marginal_cells(part, CHANNEL_BINS, table.cells), window.half_width + 1
     else:  # pairs end one column earlier
         cells, beside = pair_cells(to_grey(part), table.cells), window.half_width
     reach = window.half_width, beside, window.half_height
-    return compare_windows(cells, pixels, reach, scale)
+    compared: Reals = kernels.compare_windows(cells, pixels, reach, scale)
+    return compared
 
 
 def _compare_edges(
@@ -169,14 +207,19 @@ def _compare_edges(
     """Compare windows by the directions of their edge points, the gradient taken in the frame."""
     half = window.half_width, window.half_height
     # One pixel more makes every gradient in the windows that of the whole frame.
-    pixels, (left, top, right, bottom) = place_windows(positions, frame_size(frame), half, 1)
+    kernels, edges = _kernels("numba_windows"), _kernels("numba_edges")
+    pixels, (left, top, right, bottom) = kernels.place_windows(
+        positions, frame_size(frame), half, 1
+    )
     counts = np.empty((len(positions), len(table.values)), np.int32)
-    totals = count_edges(
+    totals = edges.count_edges(
         gradients_of(to_grey(frame[top:bottom, left:right])),
         pixels,
         half,
         (np.float32(feature.threshold) ** 2, np.float32(feature.floor) ** 2),
-        (table.cells, TANGENTS, feature.signed),
+        (table.cells, edges.TANGENTS, feature.signed),
         counts,
     )
-    return compare_counts(counts, totals, (table.values, roots_up_to(window.width * window.height)))
+    scale = table.values, roots_up_to(window.width * window.height)
+    similarity: Reals = kernels.compare_counts(counts, totals, scale)
+    return similarity

@@ -64,7 +64,9 @@ class Health:
         self._heard = self._clock()
         self._number = None
 
-    def arrived(self, info: Mapping[str, Any], age: float, publishers: int) -> None:
+    def arrived(
+        self, info: Mapping[str, Any], age: float, count_publishers: Callable[[], int]
+    ) -> None:
         """Count an image.
 
         Parameters
@@ -73,16 +75,19 @@ class Health:
             The message's info; gaps in its publication sequence number are dropped images.
         age : float
             Time from the image's stamp to now, in s.
-        publishers : int
-            Number of publishers on the topic; the numbers of several cannot be told apart.
+        count_publishers : callable
+            Returns the number of publishers on the topic; is called where images seem to be
+            missing, as the numbers of several publishers cannot be told apart.
         """
         self.images += 1
         self._heard = self._clock()
         self._age = age
         number = info.get("publication_sequence_number")
-        if number is not None and self._number is not None and publishers == 1:
+        if number is not None and self._number is not None:
             # A publisher that was restarted counts from 1 again.
-            self.dropped += max(number - self._number - 1, 0)
+            missing = number - self._number - 1
+            if missing > 0 and count_publishers() == 1:
+                self.dropped += missing
         self._number = number
 
     def answered(self, mode: str, step_ms: float | None = None) -> None:
@@ -177,7 +182,7 @@ class Diagnostics:
 
     def publish(self) -> None:
         """Publish one report."""
-        publishers = self.source.publisher_count if self.source else 0
+        publishers = self.source.count_publishers() if self.source else 0
         values = {**self.health.report(), "matched publishers": publishers, **self._facts()}
         level, words = self._judge()
         name, topic = self._node.get_name(), self.source.topic if self.source else ""

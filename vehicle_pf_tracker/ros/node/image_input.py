@@ -88,9 +88,8 @@ class ImageInput:
         qos = QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._subscription = subscribe(node, self._kind, self.topic, callback, qos)
 
-    @property
-    def publisher_count(self) -> int:
-        """Number of publishers that match in topic, type and QoS."""
+    def count_publishers(self) -> int:
+        """Return the number of publishers that match in topic, type and QoS."""
         return int(self._subscription.get_publisher_count())
 
     def __str__(self) -> str:

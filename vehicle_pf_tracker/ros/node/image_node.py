@@ -188,7 +188,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         if source is None or self.stream is None:
             return
         age = self.get_clock().now().nanoseconds - stamp_ns(image.header)
-        self.diagnostics.health.arrived(info, age * 1e-9, source.publisher_count)
+        self.diagnostics.health.arrived(info, age * 1e-9, source.count_publishers)
         self.stream.take(image)
 
     def warn_of_overrides(self, *, qos: bool) -> None:

@@ -1,30 +1,38 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Loading of kernels in a thread of its own, as it may take a minute."""
+"""Loading of a variant's kernels in a thread of its own, as to compile them takes a while."""
 
 from __future__ import annotations
 
 import threading
+from contextlib import suppress
+from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.image.kernels.interface import load_kernels, takes_long
+from vehicle_pf_tracker.image.kernels.interface import load_kernels, may_compile
 from vehicle_pf_tracker.ros.messages import NOT_READY
+from vehicle_pf_tracker.trackers.registry import Variant
+from vehicle_pf_tracker.trackers.rehearsal import rehearse
 
 _THREAD = "loading kernels"
 _REASON = f"{NOT_READY}; the first start compiles them, for up to a minute"
+_rehearsed: set[str] = set()
+"""Variants whose kernels this process has."""
 
 
 class KernelLoading:
-    """Loads kernels in a thread of its own where that takes long, else at once.
+    """Loads the kernels of a variant in a thread of its own where that takes long, else at once.
 
     Numba leaves the interpreter to others while LLVM works, and most of the time goes there: the
     node answers its services and obeys signals meanwhile.
 
     Parameters
     ----------
-    choice : str
-        As for `load_kernels`.
+    variant : Variant
+        Variant from the registry: only what its step needs is compiled.
+    parameters : dataclass
+        Its parameters.
 
     Raises
     ------
@@ -32,15 +40,17 @@ class KernelLoading:
         If numba's kernels are asked for where numba is not installed.
     """
 
-    def __init__(self, choice: str) -> None:
-        self.choice = choice
+    def __init__(self, variant: Variant, parameters: Any) -> None:
+        self.choice = parameters.kernels
+        self._variant = variant
+        self._parameters = parameters
         self._problem = ""
         self._thread: threading.Thread | None = None
-        if takes_long(choice):
+        if may_compile(self.choice) and variant.name not in _rehearsed:
             self._thread = threading.Thread(target=self._load, name=_THREAD, daemon=True)
             self._thread.start()
         else:
-            load_kernels(choice)
+            load_kernels(self.choice)
 
     @property
     def is_done(self) -> bool:
@@ -54,11 +64,16 @@ class KernelLoading:
 
     def _load(self) -> None:
         try:
-            load_kernels(self.choice)
+            kernels = load_kernels(self.choice)
         except InputError as error:
             self._problem = str(error)
         except Exception as error:  # as numba raises it; the node lives and says so
             self._problem = f"the kernels cannot be loaded: {type(error).__name__}: {error}"
+        else:
+            if kernels.name == "numba":
+                with suppress(Exception):  # a plug-in's own; its first image shows it
+                    rehearse(self._variant, self._parameters)
+            _rehearsed.add(self._variant.name)
 
 
 def is_loading() -> bool:

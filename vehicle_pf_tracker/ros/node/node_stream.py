@@ -5,10 +5,9 @@
 
 from __future__ import annotations
 
-import time
 import traceback
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -27,39 +26,9 @@ from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.image_input import read_image
 from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder
 from vehicle_pf_tracker.ros.node.kept_target import KeptTarget
+from vehicle_pf_tracker.ros.node.notices import Notices
 from vehicle_pf_tracker.ros.node.outputs import Outputs
 from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
-
-_PERIOD = 5.0
-"""Interval between two lines of the same kind in the log, s."""
-
-
-class Notices:
-    """Writes a sentence unless one of its kind was written a moment ago.
-
-    rclpy throttles by the line of code that logs, and so cannot tell kinds apart.
-
-    Parameters
-    ----------
-    write : callable
-        Writes a line.
-    clock : callable
-        Steady time in s.
-    """
-
-    def __init__(
-        self, write: Callable[[str], object], clock: Callable[[], float] = time.monotonic
-    ) -> None:
-        self._write = write
-        self._clock = clock
-        self._last: dict[str, float] = {}
-
-    def say(self, kind: str, sentence: str) -> None:
-        """Write `sentence`, one of few kinds."""
-        now = self._clock()
-        if now - self._last.get(kind, -_PERIOD) >= _PERIOD:
-            self._last[kind] = now
-            self._write(sentence)
 
 
 class NodeStream(ABC):
@@ -235,8 +204,9 @@ class NodeStream(ABC):
         self, header: Header, mode: str, values: Mapping[str, object], *, is_doubtful: bool = False
     ) -> None:
         """Publish the one `~/mode` of an image; see `Outputs.publish_mode`."""
-        answer = self._publish_mode(header, mode, values, is_doubtful=is_doubtful)
-        if self.incidents is not None:
+        is_kept = self.incidents is not None
+        answer = self._publish_mode(header, mode, values, is_doubtful=is_doubtful, is_kept=is_kept)
+        if self.incidents is not None and answer is not None:
             self.incidents.keep(answer, self.followed)
 
     def write_incident(self) -> str:

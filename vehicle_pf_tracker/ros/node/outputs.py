@@ -98,18 +98,26 @@ class Outputs:
             self.send("velocity", messages.velocity_message, header, estimate.velocity, period)
 
     def publish_mode(
-        self, header: Header, mode: str, values: Mapping[str, object], *, is_doubtful: bool = False
-    ) -> DiagnosticArray:
+        self,
+        header: Header,
+        mode: str,
+        values: Mapping[str, object],
+        *,
+        is_kept: bool,
+        is_doubtful: bool = False,
+    ) -> DiagnosticArray | None:
         """Publish the one `~/mode` of an image: of an estimate, `WAITING` or `REJECTED`.
 
         Its values are the estimate's, or a reason. The level is the mode's, and at least WARN where
-        the target `is_doubtful`.
+        the target `is_doubtful`. It is not made where nobody listens, unless the caller keeps it.
         """
+        if not (is_kept or self.is_heard("mode")):
+            return None
         level = messages.LEVELS[mode]
         if is_doubtful:
             level = max(level, DiagnosticStatus.WARN)
-        one = level, "target", mode, {"mode": mode, **values}
-        message = self.statuses(header, [one])
+        status = level, "target", mode, {"mode": mode, **values}
+        message = self.statuses(header, [status])
         self.send("mode", lambda: message)
         return message
 

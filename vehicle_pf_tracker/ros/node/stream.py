@@ -76,7 +76,7 @@ class Stream(NodeStream):
         self._variant = variant
         self._applied = configuration
         self._session: Session | None = None
-        self._loading = KernelLoading(configuration.tracker.kernels)
+        self._loading = KernelLoading(self._variant, configuration.tracker)
         self._target_problem = ""
         self._stillness = Stillness()
         self.localisation = StreamLocalisation(variant.name, configuration.session.road, cameras)
@@ -202,7 +202,7 @@ class Stream(NodeStream):
             self.localisation.reconfigure(configuration.session.road)
         self._configuration = configuration
         if configuration.tracker.kernels != self._loading.choice:
-            self._loading = KernelLoading(configuration.tracker.kernels)
+            self._loading = KernelLoading(self._variant, configuration.tracker)
         self.get_ready()
 
     def _wait(self, header: Header, reason: str) -> None:

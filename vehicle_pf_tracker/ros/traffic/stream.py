@@ -9,13 +9,9 @@ import time
 from collections.abc import Mapping
 from functools import partial
 
-import numpy as np
-from diagnostic_msgs.msg import DiagnosticArray
-from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
-from sensor_msgs.msg import CompressedImage, Image, PointCloud2
+from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
-from visualization_msgs.msg import MarkerArray
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.cdr import header_stamp_ns
@@ -26,70 +22,20 @@ from vehicle_pf_tracker.detection.parameters import TOPIC
 from vehicle_pf_tracker.following.detectors import PacedDetector
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import WAITING, detections_type, image_message, stamp_ns
+from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Health
 from vehicle_pf_tracker.ros.node.node_stream import NodeStream
-from vehicle_pf_tracker.ros.node.outputs import RELIABLE, Outputs, in_pixels
+from vehicle_pf_tracker.ros.node.outputs import in_pixels
 from vehicle_pf_tracker.ros.own_files import own_file, write_private
 from vehicle_pf_tracker.ros.traffic import messages
+from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
-from vehicle_pf_tracker.showing.drawing import Colour, draw_box, line_width
 from vehicle_pf_tracker.showing.page_server import LivePage
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
 _BY_PIXELS = "vehicles are followed by their pixels meanwhile"
-
-
-_SELECTED: Colour = (255, 255, 255)
-
-
-class TrafficOutputs(Outputs):
-    """Everything that a configured node of many vehicles publishes.
-
-    Parameters
-    ----------
-    node : LifecycleNode
-        Its publishers are silent unless it is active.
-    hardware_id : str
-        Topic of the images, for the statuses.
-    """
-
-    def __init__(self, node: LifecycleNode, hardware_id: str) -> None:
-        more = {
-            "tracks": (PointCloud2, RELIABLE),
-            "modes": (DiagnosticArray, RELIABLE),
-            "counts": (DiagnosticArray, RELIABLE),
-            "detections": (detections_type(), RELIABLE),
-            "markers": (MarkerArray, RELIABLE),
-        }
-        super().__init__(node, hardware_id, more)
-
-    def publish_vehicles(
-        self, header: Header, there: Header, vehicles: Vehicles, period: float
-    ) -> None:
-        """Publish all vehicles, px under the header `there`, and what was counted.
-
-        The frame `period` is in s.
-        """
-        estimates = vehicles.estimates
-        self.send("tracks", messages.tracks_message, there, estimates, period)
-        self.send("modes", self.statuses, header, messages.mode_statuses(estimates))
-        self.send("detections", messages.detections_message, there, estimates)
-        self.send("markers", messages.markers_message, there, estimates)
-        if vehicles.counter.plan.is_counting:
-            counts = messages.count_statuses(vehicles.counter, vehicles.latest)
-            self.send("counts", self.statuses, header, counts)
-
-    def publish_overlay(self, header: Header, frame: Frame, vehicles: Vehicles) -> None:
-        """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
-        if not self.is_heard("overlay"):
-            return
-        if vehicles.selected is not None:
-            frame = np.array(frame, order="C")
-            draw_box(frame, vehicles.selected.box, _SELECTED, 3 * line_width(frame))
-        self.send("overlay", image_message, header, vehicles.drawn(frame))
 
 
 class TrafficStream(NodeStream):

@@ -16,12 +16,13 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.parameters import TOPIC
 from vehicle_pf_tracker.following.model_files import is_fetched
 from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.ros.image_memory import return_memory
 from vehicle_pf_tracker.ros.messages import box_of_region, detections_type, finite
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
-from vehicle_pf_tracker.ros.process import return_memory
 from vehicle_pf_tracker.ros.traffic.messages import LONGEST
-from vehicle_pf_tracker.ros.traffic.stream import TrafficOutputs, TrafficStream
+from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
+from vehicle_pf_tracker.ros.traffic.stream import TrafficStream
 from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
