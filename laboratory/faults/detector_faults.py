@@ -21,9 +21,8 @@ from sensor_msgs.msg import PointCloud2
 from laboratory.faults.detector import Detector, Fault, sightings
 from laboratory.faults.faulty_messages import header_at
 from laboratory.faults.lanes import Corners, Road, Traffic
-from laboratory.faults.ledger import Ledger
+from laboratory.faults.ledger import ALIKE, Ledger
 from laboratory.faults.node_process import NodeProcess, Tester
-from laboratory.faults.soak import ALIKE
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 from vehicle_pf_tracker.trackers.registry import TRAFFIC

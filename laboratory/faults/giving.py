@@ -17,7 +17,7 @@ from laboratory.faults.node_process import FaultError, Tester
 from laboratory.faults.soak import Soak
 
 if TYPE_CHECKING:
-    from laboratory.faults.command import Request
+    from laboratory.faults.request import Request
 
 
 def give(kind: str, request: Request, folder: Path) -> bool:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections import Counter, deque
 from collections.abc import Mapping
@@ -17,6 +18,8 @@ from sensor_msgs.msg import Image
 from laboratory.faults.node_process import TIMEOUT, FaultError, NodeProcess, Tester
 from vehicle_pf_tracker.ros.messages import NOT_READY, REJECTED, WAITING, stamp_ns
 
+ALIKE = re.compile(r"^.*?\]: |\d+")
+"""Parts in which sentences of one kind, that a node says, differ."""
 MB = 1e6
 SETTLED = 600.0
 """Seconds until memory has to stay as it is; a shorter run shows its second half."""

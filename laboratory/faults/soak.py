@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import itertools
 import random
-import re
 import time
 from collections import Counter
 from pathlib import Path
@@ -19,7 +18,7 @@ from sensor_msgs.msg import Image, PointCloud2
 from laboratory.faults.detector import Detector, Fault, sightings, vision
 from laboratory.faults.faulty_messages import FIRST_NS, Faults, header_at
 from laboratory.faults.lanes import Corners, Numbers, Road, Traffic
-from laboratory.faults.ledger import Ledger
+from laboratory.faults.ledger import ALIKE, Ledger
 from laboratory.faults.node_process import NodeProcess, Tester
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.parameters.configuration import Configuration
@@ -27,7 +26,7 @@ from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 from vehicle_pf_tracker.trackers.registry import TRAFFIC, find_node
 
 if TYPE_CHECKING:
-    from laboratory.faults.command import Request
+    from laboratory.faults.request import Request
 
 WIDTH, HEIGHT = 320, 180
 BRIDGE = slice(150, 180)
@@ -40,8 +39,6 @@ FAULT_EVERY, LASTS = 20.0, 2.0
 """Seconds between two failures of the detector, and how long one lasts."""
 TARGET_EVERY = CHANGE_EVERY = 5.0
 """Seconds between two targets, and between two changes of a parameter."""
-ALIKE = re.compile(r"^.*?\]: |\d+")
-"""Parts in which sentences of one kind differ."""
 _DEPTH, _LONG_DEPTH = 10, 100
 """Images that wait for a node: two thirds of a second of a camera, and more than any pause."""
 CHANGES: list[tuple[str, object]] = [
