@@ -4,7 +4,7 @@
 """Files that follow from the registry and the parameter tables: `make config` writes them.
 
 These are config/ (parameter files and the SROS 2 policy), docs/parameters.md, the picture of the
-rooms in docs/development.md, and the tables of variants between the markers in docs/choosing.md
+rooms in docs/images/rooms.svg, and the tables of variants between the markers in docs/choosing.md
 and docs/variants.md.
 """
 
@@ -16,6 +16,7 @@ from pathlib import Path
 
 from tools import rooms
 from tools.parameters_page import parameters_page
+from tools.rooms_picture import picture
 from tools.sros2_policy import policy
 from vehicle_pf_tracker.cli.params import default_yaml
 from vehicle_pf_tracker.ros.transport import LAUNCHED_SEGMENT, profile
@@ -54,10 +55,8 @@ def generated_files(root: Path = ROOT) -> dict[Path, str]:
     for page, columns in TABLES.items():
         text = (root / page).read_text(encoding="utf-8")
         files[root / page] = replace_table(text, markdown_table(columns, variants))
-    development = root / "docs" / "development.md"
-    drawing = rooms.mermaid(rooms.reduced(rooms.rooms_graph(root / rooms.PACKAGE)))
-    text = development.read_text(encoding="utf-8")
-    files[development] = rooms.replace_drawing(text, drawing)
+    graph = rooms.reduced(rooms.rooms_graph(root / rooms.PACKAGE))
+    files[root / "docs" / "images" / "rooms.svg"] = picture(graph)
     return files
 
 

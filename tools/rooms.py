@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The rooms of the package as a graph, drawn from the import statements of their modules."""
+"""The rooms of the package as a graph, read from the import statements of their modules."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from pathlib import Path
 PACKAGE = "vehicle_pf_tracker"
 DIVIDED = {"image", "trackers"}
 """Rooms whose folders are drawn too."""
-
-BEGIN, END = "<!-- rooms: `make config` draws this -->\n\n", "\n<!-- rooms: end -->"
 
 Graph = Mapping[str, set[str]]
 
@@ -50,32 +48,6 @@ def reduced(graph: Graph) -> dict[str, set[str]]:
     }
 
 
-def mermaid(graph: Graph) -> str:
-    """Write the graph for pages that draw Mermaid; an arrow says "imports from"."""
-    lines = ["```mermaid", "graph TD"]
-    for room in sorted(graph):
-        shape = f'    {_id(room)}["{room}"]'
-        lines.append(shape)
-    for room in sorted(graph):
-        lines += [f"    {_id(room)} --> {_id(other)}" for other in sorted(graph[room])]
-    return "\n".join([*lines, "```"]) + "\n"
-
-
-def replace_drawing(text: str, drawing: str) -> str:
-    """Put the drawing between the markers in `text`.
-
-    Raises
-    ------
-    ValueError
-        If the markers are not there.
-    """
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not (begin and end):
-        raise ValueError(f"the page has no pair of markers {BEGIN.strip()!r} and {END.strip()!r}")
-    return before + begin + drawing + end + after
-
-
 def _name(path: Path, source: Path) -> str:
     """Return the dotted name below the package: ``ros.node.stream``."""
     return ".".join(path.relative_to(source).with_suffix("").parts)
@@ -105,7 +77,3 @@ def _reach(graph: Graph, start: str, seen: set[str]) -> set[str]:
             found |= graph[room]
             waiting += graph[room]
     return found
-
-
-def _id(room: str) -> str:
-    return room.replace("/", "_")

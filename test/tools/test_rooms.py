@@ -1,13 +1,11 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The picture of the rooms follows the imports."""
+"""The graph of the rooms follows the imports."""
 
 from pathlib import Path
 
-import pytest
-
-from tools.rooms import BEGIN, END, mermaid, reduced, replace_drawing, rooms_graph
+from tools.rooms import reduced, rooms_graph
 
 SOURCE = Path(__file__).resolve().parents[2] / "vehicle_pf_tracker"
 
@@ -42,22 +40,9 @@ def test_rooms_that_need_each_other_keep_their_arrows():
     assert reduced({"a": {"b"}, "b": {"a"}}) == {"a": {"b"}, "b": {"a"}}
 
 
-def test_a_drawing_names_every_room_and_arrow():
-    assert mermaid({"ros/node": {"core"}, "core": set()}).splitlines() == [
-        "```mermaid", "graph TD", '    core["core"]', '    ros_node["ros/node"]',
-        "    ros_node --> core", "```",
-    ]  # fmt: skip
-
-
 def test_the_package_has_a_ground_and_a_roof():
     graph = rooms_graph(SOURCE)
     assert graph["core"] == set()
     assert "cli" not in set().union(*graph.values())
     assert "evaluation" in graph["cli"]
     assert reduced(graph)["ros"] == {"following"}
-
-
-@pytest.mark.parametrize("page", ["", BEGIN, END + BEGIN])
-def test_a_page_without_markers_is_an_error(page):
-    with pytest.raises(ValueError, match="no pair of markers"):
-        replace_drawing(page, "new\n")
