@@ -45,7 +45,7 @@ class Decision:
     Attributes
     ----------
     place : str
-        Module, in the package, and name: ``detection.bodies:REACH``; a field of an object after a
+        Module, in the package, and name: ``detection.blobs:_PIECE``; a field of an object after a
         dot.
     values : tuple of float
         Values to try beside the shipped one.
@@ -89,9 +89,6 @@ DECISIONS: tuple[Decision, ...] = (
     Decision(f"{_MOTION}.patience", (50.0, 200.0), 0.0),
     Decision(f"{_MOTION}.shadow", (0.5, 0.7), 1.0),
     Decision(f"{_MOTION}.apart", (0.5, 2.0), 1e9),
-    Decision("detection.bodies:LEAST_EDGE", (7.0, 13.0), 0.0),
-    Decision("detection.bodies:SHARP_SIZE", (20.0, 45.0), 1e9),
-    Decision("detection.bodies:REACH", (0.05, 0.12)),
     Decision("detection.blobs:_LEAST_PART", (0.1, 0.2)),
     Decision("detection.blobs:_PIECE", (0.7, 0.9), 1e9),
     Decision("detection.blobs:_SPECK", (-3.0, -6.0), -1e9),

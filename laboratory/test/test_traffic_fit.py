@@ -9,7 +9,7 @@ from laboratory.traffic_fit import DECISIONS, Decision, best_for_others, read_cl
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED
 
-REACH = Decision("detection.bodies:REACH", (0.5, 0.7), 0.0)
+PIECE = Decision("detection.blobs:_PIECE", (0.5, 0.7), 0.0)
 SCORES = {
     0.08: {"day": 60.0, "dusk": 40.0, "close": 50.0},
     0.5: {"day": 90.0, "dusk": 30.0, "close": 45.0},
@@ -43,8 +43,8 @@ def test_a_camera_has_no_vote_on_the_value_that_it_is_judged_with():
 
 
 def test_a_row_has_what_is_seen_what_is_left_out_and_what_it_is_worth():
-    assert row(REACH, SCORES) == [
-        "detection.bodies:REACH",
+    assert row(PIECE, SCORES) == [
+        "detection.blobs:_PIECE",
         "0.08",
         "0.7, 0.5, 0.5",
         "50.0",

@@ -18,10 +18,12 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.detection.illumination import Pixels, Planes, Values, shadows_and_edges
 from vehicle_pf_tracker.detection.motion_thresholds import MotionThresholds
 
 Colours = npt.NDArray[np.uint8]
+Planes = npt.NDArray[np.uint8]
+"""Channels of an image, one below the other: sums over them are ten times as fast."""
+Pixels = npt.NDArray[np.bool_]
 
 _SAMPLES = 10
 """Colours that are remembered of each pixel."""
@@ -33,6 +35,15 @@ _LOOKED_AT = 4
 """Samples that all pixels are compared with: nine in ten are background by two of these."""
 _RENEWED = 40
 """Images after which a sample is renewed, on average: light and leaves change within a second."""
+_SHADE = 20.0
+"""Largest distance in colour of a shadow from the darkened background."""
+_COMPARED = 3
+"""Every this many of the samples make the background that shadows are told by: a mean is enough."""
+_EDGE = 0.04
+"""Largest change per px of the brightness, of the background's, inside a shadow: noise is half of
+it. At .03 noisy shadows are vehicles; at .06 half the dark cars of a cloudy day are shadows."""
+_RIM = np.ones((5, 5), np.uint8)
+"""Surroundings of a change's pixel that have to have changed, too, for an edge there to count."""
 _SPARSE = (slice(None), slice(None, None, 4), slice(None, None, 4))
 """Pixels that the camera's gain is taken from."""
 _MOST_GAIN = 1.3
@@ -79,12 +90,11 @@ class Background:
             self._samples.append(_planes(image))
         self._age += 1
 
-    def compare(self, image: Colours) -> tuple[Pixels, Values]:
-        """Mark the pixels that have changed and are in no shadow; and measure edges there."""
+    def compare(self, image: Colours) -> Pixels:
+        """Mark the pixels that have changed and are not just in a shadow."""
         planes = self._with_former_gain(_planes(image))
         changed = self._unlike(planes)
-        shadows, edges = shadows_and_edges(planes, self._samples, changed, self._thresholds.shadow)
-        return np.asarray(changed & ~shadows), edges
+        return np.asarray(changed & ~self._shadows(planes, changed))
 
     def _unlike(self, planes: Planes) -> Pixels:
         """Mark the pixels whose colour too few samples have."""
@@ -139,6 +149,35 @@ class Background:
         start = int(self._rng.integers(size))
         few = self._noise[start : start + size] < 256 * _SAMPLES // _RENEWED
         return np.asarray(few.reshape(shape))
+
+    def _shadows(self, planes: Planes, changed: Pixels) -> Pixels:
+        """Find pixels that have the background's colour, but darker, and none of their own edges.
+
+        The inside of a shadow shows the road as it is, at one brightness; a dark vehicle has
+        windows, lights and edges. The rim of a change has an edge in either case.
+        """
+        index = np.flatnonzero(changed)
+        if not len(index):
+            return changed
+        colours = np.take(planes.reshape(3, -1), index, axis=1).astype(np.float32)
+        background = np.zeros_like(colours)
+        for sample in self._samples[::_COMPARED]:
+            cv2.accumulate(np.take(sample.reshape(3, -1), index, axis=1), background)
+        background /= len(self._samples[::_COMPARED])
+        power = np.maximum((background**2).sum(axis=0), 1)
+        share = (colours * background).sum(axis=0) / power
+        apart = (colours**2).sum(axis=0) - share**2 * power
+        shares, dark = np.ones(changed.shape, np.float32), np.zeros(changed.shape, np.bool_)
+        shares.flat[index] = share
+        dark.flat[index] = (self._thresholds.shadow <= share) & (share <= 1)
+        dark.flat[index] &= apart < (_SHADE * share) ** 2
+        smooth = cv2.blur(shares, (3, 3))
+        slope = cv2.magnitude(
+            cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=1 / 8),
+            cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=1 / 8),
+        )
+        inner = cv2.erode(changed.astype(np.uint8), _RIM) > 0
+        return np.asarray(dark & ~(inner & (slope > _EDGE)))
 
 
 def _planes(image: Colours) -> Planes:

@@ -14,15 +14,15 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, check_frame
-from vehicle_pf_tracker.detection.background import Background, Colours
+from vehicle_pf_tracker.detection.background import Background, Colours, Pixels
 from vehicle_pf_tracker.detection.blobs import WIDEST, BlobReader
-from vehicle_pf_tracker.detection.bodies import bodies, moving_pixels
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import FollowedVehicle
-from vehicle_pf_tracker.detection.illumination import Pixels
 from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED, MotionThresholds
 from vehicle_pf_tracker.detection.stabilising import Stabiliser
 
+_CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
+"""Holes and gaps up to this size are closed: windscreens show the sky."""
 _DISTURBED = 0.5
 """Share of the image that differs above which the camera moves or the light was switched: no
 vehicle that is worth following fills half of it."""
@@ -87,7 +87,7 @@ class MotionDetector:
         if self.is_blind:
             self._background.begin(small)
             return Detections.none()
-        changed, strength = self._background.compare(small)
+        changed = self._background.compare(small)
         if seen is not None:
             changed &= seen > 0
         # The camera moves, or the light was switched.
@@ -95,10 +95,11 @@ class MotionDetector:
             self.disturbed = self.is_blind = True
             self._restart()
             return Detections.none()
-        moving = moving_pixels(changed)
+        moving = np.asarray(cv2.medianBlur(changed.astype(np.uint8), 3), np.uint8)
+        moving = np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _CLOSED), np.uint8)
         self._background.learn(small, moving > 0, _covered(covered, small))
         velocities = np.array([one.velocity for one in tracks]).reshape(-1, 2)
-        blobs = self._blobs.read(bodies(moving, strength), predicted, velocities)
+        blobs = self._blobs.read(moving, predicted, velocities)
         edges = self._stabiliser.from_reference(blobs.edges)
         boxes = np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
         made = Detections.make(boxes, blobs.fullness)
