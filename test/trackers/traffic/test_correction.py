@@ -63,7 +63,7 @@ def test_a_covered_edge_does_not_brake_the_vehicle(vehicle):
 
 
 def test_a_verdict_is_given_before_anything_changes(vehicle):
-    given = vehicle.tracks, PART[None], SIZE, 0.05, vehicle.uncoverings
+    given = vehicle.tracks, PART[None], SIZE, 0.05, np.zeros((1, 4), bool), vehicle.uncoverings
     verdict = which_edges(*given)
     assert verdict.covered.tolist() == [[False, False, False, True]]
     assert verdict.left_out.tolist() == verdict.covered.tolist()

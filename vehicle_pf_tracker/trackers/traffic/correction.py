@@ -94,8 +94,9 @@ def correct(
     uncoverings : Returns
         Learns where missing parts of vehicles come back: there something covers them.
     """
-    tracks = note_short(tracks, edges, size, noise, uncoverings)
-    verdict = which_edges(tracks, edges, size, noise, uncoverings)
+    unknown = cut_edges(edges, size, noise) & cut_edges(tracks.edges, size, noise)
+    tracks = note_short(tracks, edges, size, unknown, uncoverings)
+    verdict = which_edges(tracks, edges, size, noise, unknown, uncoverings)
     return replace(tracks, drives=corrected(tracks.drives, edges, verdict, noise)), verdict.whole
 
 
@@ -103,13 +104,16 @@ def note_short(
     tracks: Tracks,
     edges: Array,
     size: tuple[int, int],
-    noise: float,
+    unknown: Bools,
     uncoverings: Returns,
 ) -> Tracks:
-    """Note of which vehicles less was detected than before, and learn what became of the rest."""
+    """Note of which vehicles less was detected than before, and learn what became of the rest.
+
+    The border of the image cuts the edges (N, 4) that are `unknown`.
+    """
     predicted, extents = tracks.edges, tracks.drives.extents
     # What the border cuts is smaller by that, and no part of it will come back.
-    asked = ~(cut_edges(edges, size, noise) & cut_edges(predicted, size, noise)).any(axis=1)
+    asked = ~unknown.any(axis=1)
     is_short = (sides_of(edges) < _WHOLE * _latest(tracks.drives, edges)).any(axis=1)
     short = np.where(asked, np.where(is_short, extents.short + 1, 0), extents.short)
     shortened = extents.shortened.copy()
@@ -135,15 +139,18 @@ def which_edges(
     edges: Array,
     size: tuple[int, int],
     noise: float,
+    unknown: Bools,
     uncoverings: Returns,
 ) -> Verdict:
-    """Judge which edges of detections (N, 4) in px tell where vehicles end; see `correct`."""
+    """Judge which edges of detections (N, 4) in px tell where vehicles end; see `correct`.
+
+    The border of the image cuts those (N, 4) that are `unknown`.
+    """
     drives = tracks.drives
     predicted, own = drives.gaussians.edges, sides_of(drives.gaussians.edges)
     spread = deviations(predicted, noise)
     normal = (edges - predicted) * INWARD / np.sqrt(drives.gaussians.edge_variances + spread**2)
     opposite = normal[:, OPPOSITE]
-    unknown = cut_edges(edges, size, noise) & cut_edges(predicted, size, noise)
     shrunk = sides_of(edges) < _WHOLE * np.minimum(own, _latest(drives, edges))
     jumped = (normal > _JUMP) & (opposite > 0)  # a vehicle that brakes pushes it out
     crept = np.tile(shrunk, 2) & (normal > np.maximum(opposite, 0.0))

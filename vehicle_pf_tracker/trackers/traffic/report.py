@@ -29,9 +29,7 @@ _PLACED = {
 def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
     """Estimates of all tracks, by identity, tentative ones last."""
     names = tracks.names
-    order = np.lexsort((names.serial, names.identity, ~tracks.confirmed))
-    tracks = tracks.take(order)
-    names, drives, sights = tracks.names, tracks.drives, tracks.sights
+    drives, sights = tracks.drives, tracks.sights
     low, high = np.split(drives.gaussians.edges + drives.lag, 2, axis=1)
     modes = _modes(tracks)
     rows = zip(
@@ -49,7 +47,7 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
         _hiders(tracks, modes),
         strict=True,
     )
-    return tuple(
+    estimates = [
         TrackEstimate(
             identity=identity,
             box=Box(*box),
@@ -66,7 +64,9 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
         )
         for identity, serial, joined, votes, box, velocity, foot, log_odds, age, score, mode, hider
         in rows
-    )  # fmt: skip
+    ]  # fmt: skip
+    order = np.lexsort((names.serial, names.identity, ~tracks.confirmed))
+    return tuple(estimates[row] for row in order.tolist())
 
 
 def _modes(tracks: Tracks) -> list[TrackMode]:
