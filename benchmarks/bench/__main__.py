@@ -15,12 +15,11 @@ from pathlib import Path
 
 import cv2
 
-from benchmarks.bench import costs, kernels, memory, performance_page, steps
+from benchmarks.bench import bandwidth, costs, kernels, memory, performance_page, steps
 from benchmarks.bench.case import Case
 from benchmarks.bench.effort import FULL, QUICK, TOY, Effort
 from benchmarks.bench.environment import describe
 from benchmarks.bench.results import Results
-from benchmarks.bench.slower_steps import slower_steps
 from vehicle_pf_tracker.core.errors import InputError
 
 OUTPUT = Path("results/bench/bench.json")
@@ -51,19 +50,17 @@ def main() -> int:
 
 
 def _write_page(results: Results, folder: Path) -> None:
-    """Write the page after a comparison with the figures that it replaces."""
-    page = folder / performance_page.PAGE
-    last = page.read_text(encoding="utf-8") if page.exists() else ""
-    for sentence in slower_steps(results, last):
-        print(f"bench: {sentence}", file=sys.stderr)
-    performance_page.write(results, folder)
-    print(f"wrote {page}")
+    """Write the page, and print last what is dearer than on the one that it replaces."""
+    dearer = performance_page.write(results, folder)
+    print(f"wrote {folder / performance_page.PAGE}")
+    print(dearer)
 
 
 def _measure(
     results: Results, wanted: Callable[[str], bool], effort: Effort, args: argparse.Namespace
 ) -> None:
     results.cases += _told(kernels.measure(wanted, effort))
+    results.cases += _told(bandwidth.measure(wanted, effort))
     of_steps, results.on_target = steps.measure(wanted, effort, args.baselines)
     results.cases += _told(of_steps)
     results.cases += _told(costs.measure(wanted, effort))

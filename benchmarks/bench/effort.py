@@ -75,6 +75,7 @@ TOY = Effort(
     cases=(
         "kernel*/joint512/41x31/vga/n50",
         "kernel/three_features/*",
+        "bandwidth/*/n200",
         "step/*/csrt",
         "cost/particles/apf/n50",
         "cost/trackers/apf/4",

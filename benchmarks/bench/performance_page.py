@@ -12,6 +12,7 @@ from typing import TypeAlias
 from benchmarks.bench.case import Case
 from benchmarks.bench.figures import steps_figure
 from benchmarks.bench.results import Results
+from benchmarks.bench.slower_steps import SLOWER, last_ratios, slower_steps
 from benchmarks.bench.targets import TARGETS, Target
 from benchmarks.bench.turns import BLOCK
 from laboratory.figure_files import save
@@ -35,6 +36,11 @@ on real video.
 
 ![Times faster than CSRT, by variant]({IMAGES}/steps.svg)
 """
+_BANDWIDTH = """## Distance from memory bandwidth
+A kernel has to fetch the part of the image that its windows cover; no code is faster than memory
+gives those bytes. The share is that of the time in which they are read once, and nothing else is
+done. What is left is work in the caches: each pixel is counted in hundreds of windows.
+"""
 _COSTS = """## Cost of more particles, larger windows and images, more trackers
 The default is 200 particles, a window of 41x31 px, 640x480 images and one tracker. Ratio to it,
 and the time of one tracker's step.
@@ -53,22 +59,33 @@ def write_targets(results: Results, folder: Path) -> None:
     (folder / TARGETS_TABLE).write_text(targets_table(results, TARGETS), encoding="utf-8")
 
 
-def write(results: Results, folder: Path) -> None:
-    """Write the page and its figures below `folder`."""
+def write(results: Results, folder: Path) -> str:
+    """Write the page and its figures below `folder`.
+
+    Returns
+    -------
+    str
+        Table of the steps that are dearer than on the page that is replaced; it is on the new one.
+    """
+    last = (folder / PAGE).read_text(encoding="utf-8") if (folder / PAGE).exists() else ""
     images = folder / IMAGES
     images.mkdir(parents=True, exist_ok=True)
     save(steps_figure(results), images / "steps.svg")
-    (folder / PAGE).write_text(page(results), encoding="utf-8")
+    (folder / PAGE).write_text(page(results, last), encoding="utf-8")
+    return _dearer(results, last)
 
 
-def page(results: Results) -> str:
-    """Write the page."""
+def page(results: Results, last: str = "") -> str:
+    """Write the page; `last` is the text of the one that it replaces."""
     parts = [
         _HEAD,
         _environment(results),
         _targets(results, TARGETS),
         _STEPS,
         _steps(results),
+        _dearer(results, last),
+        _BANDWIDTH,
+        _bandwidth(results),
         _COSTS,
         _pivot(_costs(results), "change"),
         _NODES,
@@ -177,6 +194,27 @@ def _steps(results: Results) -> str:
         rows.append((f"{baseline} itself", f"{times[baseline]:.4g}", *[""] * len(baselines), share))
     head = ("step", "ms", *(f"over {baseline}" for baseline in baselines), "on the vehicle")
     return table(head, rows)
+
+
+def _dearer(results: Results, last: str) -> str:
+    """Write the steps that became dearer than on the last page, or that none did."""
+    head = "## Dearer than the last page\n"
+    if not last_ratios(last):
+        return head + "There was no page to compare with.\n"
+    factors = slower_steps(results, last)
+    if not factors:
+        return head + f"No step takes more than {SLOWER:g} times as long, beside the baselines.\n"
+    rows = [(f"`{variant}`", f"{factor:.2f}") for variant, factor in factors.items()]
+    return head + table(("step", "times as long"), rows)
+
+
+def _bandwidth(results: Results) -> str:
+    rows = [
+        (f"`{case.name.removeprefix('bandwidth/')}`", _digits(case.baseline_ms),
+         _digits(case.ours_ms), f"{100 * case.ratio:.1f} %")
+        for case in results.cases if case.name.startswith("bandwidth/")
+    ]  # fmt: skip
+    return table(("kernel", "reading, ms", "kernel, ms", "share"), rows)
 
 
 def _deliveries(results: Results) -> str:

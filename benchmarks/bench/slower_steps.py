@@ -34,8 +34,8 @@ def last_ratios(page: str) -> dict[str, float]:
     return found
 
 
-def slower_steps(results: Results, page: str) -> list[str]:
-    """Name each variant whose step became more than a tenth slower than on `page`.
+def slower_steps(results: Results, page: str) -> dict[str, float]:
+    """Find each variant whose step became more than a tenth slower than on `page`, and how much.
 
     The baselines ran in turns with the variant then and now, so that the machine cancels out. The
     median over the baselines is judged: one of them alone may have changed with OpenCV's version.
@@ -46,9 +46,4 @@ def slower_steps(results: Results, page: str) -> list[str]:
         if case.name in last:
             factors.setdefault(case.name.split("/")[1], []).append(last[case.name] / case.ratio)
     medians = {variant: statistics.median(values) for variant, values in factors.items()}
-    return [
-        f"a step of {variant} takes {factor:.2f} times as long as on the last page, "
-        "compared with the same baselines"
-        for variant, factor in medians.items()
-        if factor > SLOWER
-    ]
+    return {variant: factor for variant, factor in medians.items() if factor > SLOWER}

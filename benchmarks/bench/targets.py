@@ -96,7 +96,7 @@ TARGETS = (
     _faster("kernel-opencv/joint512/41x31/vga/n200", 4),
     _faster("kernel-opencv/joint512/41x31/vga/n1000", 10),
     _dearer("kernel/joint512/41x31/1080p-over-vga/n200", 1.2),
-    _faster("kernel/three_features/41x31/vga/n200", 40),
+    _faster("kernel/three_features/41x31/vga/n200", 80),
     *(_faster(f"step/{variant}/csrt", times) for variant, times in STEPS.items()),
     _dearer("node/apf/without_step", 1.15),
     _dearer("node/apf/with_step", 1.4),

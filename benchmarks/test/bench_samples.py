@@ -17,6 +17,7 @@ def results():
             Case("kernel/joint512/41x31/vga/n200", 0.05, 2.5, 50.0, 4.0),
             Case("kernel/joint512/41x31/vga/n1000", 0.2, 10.0, 50.0, 4.0),
             Case("kernel/joint512/41x31/1080p-over-vga/n200", 0.055, 0.05, 0.909, 0.1),
+            Case("bandwidth/joint512/41x31/vga/n200", 0.05, 0.002, 0.04, 0.01),
             Case("step/apf/csrt", 0.5, 25.0, 50.0, 2.0),
             Case("step/apf/kcf", 0.5, 1.5, 3.0, 0.2),
             Case("node/apf/without_step", 1.2, 1.0, 0.833, 0.02),

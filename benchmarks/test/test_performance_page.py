@@ -3,10 +3,13 @@
 
 """The page and its figures, made of results that never were."""
 
+from dataclasses import replace
+
 import pytest
 from bench_samples import results
 
-from benchmarks.bench.performance_page import page, targets_table, write, write_targets
+from benchmarks.bench.performance_page import PAGE, page, targets_table, write, write_targets
+from benchmarks.bench.root import ROOT
 from benchmarks.bench.targets import TARGETS
 
 
@@ -58,6 +61,27 @@ def test_steps_are_a_line_for_each_tracker(text):
     assert line(text, "| kcf itself |") == "| kcf itself | 1.5 |  |  | 50 % |"
 
 
+def test_the_page_says_what_is_dearer_than_on_the_last_one(text):
+    assert "There was no page to compare with." in text
+    assert "No step takes more than 1.1 times as long" in page(results(), text)
+    slower = results()
+    slower.cases = [
+        replace(case, ratio=case.ratio / 1.5) if case.name.startswith("step/") else case
+        for case in slower.cases
+    ]
+    assert line(page(slower, text), "| 1.50 |") == "| `apf` | 1.50 |"
+
+
+def test_the_table_of_dearer_steps_is_returned_for_the_terminal(tmp_path):
+    assert "There was no page" in write(results(), tmp_path)
+    assert "No step takes more" in write(results(), tmp_path)
+
+
+def test_each_kernel_has_its_share_of_the_bandwidth(text):
+    row = "| `joint512/41x31/vga/n200` | 0.002 | 0.05 | 4.0 % |"
+    assert line(text, "| 4.0 % |") == row
+
+
 def test_long_times_have_no_power_of_ten(text):
     assert "| `startup/apf/cold` | 17820 | 900 |" in text
 
@@ -74,10 +98,18 @@ def test_the_table_of_targets_is_a_file_of_its_own(tmp_path):
 
 def test_page_and_figures_are_written_and_the_same_each_time(tmp_path):
     contents = []
-    for _ in range(2):
-        write(results(), tmp_path / "docs")
-        files = sorted((tmp_path / "docs").rglob("*.*"))
+    for number in range(2):
+        folder = tmp_path / str(number)
+        write(results(), folder)
+        files = sorted(folder.rglob("*.*"))
         contents.append({path.name: path.read_bytes() for path in files})
     assert contents[0] == contents[1]
     assert set(contents[0]) == {"performance.md", "steps.svg"}
     assert b"images/performance/steps.svg" in contents[0]["performance.md"]
+
+
+def test_the_page_in_the_documentation_is_of_this_version():
+    described = (ROOT / "package.xml").read_text(encoding="utf-8")
+    version = described.partition("<version>")[2].partition("<")[0]
+    published = (ROOT / "docs" / PAGE).read_text(encoding="utf-8")
+    assert f"vehicle pf tracker {version}, " in published, "run make bench on a quiet machine"

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.core import array
-from vehicle_pf_tracker.core.array import product
+from vehicle_pf_tracker.core import products
+from vehicle_pf_tracker.core.products import product
 
 
 def test_product_of_small_matrices_by_hand():
@@ -25,7 +25,7 @@ def test_pieces_make_the_whole(rows, inner, columns, serial, stacks):
     left = rng.normal(size=(*stacks[0], rows, inner))
     right = rng.normal(size=(*stacks[1], inner, columns))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(array, "SERIAL", serial)
+        patch.setattr(products, "SERIAL", serial)
         assert product(left, right) == pytest.approx(left @ right, abs=1e-12)
 
 

@@ -17,7 +17,7 @@ import collections
 import cv2, numpy as np
 from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.kernels import numba_cells, numba_jit, numba_windows
+from vehicle_pf_tracker.image.kernels import numba_cells, numba_pixel_cells, numba_windows
 from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
@@ -76,8 +76,8 @@ for _ in range(1500):
     attempt(numba_windows.compare_counts, counts, rng.integers(0, 90, 3), scale)
     table = rng.integers(0, 99, int(rng.choice([0, 5, 64, 512]))).astype(np.uint16)
     attempt(numba_windows.joint_cells, frame, int(rng.integers(-1, 10)), table)
-    attempt(numba_jit.marginal_cells, frame, int(rng.integers(-1, 300)), table)
-    attempt(numba_jit.pair_cells, frame[..., 0], table)
+    attempt(numba_pixel_cells.marginal_cells, frame, int(rng.integers(-1, 300)), table)
+    attempt(numba_pixel_cells.pair_cells, frame[..., 0], table)
     grey = np.ascontiguousarray(frame[..., 0])
     attempt(numba_cells.gradient_cells, grey, int(rng.integers(-40, 2)))
 assert outcomes["refused"] > 2000 < outcomes["done"], outcomes

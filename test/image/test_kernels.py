@@ -89,6 +89,34 @@ def test_similarities_agree(numba, feature, data, frame, window):
     assert np.array_equal(similarities, again)
 
 
+@pytest.mark.parametrize("feature", FEATURES.values(), ids=list(FEATURES))
+@settings(max_examples=60)
+@given(data=st.data(), frame=scenes, window=windows)
+def test_histograms_are_the_same_to_the_last_bit(numba, feature, data, frame, window):
+    position = data.draw(clouds(frame))[:1]
+    expected = feature.histograms(frame, position, window)[0]
+    for chosen in (numba, OPENCV):
+        histogram = chosen.histogram(feature, frame, tuple(position[0].tolist()), window)
+        assert histogram.tobytes() == expected.tobytes()
+
+
+def test_edges_are_counted_alike_whatever_the_limits_of_the_other_windows(numba):
+    # Faint noise beside a bright corner: limits differ by far more than one list of points has.
+    frame = scene(7, (90, 160), "two levels") // 40 + 100
+    frame[40:60, 70:90] = scene(8, (20, 20), "noise")
+    feature, window = GradientDirections(threshold=0.3), Window(9, 7)
+    positions = np.random.default_rng(9).uniform((0, 0), (160, 90), (300, 2))
+    reference = Reference(feature.histograms(frame, np.array([[80.0, 50.0]]), window)[0])
+    together = numba.similarity(feature, frame, positions, window, reference)
+    apart = [
+        numba.similarity(feature, frame, position[np.newaxis], window, reference)[0]
+        for position in positions
+    ]
+    assert together.tolist() == apart
+    expected = OPENCV.similarity(feature, frame, positions, window, reference)
+    assert np.abs(together - expected).max() < 1e-6
+
+
 @pytest.mark.parametrize("name", ["opencv", "numba"])
 def test_nothing_is_like_an_empty_reference(request, name):
     chosen = OPENCV if name == "opencv" else request.getfixturevalue(name)

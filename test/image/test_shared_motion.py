@@ -6,13 +6,8 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.shared_motion import (
-    carried_share,
-    median,
-    shared_similarity,
-    shared_stretch,
-    staying,
-)
+from vehicle_pf_tracker.image.box_motion import carried_share, shared_stretch, staying
+from vehicle_pf_tracker.image.shared_motion import median, shared_similarity
 
 
 def moved(seed, turn=((1.01, -0.02), (0.02, 1.01)), shift=(4.0, -2.0), strays=8, noise=0.2):

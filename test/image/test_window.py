@@ -6,7 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.image.window import Window, bounds, centres, is_outside, keep_inside
+from vehicle_pf_tracker.image.window import (
+    Window,
+    bounds,
+    bounds_of_one,
+    centres,
+    is_outside,
+    keep_inside,
+)
 
 FRAME = np.zeros((48, 64, 3), np.uint8)
 
@@ -62,3 +69,15 @@ def test_outside_is_beyond_the_border():
     positions = (0.0, 0.0), (64.0, 48.0), (-0.1, 5.0), (5.0, 48.1)
     outside = [is_outside(FRAME, *position) for position in positions]
     assert outside == [False, False, True, True]
+
+
+@given(
+    st.floats(-1e6, 1e6) | st.integers(-20, 40).map(lambda half: half / 2),
+    st.floats(-1e6, 1e6) | st.integers(-20, 40).map(lambda half: half / 2),
+    st.integers(0, 9),
+    st.integers(0, 9),
+)
+def test_one_window_is_where_many_are(x, y, half_width, half_height):
+    frame, window = np.zeros((7, 11, 3), np.uint8), Window(half_width, half_height)
+    many = bounds(frame, np.array([[x, y]]), window)
+    assert bounds_of_one(frame, (x, y), window) == tuple(int(side[0]) for side in many)

@@ -42,6 +42,7 @@ def systematic(weights: Weights, count: int, rng: np.random.Generator) -> Ancest
 
 def residual(weights: Weights, count: int, rng: np.random.Generator) -> Ancestors:
     """Keep ``floor(count * w)`` copies of each particle, and draw the rest multinomially."""
+    # Expected counts need weights that sum to one; the other schemes scale their points instead.
     weights, _ = normalise(weights)
     expected = count * weights
     # 0.3 * 10 is 2.9999999999999996: an integer expectation must not lose a copy to rounding.

@@ -14,12 +14,8 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.shared_motion import (
-    LEAST_CORNERS,
-    STILL_SHARE,
-    PointFlow,
-    shared_similarity,
-)
+from vehicle_pf_tracker.image.point_flow import PointFlow
+from vehicle_pf_tracker.image.shared_motion import LEAST_CORNERS, STILL_SHARE, shared_similarity
 
 _LARGEST_SIDE = 320
 """Side in px that a frame is reduced to: the motion of its background is measured to a fraction of

@@ -13,8 +13,9 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.core.array import Array, product
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.products import product
 from vehicle_pf_tracker.image.window import Bounds
 
 Segments = npt.NDArray[np.float64]

@@ -16,7 +16,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.core.array import Array, product
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.products import product
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 
 Spectrum: TypeAlias = npt.NDArray[np.complex64]

@@ -22,6 +22,16 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.similarity import Reference, bhattacharyya_coefficient
 
+_MOST_PLANES = 48
+"""Bins integrated at once: OpenCV 5 takes 128 channels at most, and small blocks stay cached."""
+
+_MOST_VALUES = 1 << 22
+"""Bins times pixels integrated at once: bounds the memory to 32 MB of sums where windows are
+huge."""
+
+_EXACT_BITS = 53
+"""Bits of an integer that a float64 represents exactly."""
+
 Positions = npt.NDArray[np.float64]
 Centres = npt.NDArray[np.intp]
 
@@ -97,6 +107,22 @@ def bounds(frame: Frame, positions: Positions, window: Window) -> Bounds:
         np.maximum(y - window.half_height, 0),
         np.minimum(x + window.half_width + 1, width),
         np.minimum(y + window.half_height + 1, height),
+    )
+
+
+def bounds_of_one(
+    frame: Frame, position: tuple[float, float], window: Window
+) -> tuple[int, int, int, int]:
+    """Left, top, right, bottom of one window; `bounds` for a position (x, y) without arrays."""
+    width, height = frame_size(frame)
+    # `round` takes halves to even numbers, as `np.rint` does.
+    x = min(max(round(position[0] - 0.5), 0), width - 1)
+    y = min(max(round(position[1] - 0.5), 0), height - 1)
+    return (
+        max(x - window.half_width, 0),
+        max(y - window.half_height, 0),
+        min(x + window.half_width + 1, width),
+        min(y + window.half_height + 1, height),
     )
 
 
@@ -208,17 +234,6 @@ def to_grey(pixels: Frame) -> Grey:
 
 Bins: TypeAlias = npt.NDArray[np.intp]
 Counts: TypeAlias = npt.NDArray[np.int64]
-
-
-_MOST_PLANES = 48
-"""Bins integrated at once: OpenCV 5 takes 128 channels at most, and small blocks stay cached."""
-
-_MOST_VALUES = 1 << 22
-"""Bins times pixels integrated at once: bounds the memory to 32 MB of sums where windows are
-huge."""
-
-_EXACT_BITS = 53
-"""Bits of an integer that a float64 represents exactly."""
 
 
 def covered_region(frame: Frame, windows: Bounds, margin: int = 0) -> tuple[Frame, Bounds]:

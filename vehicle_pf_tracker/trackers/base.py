@@ -209,13 +209,13 @@ class BaseTracker(ABC, Generic[ParametersT]):
         self._target = Target(frame, box)
         self._first_frame = frame.copy()
         self._window = self._target.window(self.parameters.window)
+        # From the seed again: a restart repeats the first start, to the last bit.
         self._rng = np.random.default_rng(self.seed)
         self._judge = EvidenceJudge()
         self._cloud = Cloud.uniform(keep_inside(frame, self._scatter(box.centre)))
         self._learn()
         x, y = keep_inside(frame, np.asarray(box.centre))
         outcome = Outcome(self._cloud, (float(x), float(y)), (0.0, 0.0), START, 1.0, {})
-        self._check_finite(outcome)
         return self._estimate(outcome, Mode.TRACKING, 1.0, began)
 
     def step(self, frame: Frame, elapsed: float = 1.0) -> Estimate:
@@ -223,12 +223,12 @@ class BaseTracker(ABC, Generic[ParametersT]):
         began = time.perf_counter()
         outcome = self._advance(check_frame(frame), elapsed)
         self._first_frame = None
-        self._check_finite(outcome)
-        self._cloud = outcome.cloud
         seconds, left_image = elapsed * self.frame_period, outcome.left_image
         mode = self._judge.judge(outcome.evidence, seconds, self.parameters, left_image=left_image)
         confidence = self._judge.confidence(outcome.evidence) if outcome.cloud.sound else 0.0
-        return self._estimate(outcome, mode, confidence, began)
+        estimate = self._estimate(outcome, mode, confidence, began)
+        self._cloud = outcome.cloud
+        return estimate
 
     def reconfigure(self, parameters: ParametersT) -> None:
         """Take new parameters between two frames; the track goes on.
@@ -252,14 +252,6 @@ class BaseTracker(ABC, Generic[ParametersT]):
             self._judge.measures_anew()
             self._learn()
 
-    def _check_finite(self, outcome: Outcome) -> None:
-        # One sum of each: a number that is not finite makes it so.
-        numbers = *outcome.position, outcome.cloud.positions.sum(), outcome.cloud.weights.sum()
-        if not all(map(math.isfinite, numbers)):
-            raise ArithmeticError(
-                f"{type(self).__name__} gave particles, weights or a position that are not finite"
-            )
-
     @abstractmethod
     def _learn(self) -> None:
         """Build the references from `self.target`."""
@@ -274,13 +266,20 @@ class BaseTracker(ABC, Generic[ParametersT]):
 
     def _move(self, frame: Frame, positions: Array, moves: Array) -> tuple[Array, bool]:
         """Displace particles inside the image; also True if their mean crossed its border."""
+        # The mean is taken before positions are clipped, which would keep it inside for ever.
         proposed = positions + moves
         x, y = (proposed.sum(axis=0) / len(proposed)).tolist()
         return keep_inside(frame, proposed), is_outside(frame, x, y)
 
     def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:
-        target = self.target.box
+        target, (x, y) = self.target.box, outcome.position
         box = Box.around(outcome.position, *outcome.size or (target.width, target.height))
+        effective = effective_sample_size(outcome.cloud.weights)
+        # A weight that is not finite leaves no effective particles, a position no finite sum.
+        if not (effective > 0 and math.isfinite(x + y + outcome.cloud.positions.sum())):
+            raise ArithmeticError(
+                f"{type(self).__name__} gave particles, weights or a position that are not finite"
+            )
         return Estimate(
             position=outcome.position,
             box=box,
@@ -289,7 +288,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
             regime=outcome.regime,
             confidence=confidence,
             similarities=outcome.similarities,
-            effective_sample_size=effective_sample_size(outcome.cloud.weights),
+            effective_sample_size=effective,
             resampling_passes=outcome.resampling_passes,
             resampled_particles=outcome.resampled_particles,
             particles=read_only(outcome.cloud.positions),

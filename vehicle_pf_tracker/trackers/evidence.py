@@ -46,6 +46,7 @@ class RunningLevel:
     def add(self, value: float, rate: float) -> None:
         """Let level and deviation follow `value`, by the share `rate` (0 to 1) of the distance."""
         self.count += 1
+        # The first value has no level to be apart from.
         if self.count > 1:
             distance = min(abs(value - self.value), _LARGEST_EXCESS * self.deviation)
             self.deviation += rate * (distance - self.deviation)
@@ -89,14 +90,17 @@ class EvidenceJudge:
         left_image : bool
             True where the cloud's mean crossed the border before it was clipped.
         """
+        # Two thresholds: with one, similarities close to it would change the mode in each frame.
         visible = self.mode is Mode.TRACKING
         evidence = parameters.evidence
         share = evidence.occluded_below if visible else evidence.clear_above
         if similarity >= max(evidence.minimum, share * self.level):
             self.mode, self.seconds_without = Mode.TRACKING, 0.0
+            # Only here: a level that followed an occluder would take it for the vehicle.
             self._level.add(similarity, evidence.level_rate)
             return self.mode
         self.seconds_without += seconds
+        # Lost stays lost without evidence: an estimate at the border does not come back by waiting.
         is_long = self.seconds_without >= parameters.lost_after
         lost = left_image or is_long or self.mode is Mode.LOST
         self.mode = Mode.LOST if lost else Mode.OCCLUDED

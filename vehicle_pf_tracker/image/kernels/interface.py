@@ -10,10 +10,12 @@ import importlib
 import importlib.util
 from collections.abc import Sequence
 
+import numpy as np
+
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image import gradient_cells, mean_shift
-from vehicle_pf_tracker.image.similarity import Reference
+from vehicle_pf_tracker.image.similarity import Histogram, Reference
 from vehicle_pf_tracker.image.window import Coefficients, Positions, Window, WindowFeature
 
 
@@ -73,6 +75,18 @@ class Kernels:
             Bhattacharyya coefficients, 0 to 1.
         """
         return feature.similarity(frame, positions, window, reference)
+
+    def histogram(
+        self, feature: WindowFeature, frame: Frame, position: tuple[float, float], window: Window
+    ) -> Histogram:
+        """Describe the window at one position (x, y) in px; all kernels give the same bits.
+
+        Returns
+        -------
+        (bins,) array
+            Sums to one, or all zero where there is nothing to count.
+        """
+        return np.asarray(feature.histograms(frame, np.asarray([position]), window)[0])
 
 
 CHOICES = ("auto", "opencv", "numba")

@@ -78,7 +78,9 @@ def _direction_histograms(
         _gradients(grey, y, magnitudes, places)
         for x in range(1, width - 1):
             right = share[x] * magnitudes[x]
-            i = np.uint64(direction_of[places[x]]) * np.uint64(columns) + column[x]
+            # Whatever the table says, no sum behind the last one is written.
+            direction = min(direction_of[places[x]], np.uint8(DIRECTIONS - 1))
+            i = np.uint64(direction) * np.uint64(columns) + column[x]
             sums[i] += magnitudes[x] - right
             sums[i + np.uint64(1)] += right
         place_y = (y + 0.5) / CELL + 0.5
@@ -151,7 +153,7 @@ def _normalise(
 
 @compiled(_CELLS(_IMAGE, _BYTES, numba.intp))
 def _features(grey: Grey, direction_of: npt.NDArray[np.uint8], channels: int) -> CellFeatures:
-    if len(direction_of) < 511 * 511 or direction_of.max() >= DIRECTIONS:
+    if len(direction_of) < 511 * 511:
         raise IndexError("the table of directions is too short")
     if channels < DIRECTIONS + _HALF + 4:
         raise IndexError("there are fewer channels than features")

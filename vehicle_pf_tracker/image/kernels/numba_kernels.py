@@ -19,11 +19,17 @@ import numpy as np
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
-from vehicle_pf_tracker.image.gradients import GradientDirections, gradients_of
+from vehicle_pf_tracker.image.gradients import DIRECTION_BINS, GradientDirections
 from vehicle_pf_tracker.image.kernels import numba_jit
 from vehicle_pf_tracker.image.kernels.interface import Kernels
-from vehicle_pf_tracker.image.kernels.numba_jit import Cells, Table, marginal_cells, pair_cells
-from vehicle_pf_tracker.image.similarity import Reference
+from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
+    Cells,
+    Table,
+    marginal_cells,
+    number_cells,
+    pair_cells,
+)
+from vehicle_pf_tracker.image.similarity import Histogram, Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
 from vehicle_pf_tracker.image.window import (
     Coefficients,
@@ -31,11 +37,13 @@ from vehicle_pf_tracker.image.window import (
     Positions,
     Window,
     WindowFeature,
+    bounds_of_one,
     to_grey,
 )
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.image.kernels.numba_windows import Pixels, Reals
+    from vehicle_pf_tracker.image.kernels.numba_edges import Numbers
+    from vehicle_pf_tracker.image.kernels.numba_windows import Counts, Pixels, Reals
 
 _MODULES = ("numba_windows", "numba_edges", "numba_mean_shift", "numba_cells")
 """Modules whose kernels are compiled when they are imported, the commonest first."""
@@ -77,12 +85,15 @@ class CellTable(NamedTuple):
 @functools.lru_cache(maxsize=32)
 def table_of(reference: Reference) -> CellTable:
     """Return the table of a reference, computed once."""
-    count = len(reference.active)
-    cells = np.full(len(reference.histogram), count, np.uint16)
-    cells[reference.active] = np.arange(count)
-    values = np.zeros(-(-(count + 1) // _LANES) * _LANES)
-    values[:count] = np.sqrt(reference.values)
-    return CellTable(cells, values)
+    return CellTable(*number_cells(reference.histogram, _LANES))
+
+
+@functools.lru_cache(maxsize=8)
+def _every_bin(bins: int) -> Table:
+    """Table in which the cell of each bin is its own number, to count all."""
+    table = np.arange(bins, dtype=np.uint16)
+    table.flags.writeable = False
+    return table
 
 
 def roots_up_to(count: int) -> Reals:
@@ -170,6 +181,43 @@ class NumbaKernels(Kernels):
             return _compare_edges(feature, frame, positions, window, table)
         return super().similarity(feature, frame, positions, window, reference)
 
+    def histogram(
+        self, feature: WindowFeature, frame: Frame, position: tuple[float, float], window: Window
+    ) -> Histogram:
+        """Describe one window; see `Kernels.histogram`."""
+        if type(feature) in _COUNTED_PIXELS:
+            return _histogram_of_pixels(feature, frame, position, window)
+        if type(feature) is GradientDirections and feature.in_frame:
+            return _histogram_of_edges(feature, frame, position, window)
+        return super().histogram(feature, frame, position, window)
+
+
+def _histogram_of_pixels(
+    feature: WindowFeature, frame: Frame, position: tuple[float, float], window: Window
+) -> Histogram:
+    """Count every bin of one window's pixels."""
+    left, top, right, bottom = bounds_of_one(frame, position, window)
+    part, table = frame[top:bottom, left:right], _every_bin(feature.bins)
+    if isinstance(feature, JointColour):
+        cells = _kernels("numba_windows").joint_cells(part, feature.bits, table)
+    elif isinstance(feature, RgbMarginals):
+        cells = marginal_cells(part, CHANNEL_BINS, table)
+    else:
+        cells = pair_cells(to_grey(part), table)
+    counts = np.bincount(cells.ravel(), minlength=feature.bins)
+    return np.asarray(counts / max(cells.size, 1))
+
+
+def _histogram_of_edges(
+    feature: GradientDirections, frame: Frame, position: tuple[float, float], window: Window
+) -> Histogram:
+    """Count every direction of one window's edge points, the gradient taken in the frame."""
+    counts = np.empty((1, DIRECTION_BINS), np.int32)
+    totals = _count_edges(
+        feature, frame, np.array([position]), window, _every_bin(DIRECTION_BINS), counts
+    )
+    return np.asarray(counts[0] / max(int(totals[0]), 1))
+
 
 def _compare_pixels(
     feature: WindowFeature, frame: Frame, positions: Positions, window: Window, table: CellTable
@@ -205,21 +253,34 @@ def _compare_edges(
     table: CellTable,
 ) -> Reals:
     """Compare windows by the directions of their edge points, the gradient taken in the frame."""
+    counts = np.empty((len(positions), len(table.values)), np.int32)
+    totals = _count_edges(feature, frame, positions, window, table.cells, counts)
+    scale = table.values, roots_up_to(window.width * window.height)
+    similarity: Reals = _kernels("numba_windows").compare_counts(counts, totals, scale)
+    return similarity
+
+
+def _count_edges(
+    feature: GradientDirections,
+    frame: Frame,
+    positions: Positions,
+    window: Window,
+    cells: Table,
+    counts: Counts,
+) -> Numbers:
+    """Fill the counts (N, K + 1 or more) of the edge points' cells; their totals (N,)."""
     half = window.half_width, window.half_height
     # One pixel more makes every gradient in the windows that of the whole frame.
-    kernels, edges = _kernels("numba_windows"), _kernels("numba_edges")
-    pixels, (left, top, right, bottom) = kernels.place_windows(
+    pixels, (left, top, right, bottom) = _kernels("numba_windows").place_windows(
         positions, frame_size(frame), half, 1
     )
-    counts = np.empty((len(positions), len(table.values)), np.int32)
-    totals = edges.count_edges(
-        gradients_of(to_grey(frame[top:bottom, left:right])),
+    edges = _kernels("numba_edges")
+    totals: Numbers = edges.count_edges(
+        to_grey(frame[top:bottom, left:right]),
         pixels,
         half,
         (np.float32(feature.threshold) ** 2, np.float32(feature.floor) ** 2),
-        (table.cells, edges.TANGENTS, feature.signed),
+        (cells, edges.TANGENTS, feature.signed),
         counts,
     )
-    scale = table.values, roots_up_to(window.width * window.height)
-    similarity: Reals = kernels.compare_counts(counts, totals, scale)
-    return similarity
+    return totals

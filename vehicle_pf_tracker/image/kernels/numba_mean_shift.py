@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 from numba import types
 
-from vehicle_pf_tracker.image.kernels.numba_jit import CELLS, RECTANGLES, Cells, compiled, inlined
+from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
+from vehicle_pf_tracker.image.kernels.numba_pixel_cells import CELLS, RECTANGLES, Cells
 from vehicle_pf_tracker.image.kernels.numba_windows import REALS, Pixels, Reals
 from vehicle_pf_tracker.image.mean_shift import epanechnikov
 from vehicle_pf_tracker.image.window import Window

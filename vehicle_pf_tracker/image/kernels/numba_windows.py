@@ -19,7 +19,8 @@ import numpy.typing as npt
 from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.kernels.numba_jit import (
+from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
+from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
     CELLS,
     FRAME,
     RECTANGLES,
@@ -27,8 +28,6 @@ from vehicle_pf_tracker.image.kernels.numba_jit import (
     Cells,
     Rectangles,
     Table,
-    compiled,
-    inlined,
 )
 from vehicle_pf_tracker.image.window import Positions
 
@@ -49,9 +48,13 @@ _EXTENT = types.UniTuple(types.int64, 4)
 _COUNTS = types.int32[:, ::1]
 
 # Costs, roughly in cycles; they decide about the route, and not about the result.
+# Costs, roughly in cycles; they decide about the way to a result, and not about the result.
 _PIXEL = 4
+"""Entering or leaving of a pixel in a histogram."""
 _STEP = 10
+"""Move to the next column, whatever the number of bins."""
 _BINS_AT_ONCE = 8
+"""Bins that are added in a cycle."""
 
 
 @inlined
@@ -233,7 +236,10 @@ def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
         raise IndexError("the counts are not those of the reference's cells")
     result = np.empty(len(counts))
     for i in range(len(counts)):
-        if counts[i].min() < 0 or counts[i].max() > totals[i]:
+        least, most = np.int32(0), np.int32(0)
+        for k in range(len(values)):
+            least, most = min(least, counts[i, k]), max(most, counts[i, k])
+        if least < 0 or most > totals[i]:
             raise IndexError("more of a bin are counted than of all together")
         result[i] = _overlap(counts[i], values, totals[i], roots)
     return result

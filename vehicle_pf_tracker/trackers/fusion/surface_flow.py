@@ -17,9 +17,9 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image.box_motion import CELL, CellBlock, Flow, carried_share, solved
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.shared_motion import CELL, CellBlock, Flow, carried_share, solved
 
 _KEPT = 8
 """Patches kept; by less than half a canonical px per frame a vehicle is taken to stand."""

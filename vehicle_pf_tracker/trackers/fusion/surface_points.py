@@ -17,14 +17,14 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image import shared_motion
+from vehicle_pf_tracker.image import box_motion
 from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.shared_motion import PointFlow, PointMask, Points
+from vehicle_pf_tracker.image.point_flow import PointFlow, PointMask, Points
 from vehicle_pf_tracker.trackers.fusion.surface_flow import BOX_REACH
 
 _GRID = 8
 """Points along each axis: four fifths of 64 may be lost until they tell no more of the size
-(`shared_motion.FEWEST_POINTS`)."""
+(`box_motion.FEWEST_POINTS`)."""
 _GRID_REACH = 0.4
 """Outermost points from the centre, of the size, whose windows end at the box: half of one is a
 tenth of the canonical size, and the background is beyond."""
@@ -128,10 +128,10 @@ class SurfacePoints(NamedTuple):
         guess = np.asarray(patch.to_patch(before + position - started) - 0.5, np.float32)
         end, found = _flow(previous, patch, start, guess, _FLOW)
         after = patch.to_frame(end.astype(np.float64) + 0.5)
-        stretch = shared_motion.shared_stretch(before[found], after[found], size)
+        stretch = box_motion.shared_stretch(before[found], after[found], size)
         positions, living = positions.copy(), alive.copy()
         positions[alive], living[alive] = after, found
-        living = shared_motion.staying(places, (positions - position) / size, living, _STRAYED)
+        living = box_motion.staying(places, (positions - position) / size, living, _STRAYED)
         return SurfacePoints(self.previous, _Points(places, positions, living, age + 1), stretch)
 
     def renewed(self, position: Array, size: Array, *, whole: bool = True) -> SurfacePoints:

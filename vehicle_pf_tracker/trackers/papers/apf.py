@@ -222,8 +222,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         weights = from_log(shared.log_likelihood(rho, settings.likelihood))  # steps 11 and 12
         cloud = Cloud(particles, *weights)
         position = cloud.mean()  # step 13
-        at = np.asarray([position])
-        histogram = feature.histograms(frame, at, window)[0]  # step 14
+        histogram = self.kernels.histogram(feature, frame, position, window)  # step 14
         evidence = hellinger_similarity(histogram, self.reference.histogram)
         self._compare_and_learn(settings, histogram, evidence)  # steps 15 and 16
         if regular or not settings.velocity.frozen_while_occluded:

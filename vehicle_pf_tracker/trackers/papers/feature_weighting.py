@@ -34,6 +34,7 @@ def average_similarities(distances: Array, best_share: float) -> Array:
     (F,) array
         Mean of ``1 - BD`` (eq. 16), 0 to 1.
     """
+    # Far particles say how wide the cloud is, and not whether the vehicle is visible.
     count = max(math.ceil(best_share * distances.shape[1]), 1)
     best = np.partition(distances, count - 1, axis=1)[:, :count]
     return np.asarray(1.0 - best.mean(axis=1))
@@ -74,6 +75,8 @@ def weigh_features(averages: Array, initial: Array, threshold: float) -> Feature
     threshold : float
         Share of `initial` below which a feature drops out.
     """
+    # A feature that drops out has no weight at all: a part of an occluder that happens to be
+    # similar would pull the position as strongly as the vehicle.
     useful = (averages > 0) & (averages >= threshold * initial)
     ratios = averages / np.where(initial > 0, initial, 1.0)
     confidences = np.where(useful & (initial > 0), ratios, 0.0)

@@ -68,9 +68,10 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         settings = self.parameters
         parents = self._resample(self._cloud)
         particles, left_image = self._diffuse(frame, parents, self.spread() * elapsed)
-        window, reference, bits = self.window, self._reference, settings.histogram_bits
+        measured_by = self.window, self._reference, settings.histogram_bits
+        # Mean shift takes each particle to the next maximum, so that 25 do for hundreds.
         for _ in range(settings.iterations):
-            particles = self.kernels.mean_shift(frame, particles, window, reference, bits)
+            particles = self.kernels.mean_shift(frame, particles, *measured_by)
         rho = self.similarity(frame, particles)
         cloud = Cloud(particles, *from_log(log_likelihood(rho, settings.likelihood)))
         outcome = self._report(frame, cloud, elapsed, left_image=left_image)

@@ -103,8 +103,12 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         """Disperse the first particles (step 1)."""
-        self._velocity, self._position = MeanVelocity(self._settings.velocity_window), centre
-        self._searching, self._predicted_for, self._age = self._settings.extended, 0.0, 0.0
+        self._velocity = MeanVelocity(self._settings.velocity_window)
+        self._position = centre
+        # The first measured frame is searched widely: the vehicle's speed is not known yet.
+        self._searching = self._settings.extended
+        self._predicted_for = 0.0
+        self._age = 0.0
         self._initial = self._ancestors = None
         return centre + self._noise(self._search_radius(1.0))
 
@@ -113,23 +117,29 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         rho = self._compare(frame, particles)  # step 2
         averages = self._averages(rho)
         if self._initial is None:
+            # AS(1): what the features reach while the whole vehicle is visible. Later frames are
+            # judged by their share of it, since features differ in how similar they ever get.
             self._initial = averages
-        # Step 3: the object's position by equation 5 with the last increments.
+        # Step 3: the object's position by equation 5 with the last increments. It is the estimate
+        # only where no feature is in use; else step 4 finds one from the particles.
         moved = np.asarray(self._position) + np.asarray(self._velocity.value) * elapsed
         x, y = keep_inside(frame, moved).tolist()
         weighting = self._weigh_features(averages, self._initial)  # step 4, to its update
-        is_hidden, passes = weighting.full_occlusion, 0
+        is_hidden = weighting.full_occlusion
         weights, cloud = self.weigh(particles, prior, rho, weighting)
         position = (x, y) if is_hidden else self._locate(particles, weights, weighting)
-        at, window = np.asarray([position]), self.window
-        histograms = [one.histograms(frame, at, window)[0] for one in self.features.values()]
+        # At the estimate, not averaged over particles: the reference learns one window (eq. 9).
+        histograms = [
+            self.kernels.histogram(feature, frame, position, self.window)
+            for feature in self.features.values()
+        ]
         similarities = [
             hellinger_similarity(found, reference.histogram)
             for found, reference in zip(histograms, self.references, strict=True)
         ]
         self._update(weighting, histograms, position, elapsed)
-        if not is_hidden:
-            passes = self._resample(cloud, weights)  # step 5
+        # Step 5. Hidden particles all weigh the same, and are dispersed anew in the next frame.
+        passes = 0 if is_hidden else self._resample(cloud, weights)
         return Outcome(
             cloud,
             position,
@@ -158,9 +168,11 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         radius *= settings.search_factor if is_starting else 1.0
         self._age += elapsed
         if self._searching:
+            # After a prediction the old particles stand where the vehicle was last seen.
             cloud = Cloud.uniform(np.tile(self._position, (settings.num_particles, 1)))
             radius = self._search_radius(elapsed)
         elif self._ancestors is not None:
+            # Copies of one particle part here, by the noise that each draws for itself.
             cloud = Cloud.uniform(cloud.positions[self._ancestors])
         elif not settings.weight_recursion:
             cloud = Cloud.uniform(cloud.positions)
@@ -177,6 +189,8 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         return sample_disc(self._rng, count, radius)
 
     def _search_radius(self, elapsed: float) -> float:
+        # The longer the vehicle is predicted, the less is known of where it is; the largest radius
+        # bounds the search where windows would share no pixels, and cost the most.
         dispersion = self._settings.dispersion
         nominal = self._settings.search_factor * dispersion.radius * elapsed
         grown = nominal + dispersion.growth * self._predicted_for

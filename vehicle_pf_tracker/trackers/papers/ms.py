@@ -59,14 +59,17 @@ class MsTracker(BaseTracker[MsParameters]):
         return np.asarray([centre])
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        settings, place = self.parameters, self._cloud.positions
+        settings = self.parameters
+        place = self._cloud.positions
         measured_by = self.window, self._reference, settings.histogram_bits
+        # Steps 2 to 4; the bound ends the rare walks between two places of one weight.
         for _ in range(settings.iterations):
             last, place = place, self.kernels.mean_shift(frame, place, *measured_by)
             if np.hypot(*(place - last)[0]) < settings.shortest_step:
                 break
         cloud = Cloud.uniform(place)
         position = cloud.mean()
+        # Steps use the weights of pixels only: the similarity is not known before the end.
         rho = self.kernels.kernel_similarity(frame, place, *measured_by)
         similarity = float(1.0 - hellinger_distance(rho)[0])
         self._velocity.add(self._cloud.mean(), position, elapsed)

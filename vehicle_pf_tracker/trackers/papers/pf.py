@@ -66,7 +66,8 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
         self._reference = Reference(histogram)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
-        self._velocity, self._position = shared.MeanVelocity(VELOCITY_WINDOW), centre
+        self._velocity = shared.MeanVelocity(VELOCITY_WINDOW)
+        self._position = centre
         settings = self._settings
         return np.asarray(centre) + sample_normal(self._rng, settings.num_particles, settings.sigma)
 
@@ -87,6 +88,8 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
         self, frame: Frame, cloud: Cloud, elapsed: float, *, left_image: bool, passes: int = 1
     ) -> Outcome:
         """Take the cloud's mean as the estimate, with the similarity there as evidence."""
+        # The window at the estimate is measured by itself: a mean of particles on both sides of an
+        # occluder is on it, and only this tells.
         position = cloud.mean()
         coefficient = self.similarity(frame, np.asarray([position]))
         similarity = float(1.0 - hellinger_distance(coefficient)[0])
@@ -139,13 +142,17 @@ class PfTracker(ColourTracker[PfParameters]):
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self.parameters
+        # Resampling opens the frame, so that the estimate before it is taken from the weights.
         ancestors = self._draw(self._cloud.weights, settings.resampling)
-        parents, speeds = self._cloud.positions[ancestors], self._speeds[ancestors]
+        parents = self._cloud.positions[ancestors]
+        speeds = self._speeds[ancestors]
         expected = parents
         if settings.dynamics == "second_order":
             expected = parents + speeds * elapsed
         particles, left_image = self._diffuse(frame, expected, settings.sigma * elapsed)
+        # In one instant nothing has a speed: particles keep the one that they had.
         self._speeds = (particles - parents) / elapsed if elapsed > 0 else speeds
+        # As logarithms: with a small sigma_v most weights are below the least float.
         rho = self.similarity(frame, particles)
         cloud = Cloud(particles, *from_log(shared.log_likelihood(rho, settings.likelihood)))
         return self._report(frame, cloud, elapsed, left_image=left_image)

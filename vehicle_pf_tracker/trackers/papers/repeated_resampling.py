@@ -132,10 +132,14 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
         moved, left_image = self._diffuse(frame, parents, settings.sigma * elapsed)  # steps 3 to 7
         prior = self._cloud.weights if settings.weight_recursion else None  # eq. 6
         particles = self.weigh(moved, self.similarity(frame, moved), prior)  # steps 8 to 11
-        passes, replaced, regime = 0, 0, "regular"
+        # The criterion may never be met, as by printed values: a frame's time has to have a bound.
+        passes = 0
+        replaced = 0
+        regime = "regular"
         while passes < settings.most_passes and self._is_degenerate(particles):  # steps 12 and 13
             particles, count, regime = self.resample_once(frame, particles, elapsed)
-            passes, replaced = passes + 1, replaced + count
+            passes += 1
+            replaced += count
         cloud = particles.cloud
         reported = cloud if settings.weighted_mean else Cloud.uniform(cloud.positions)
         outcome = self._report(frame, reported, elapsed, left_image=left_image)  # step 21
@@ -174,9 +178,13 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
         spread = jitter * self._settings.sigma * elapsed
         parents = particles.cloud.positions[ancestors]
         copies = keep_inside(frame, parents + sample_normal(self._rng, count, spread))
-        positions, coefficients = particles.cloud.positions.copy(), particles.coefficients.copy()
+        rho = self.similarity(frame, copies)
+        if count == len(replaced):  # `conventional`: nothing of the old cloud is left to copy
+            return self.weigh(copies, rho), count, regime
+        positions = particles.cloud.positions.copy()
+        coefficients = particles.coefficients.copy()
         positions[replaced] = copies
-        coefficients[replaced] = self.similarity(frame, copies)
+        coefficients[replaced] = rho
         return self.weigh(positions, coefficients), count, regime
 
     @abstractmethod

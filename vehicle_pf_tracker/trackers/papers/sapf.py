@@ -45,6 +45,7 @@ def survival_rate(log_weights: Weights, beta: float) -> float:
         ``D(beta) / N`` with the survival diagnostic ``D = 1 / sum(w²)`` of the normalised
         ``w ** beta``: from the share of particles that have the largest weight, to 1.
     """
+    # Relative to the largest, which is one then: no rate makes them overflow.
     weights = np.exp(beta * (log_weights - log_weights.max()))
     return float(weights.sum() ** 2 / (weights @ weights) / len(weights))
 
@@ -68,7 +69,8 @@ def annealing_rate(log_weights: Weights, survival: float, largest: float) -> flo
         From 0 to `largest`, to four digits. The survival rate falls as the rate grows, so there is
         one solution.
     """
-    low, high = 0.0, largest
+    low = 0.0
+    high = largest
     if survival_rate(log_weights, high) >= survival:
         return high
     for _ in range(_MOST_HALVINGS):
@@ -124,13 +126,16 @@ class SapfTracker(ColourTracker[SapfParameters]):
     """The annealed particle filter; the resampling after the last layer opens the next frame."""
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        settings, annealing = self.parameters, self.parameters.annealing
-        cloud, sigma = self._cloud, settings.sigma * elapsed
+        settings = self.parameters
+        annealing = settings.annealing
+        cloud = self._cloud
+        sigma = settings.sigma * elapsed
         left_image = False
         for _ in range(annealing.layers):
             particles, left_image = self._diffuse(frame, self._resample(cloud), sigma)
             rho = self.similarity(frame, particles)
             log_weights = log_likelihood(rho, settings.likelihood)
+            # Flat weights first, so that the layer keeps all maxima; later ones choose among them.
             beta = annealing_rate(log_weights, annealing.survival, annealing.largest_rate)
             cloud = Cloud(particles, *from_log(beta * log_weights))
             if annealing.tied:

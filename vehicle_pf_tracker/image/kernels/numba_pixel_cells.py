@@ -1,0 +1,88 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Active bin of each pixel, in numba.
+
+Cells are numbers from 0 to K, where K stands for all bins that are not active. They form planes,
+shape (P, H, W): a window's counts are those of all planes together.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from numba import types
+
+from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.kernels.numba_jit import compiled
+from vehicle_pf_tracker.image.similarity import Histogram
+from vehicle_pf_tracker.image.window import Grey
+
+Cells: TypeAlias = npt.NDArray[np.uint16]
+Table: TypeAlias = npt.NDArray[np.uint16]
+Rectangles: TypeAlias = npt.NDArray[np.int64]
+
+FRAME = types.Array(types.uint8, 3, "A", readonly=True)
+GREY = types.Array(types.uint8, 2, "A", readonly=True)
+TABLE = types.Array(types.uint16, 1, "C", readonly=True)
+CELLS = types.uint16[:, :, ::1]
+RECTANGLES = types.int64[:, ::1]
+
+
+@compiled(CELLS(FRAME, types.int64, TABLE))
+def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
+    """Cells of each channel's own bins, a plane each; channel `c` has bins from ``c * levels``."""
+    height, width, channels = pixels.shape
+    if channels != 3 or not 0 <= 3 * levels <= len(table):
+        raise IndexError("the reference has fewer bins than the feature")
+    cells = np.empty((3, height, width), np.uint16)
+    for y in range(height):
+        for x in range(width):
+            for channel in range(3):
+                level = (pixels[y, x, channel] * levels) >> 8
+                cells[channel, y, x] = table[channel * levels + level]
+    return cells
+
+
+@compiled(CELLS(GREY, TABLE))
+def pair_cells(grey: Grey, table: Table) -> Cells:
+    """Cells of the 8 x 8 grey levels of each pixel and the next one in its row, one plane."""
+    height, width = grey.shape[0], max(grey.shape[1] - 1, 0)
+    if len(table) < 64:
+        raise IndexError("the reference has fewer bins than the feature")
+    cells = np.empty((1, height, width), np.uint16)
+    for y in range(height):
+        for x in range(width):
+            cells[0, y, x] = table[((grey[y, x] >> 5) << 3) | (grey[y, x + 1] >> 5)]
+    return cells
+
+
+@compiled(
+    types.Tuple((types.uint16[::1], types.float64[::1]))(
+        types.Array(types.float64, 1, "A", readonly=True), types.int64
+    )
+)
+def number_cells(histogram: Histogram, lanes: int) -> tuple[Table, Histogram]:
+    """Give a number to each bin that is not zero: cell of each bin, and roots of the cells' values.
+
+    All other bins have the number after the last; the values are padded with zeros to a multiple of
+    `lanes`. A reference that follows the vehicle is numbered in each frame, which numpy does in
+    half a dozen calls.
+    """
+    if len(histogram) > 1 << 15 or lanes < 1:
+        raise IndexError("there are more bins than cells can number")
+    active = 0
+    for value in histogram:
+        active += value != 0
+    cells = np.full(len(histogram), active, np.uint16)
+    values = np.zeros(-(-(active + 1) // lanes) * lanes)
+    number = 0
+    for k in range(len(histogram)):
+        if histogram[k] != 0:
+            cells[k] = number
+            values[number] = math.sqrt(histogram[k])
+            number += 1
+    return cells, values
