@@ -5,6 +5,7 @@
 
 import json
 import os
+import re
 import resource
 import signal
 import sys
@@ -427,3 +428,12 @@ def test_a_target_that_stands_while_others_drive_is_a_notice(run, tmp_path, caps
         "vehicle-pf-tracker: note: 1: frame 11: the target has not moved for 5 s while other "
         "things did: it stands, or it is no vehicle"
     ]
+
+
+def test_a_page_of_a_run_costs_no_estimate_and_keeps_its_token(run, video, tmp_path, capsys):
+    words = ("--serve", "0", "--token", "a-word-of-mine")
+    assert run(video, "--target", TARGET, *words) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"open http://127\.0\.0\.1:\d+/a-word-of-mine/ in a browser on this", out)
+    assert len(estimates(tmp_path / "out")) == COUNT
+    assert "a-word-of-mine" not in (tmp_path / "out" / "run.json").read_text()

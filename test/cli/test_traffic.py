@@ -306,7 +306,9 @@ def test_what_can_have_no_effect_is_said(run, tmp_path, capsys):
         (["--start", "99"], True, "no frame lies between", 1),
         (["--lines", "none.yaml"], True, "cannot read the counting lines none.yaml", 1),
         (["--detector", "nothing"], False, "invalid choice", 2),
-        (["--serve", "70000"], True, "page_port must be from -1 to 65535", 1),
+        (["--serve", "70000"], True, "'70000' is not [HOST:]PORT, with a port from 0", 2),
+        (["--serve", "a:b"], True, "'a:b' is not [HOST:]PORT", 2),
+        (["--serve", "--token", "a/b"], True, "a token has 8 to 100 letters", 2),
     ],
 )  # fmt: skip
 def test_a_mistake_is_one_sentence(run, tmp_path, capsys, words, detections, said, status):
@@ -355,9 +357,23 @@ def test_a_page_shows_picture_and_counts_meanwhile(run, monkeypatch, tmp_path, c
     picture, facts = answers
     assert picture.startswith(b"\xff\xd8")
     assert json.loads(facts) == {
-        "vehicles": 2, "yard: inside": 2, "exit: down": 0, "exit: up": 0,
-        "yard: entry": 0, "yard: exit": 0,
-    }  # fmt: skip
+        "vehicles": 2,
+        "summary": "0:00.1, frame 3, 2 vehicles in view",
+        "tables": [
+            {"title": "in view", "columns": ["class", "vehicles"], "rows": [["car", 2]]},
+            {
+                "title": "lines",
+                "columns": ["line", "direction", "counted", "last minute", "km/h"],
+                "rows": [["exit", "down", 0, 0, None], ["exit", "up", 0, 0, None]],
+            },
+            {
+                "title": "zones",
+                "columns": ["zone", "inside", "entered", "left"],
+                "rows": [["yard", 2, 0, 0]],
+            },
+        ],
+        "ended": False,
+    }
 
 
 def test_an_interrupt_keeps_what_was_written(run, monkeypatch, capsys):

@@ -36,7 +36,7 @@ def driving(number):
     return Detections.make([[100, 3 * (number % 40), 30, 20]], [0.9], ["car"])
 
 
-DRIVING = SimpleNamespace(of=driving, notices=[])
+DRIVING = SimpleNamespace(of=driving, notices=[], misfit=lambda size: "")
 
 
 @pytest.fixture

@@ -55,3 +55,22 @@ def test_times_begin_when_the_camera_has_a_clock():
 def test_a_pause_of_hours_is_no_other_clock():
     assert start_of_clock(5, 5 + 3600 * 10**9) == 5
     assert start_of_clock(None, 7) == 7
+
+
+@pytest.mark.parametrize(
+    ("box", "size", "words"),
+    [
+        ((300.0, 100.0, 30.0, 20.0), (320, 240), "LEFT the image at 0:00.2"),
+        ((-1.0, 100.0, 30.0, 20.0), (320, 240), "LEFT the image at 0:00.2"),
+        ((100.0, 225.0, 30.0, 20.0), (320, 240), "LEFT the image at 0:00.2"),
+        ((100.0, 100.0, 30.0, 20.0), (320, 240), "LOST from 0:00.2"),
+        ((300.0, 100.0, 30.0, 20.0), None, "LOST from 0:00.2"),
+    ],
+)
+def test_a_vehicle_lost_at_the_border_has_left(box, size, words):
+    centre = box[0] + box[2] / 2, box[1] + box[3] / 2
+    seen = [
+        EstimateRow(n, n * 10**8, *centre, *box[2:], "TRACKING", 0.9, 1.0, 1.0) for n in range(2)
+    ]
+    lost = [EstimateRow(n, n * 10**8, *centre, *box[2:], "LOST", 0.0, 1.0, 1.0) for n in (2, 3)]
+    assert words in summary([*seen, *lost], size)

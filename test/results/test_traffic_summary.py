@@ -128,11 +128,52 @@ def test_the_road_is_blue_where_vehicles_drove_and_red_where_they_stood(tmp_path
         away = [estimate(3, mode, Box(200, 200, 40, 30)) for mode in "tL"]
         heat.add(ground, [drives, stands, *away], 10**12 + index * 80_000_000, 0.04)
     heat.write(tmp_path / "heat.png", ground)
-    assert written[1] == "stood (red): at most 4.0 s"  # by the stamps
+    assert written == ["drove: 0 to 4.0 s, log.", "stood: 0 to 4.0 s, log."]  # by the stamps
     image = cv2.imread(str(tmp_path / "heat.png"))[:, :, ::-1].astype(int)
     red, green, blue = image[78, 120]  # the lower part of the box
     assert blue > green > red
     red, _, blue = image[185, 120]
     assert red > blue + 100
-    for row, column in ((62, 120), (155, 120), (225, 220), (5, 310)):
+    for row, column in ((62, 120), (155, 120), (225, 220), (50, 310)):
         assert (image[row, column] == 90).all()  # upper parts, and those that are not there
+
+
+def test_a_short_stop_is_faint_beside_a_long_one(tmp_path):
+    heat, ground = HeatPicture(), np.full((240, 320, 3), 90, np.uint8)
+    long = replace(estimate(1, "T", Box(20, 150, 40, 40)), velocity=(0.0, 0.0))
+    short = replace(estimate(2, "T", Box(200, 150, 40, 40)), velocity=(0.0, 0.0))
+    for index in range(1500):
+        heat.add(ground, [long, short][: 1 + (index < 3)], index * 40_000_000, 0.04)
+    heat.write(tmp_path / "heat.png", ground)
+    image = cv2.imread(str(tmp_path / "heat.png"))[:, :, ::-1].astype(int)
+    minute, moment = image[185, 40], image[185, 220]
+    assert minute[0] - minute[2] > 100
+    assert 0 < moment[0] - moment[2] < 15
+    bar = image[35, 6:102]  # of the standing ones, from grey to red
+    assert bar[0, 0] - bar[0, 2] < 20 and bar[-1, 0] - bar[-1, 2] > 100
+
+
+def test_many_paths_are_lanes_coloured_by_heading(tmp_path):
+    picture = PathPicture()
+    frame = np.zeros((240, 320, 3), np.uint8)
+    for vehicle in range(30):
+        for index in range(40):
+            x = 7 * index if vehicle % 2 else 300 - 7 * index
+            box = Box(x, 60 + 80 * (vehicle % 2) + vehicle % 3, 20, 20)
+            picture.add(frame, [estimate(vehicle + 1, "T", box)])
+    picture.write(tmp_path / "paths.png", NOWHERE)
+    image = cv2.imread(str(tmp_path / "paths.png"))[:, :, ::-1].astype(int)
+    there = image[2 * 70, 100:300].mean(axis=0)
+    back = image[2 * 150, 100:300].mean(axis=0)
+    assert np.abs(there - back).max() > 100  # opposite headings, unlike colours
+    assert len({tuple(colour) for colour in image[2 * 70, 100:300].tolist()}) < 12
+
+
+def test_a_vehicle_that_is_found_elsewhere_draws_no_line_across(tmp_path):
+    picture = PathPicture()
+    frame = np.zeros((240, 320, 3), np.uint8)
+    for x in (20, 24, 28, 270, 274):
+        picture.add(frame, [estimate(1, "T", Box(x, 60, 20, 20))])
+    picture.write(tmp_path / "paths.png", NOWHERE)
+    image = cv2.imread(str(tmp_path / "paths.png"))
+    assert not image[2 * 70, 2 * 60 : 2 * 250].any()

@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.showing import page_server
-from vehicle_pf_tracker.showing.page_server import LivePage
+from vehicle_pf_tracker.showing import live_page, page_server
+from vehicle_pf_tracker.showing.live_page import LivePage
 
 GREY = np.full((48, 64, 3), 120, np.uint8)
 get = build_opener(ProxyHandler({})).open  # from this machine, whatever proxy there is
@@ -116,6 +116,52 @@ def test_strangers_leave_the_page_to_its_user(monkeypatch):
 
 def test_who_knows_the_address_may_take_longer(monkeypatch):
     monkeypatch.setattr(page_server, "_STRANGER_SECONDS", 0.3)
-    monkeypatch.setattr(page_server, "_SECONDS", 1.5)
+    monkeypatch.setattr(live_page, "_SECONDS", 1.5)
     with closing(LivePage(0)) as page, pytest.raises(HTTPError, match="404"):
         get(f"{page.url}picture.jpg")  # waits for a picture that does not come
+
+
+def test_who_looks_on_is_shown_the_last_picture_and_that_the_run_has_ended():
+    page, answers = LivePage(0), []
+
+    def browse():
+        while not (answers and answers[-1]["ended"]):
+            get(f"{page.url}picture.jpg").read()
+            answers.append(json.loads(get(f"{page.url}counts.json").read()))
+
+    browser = threading.Thread(target=browse)
+    browser.start()
+    last = np.full((48, 64, 3), 250, np.uint8)
+    for number in range(50):
+        page.show(lambda: GREY, lambda number=number: {"vehicles": number})
+        time.sleep(0.005)
+    page.show(lambda: last, lambda: {"vehicles": 99})
+    page.close()
+    browser.join(10)
+    assert not browser.is_alive()
+    assert answers[-1] == {"vehicles": 99, "ended": True}
+
+
+def test_a_page_that_nobody_looks_at_ends_at_once():
+    page = LivePage(0)
+    page.show(lambda: GREY, dict)
+    began = time.monotonic()
+    page.close()
+    assert time.monotonic() - began < 1.5
+
+
+@pytest.mark.parametrize(
+    ("host", "shown"), [("127.0.0.1", "127.0.0.1"), ("0.0.0.0", None), ("::1", "[::1]")]
+)
+def test_a_page_may_be_served_elsewhere_under_a_word_of_ones_own(host, shown):
+    try:
+        page = LivePage(0, host, "a-word-of-mine")
+    except InputError:
+        pytest.skip(f"there is no {host} here")
+    with closing(page):
+        name = shown or socket.gethostname()
+        assert page.url == f"http://{name}:{page.server_port}/a-word-of-mine/"
+        local = f"http://{shown or '127.0.0.1'}:{page.server_port}"
+        assert b"picture.jpg" in get(f"{local}/a-word-of-mine/").read()
+        with pytest.raises(HTTPError, match="404"):
+            get(f"{local}/")

@@ -77,8 +77,8 @@ def test_a_speed_is_written_where_the_road_is_known(monkeypatch):
     corners = ((0.0, 0.0), (320.0, 0.0), (320.0, 240.0), (0.0, 240.0))
     pairs = [Pair((x, y), (x / 10, y / 10)) for x, y in corners]
     for plane, said in (
-        (RoadPlane.of_pairs(pairs, None, margin=0.0, coarsest=1.0), "1 car 36 km/h"),
-        (None, "1 car"),
+        (RoadPlane.of_pairs(pairs, None, margin=0.0, coarsest=1.0), "#1 car  36 km/h"),
+        (None, "#1 car"),
     ):
         counter = Counter(CountingPlan(), plane)
         for index in range(25):
@@ -135,8 +135,11 @@ def written(monkeypatch, estimates, words=""):
     places = {}
 
     def note(picture, words, corner, colour, width=1):
-        (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, width)
-        places[words] = (corner[0], corner[1] - 11 * width, corner[0] + across, corner[1])
+        scale, pen = 0.45 * width, max(1, round(width))
+        (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, scale, pen)
+        # With the dark edge around the letters.
+        left, right = corner[0] - pen, corner[0] + across + pen
+        places[words] = (left, corner[1] - 10 * width - pen, right, corner[1] + pen)
 
     monkeypatch.setattr(drawing, "write_words", note)
     annotated(BLACK, words, estimates, Counter(CountingPlan()), Trails())
@@ -156,9 +159,9 @@ def test_words_do_not_cover_each_other_nor_leave_the_picture(monkeypatch):
 
 def test_a_vehicle_in_a_crowd_still_has_its_number(monkeypatch):
     estimates = [vehicle(n, 150, 120, size=(24, 18)) for n in range(1, 9)]
-    assert {words.split()[0] for words in written(monkeypatch, estimates) if words} == set(
-        map(str, range(1, 9))
-    )
+    assert {words.split()[0] for words in written(monkeypatch, estimates) if words} == {
+        f"#{number}" for number in range(1, 9)
+    }
 
 
 def test_a_grid_can_be_read_in_4k():
@@ -168,3 +171,25 @@ def test_a_grid_can_be_read_in_4k():
     )
     white_vga, white_uhd = ((one == 255).all(axis=2).sum() for one in (vga, uhd))
     assert white_uhd > 4 * white_vga
+
+
+@pytest.mark.parametrize("corner", [(0.0, 5.0), (319.0, 5.0), (0.0, 239.0), (319.0, 239.0)])
+def test_the_name_of_a_line_at_the_border_is_whole(monkeypatch, corner):
+    places = {}
+    note = lambda picture, words, at, colour, width=1: places.update({words: (at, width)})  # noqa: E731
+    monkeypatch.setattr(drawing, "write_words", note)
+    plan = CountingPlan((CountingLine("stop line", corner, (160.0, 120.0)),), ())
+    annotated(BLACK, "", [], Counter(plan), Trails())
+    ((words, ((left, bottom), width)),) = places.items()
+    pen = max(1, round(width))
+    (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, pen)
+    assert left >= pen and left + across + pen <= 320
+    assert bottom - 10 * width >= 0 and bottom + pen <= 240
+
+
+@pytest.mark.parametrize(("size", "least"), [((180, 320), 9), ((360, 640), 16), ((720, 1280), 18)])
+def test_letters_of_small_video_are_legible(size, least):
+    picture = np.zeros((*size, 3), np.uint8)
+    drawing.write_line(picture, "HHH", (255, 255, 255))
+    rows = np.flatnonzero(picture.any(axis=(1, 2)))
+    assert least <= rows[-1] - rows[0] + 1 <= size[0] / 10 + 2

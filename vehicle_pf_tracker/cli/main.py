@@ -16,7 +16,7 @@ from vehicle_pf_tracker.cli import console
 from vehicle_pf_tracker.cli.missing_modules import check_extra, remedy
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
-from vehicle_pf_tracker.core.addresses import shown
+from vehicle_pf_tracker.core.addresses import HIDDEN, shown
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 VERBS: Mapping[str, tuple[str, str]] = {
@@ -91,6 +91,17 @@ def _run(words: list[str]) -> int:
     return status
 
 
+def _without_secrets(words: Sequence[str]) -> list[str]:
+    """Return the words of a command without passwords in addresses, nor the token of a page."""
+    hidden = [shown(word) for word in words]
+    for index, word in enumerate(words):
+        if word.startswith("--token="):
+            hidden[index] = f"--token={HIDDEN}"
+        elif index and words[index - 1] == "--token":
+            hidden[index] = HIDDEN
+    return hidden
+
+
 def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     """Make the parser, with the options of the verb that `words` ask for, or of all if None.
 
@@ -116,7 +127,6 @@ def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
         if words is None or name == asked:
             module = importlib.import_module(f"vehicle_pf_tracker.cli.{module_name}")
             add_options(verb, module.Request)
-            verb.set_defaults(
-                verb=name, module=module, command=[console.PROGRAM, *map(shown, words or ())]
-            )
+            command = [console.PROGRAM, *_without_secrets(words or ())]
+            verb.set_defaults(verb=name, module=module, command=command)
     return parser

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, counting, print_rows, tell_notices
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, Names, TruthOptions, option, switch
+from vehicle_pf_tracker.cli.serving import served
 from vehicle_pf_tracker.cli.stopping import Stop, cut_short, numbered_part, stopping
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.addresses import short_name
@@ -102,7 +103,8 @@ def _track(
     else:
         _score(request, source, folder, *rows.values())
     for name, of_target in rows.items():
-        print(f"{name + ': ' if len(rows) > 1 else ''}{summary(of_target)}")
+        size = trackers[name].session.size
+        print(f"{name + ': ' if len(rows) > 1 else ''}{summary(of_target, size)}")
     has_sheet = sheet.exists()
     print(f"results are in {folder}{f'; {SHEET} shows the key frames' if has_sheet else ''}")
     if pictures.has_video:
@@ -116,15 +118,19 @@ def _follow(
     request: Request, variant: Variant, source: ImageSource, stop: Stop, pictures: Pictures
 ) -> tuple[dict[str, OfflineTracker], dict[str, list[EstimateRow]]]:
     """Follow all targets to the end or to a signal; return their trackers and rows by name."""
-    with stopping(stop), counting("tracked") as progress:
+    with (
+        stopping(stop),
+        counting("tracked") as progress,
+        served(request.serve, request.token, pictures.side) as page,
+    ):
         (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
         trackers = _trackers(request, variant, source, first, found.stamp_ns)
         if not request.recording:
-            return trackers, follow(trackers, frames, pictures)
+            return trackers, follow(trackers, frames, pictures, page=page)
         node = f"{variant.name}_tracker"
         recording = run_recording(request.recording, node, list(trackers), source.truth())
         with pictures.side.growing(_recording_of(request), recording) as on_frame:
-            return trackers, follow(trackers, frames, pictures, on_frame)
+            return trackers, follow(trackers, frames, pictures, on_frame, page)
 
 
 def _recording_of(request: Request) -> str:

@@ -18,12 +18,15 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
 from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
 from vehicle_pf_tracker.parameters.table import Value, parse_assignments, specs, unknown_name
+from vehicle_pf_tracker.showing.page_server import LOCAL
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
 
 EntryT = TypeVar("EntryT")
 
 _OF_ROS = ("use_sim_time", "start_type_description_service")
 _OF_ROS_PREFIX = "qos_overrides."
+_LAST_PORT = 65535
+"""Largest number of a port: they have 16 bits."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -253,6 +256,49 @@ class Moment:
         return round(self.value - (elapsed if self.is_time else number), 9)  # a stamp's rounding
 
 
+@dataclass(frozen=True, slots=True)
+class ServeAddress:
+    """Where a page is served.
+
+    Attributes
+    ----------
+    port : int
+        Port; 0 for any free one.
+    host : str
+        Address to listen at.
+    """
+
+    port: int = 0
+    host: str = LOCAL
+
+    @classmethod
+    def parse(cls, text: str) -> ServeAddress:
+        """Read ``8080``, ``0.0.0.0:8080`` or ``[::]:8080``.
+
+        Raises
+        ------
+        InputError
+            If it is none of them.
+        """
+        host, _, port = text.rpartition(":")
+        if not (port.isascii() and port.isdecimal() and int(port) <= _LAST_PORT):
+            raise InputError(f"{text!r} is not [HOST:]PORT, with a port from 0 to {_LAST_PORT}")
+        return cls(int(port), host.strip("[]") or LOCAL)
+
+
+def parse_token(text: str) -> str:
+    """Read the secret part of an address.
+
+    Raises
+    ------
+    InputError
+        If it is short, or has letters that an address cannot have as they are.
+    """
+    if not re.fullmatch(r"[A-Za-z0-9_-]{8,100}", text):
+        raise InputError("a token has 8 to 100 letters, digits, - and _")
+    return text
+
+
 @dataclass(frozen=True, kw_only=True)
 class TrackingRequest(SourceOptions, StartOptions, OverwriteOption):
     """Request to track in a source, or in a part of it."""
@@ -271,6 +317,15 @@ class TrackingRequest(SourceOptions, StartOptions, OverwriteOption):
     )  # fmt: skip
     targets: Path | None = option(help="targets that `pick` wrote")
     video: Path | None = option(help="write the frames with all that is followed to FILE, an mp4")
+    serve: ServeAddress | None = option(
+        type=ServeAddress.parse, nargs="?", const=ServeAddress(), metavar="[HOST:]PORT",
+        help="show picture and numbers meanwhile on a page for this machine's browsers; without "
+        "PORT at any free one, with 0.0.0.0:PORT for other machines, in clear text",
+    )  # fmt: skip
+    token: str | None = option(
+        type=parse_token, metavar="WORD",
+        help="secret part of the page's address, instead of a random one",
+    )  # fmt: skip
 
     @property
     def inputs(self) -> tuple[str | Path | None, ...]:

@@ -5,8 +5,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import closing, contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
@@ -14,8 +14,9 @@ from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.requests import option
+from vehicle_pf_tracker.cli.serving import served
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, cut_short, numbered_part, stopping
-from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
+from vehicle_pf_tracker.cli.tracking_options import ServeAddress, TrackingRequest, by_name, chosen
 from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -31,9 +32,7 @@ from vehicle_pf_tracker.recordings.source import ImageSource
 from vehicle_pf_tracker.results.output_files import make_folder, write_json
 from vehicle_pf_tracker.results.run_folder import RUN, describe
 from vehicle_pf_tracker.results.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
-from vehicle_pf_tracker.showing.page_server import PAGE, LivePage
 from vehicle_pf_tracker.showing.pictures import Pictures
-from vehicle_pf_tracker.showing.side_products import SideProducts
 from vehicle_pf_tracker.showing.traffic_pictures import HEAT, PATHS, TrafficPictures
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
@@ -63,11 +62,6 @@ class Request(TrackingRequest):
         f"{', '.join(NETWORKS)}, which are fetched once from their makers",
     )
     lines: Path | None = option(help="lines, zones and regions of interest, lines.yaml")
-    serve: int | None = option(
-        type=int, nargs="?", const=0, metavar="PORT",
-        help="show picture and counts meanwhile on a page for this machine's browsers; without "
-        "PORT at any free one",
-    )  # fmt: skip
 
 
 def run(request: Request) -> int:
@@ -121,11 +115,13 @@ def _follow(
     overview: TrafficPictures,
 ) -> list[str]:
     """Follow all vehicles to the end or to a signal; return what cut it short."""
-    counts, port = tracking.counter.plan.is_counting, tracking.session.tracker.parameters.page_port
+    counts = tracking.counter.plan.is_counting
+    port = tracking.session.tracker.parameters.page_port
+    address = request.serve or (ServeAddress(port) if port >= 0 else None)
     with (
         stopping(stop),
         counting("tracked") as progress,
-        _page(port, pictures.side) as page,
+        served(address, request.token, pictures.side) as page,
         track_files(folder, counting=counts) as files,
     ):
         first, frames = numbered_part(source, request.start, request.end, stop, progress)
@@ -133,22 +129,6 @@ def _follow(
         with suppress(StillAtWork):
             tracking.follow_all(frames, files, pictures, overview, page, targets)
     return cut_short(stop, source, tracking.summary.frames)
-
-
-@contextmanager
-def _page(port: int, side: SideProducts) -> Iterator[LivePage | None]:
-    """Serve a page; None where no port is given, or it cannot be had, which is told at once."""
-    page = None
-    if port >= 0:
-        with side.attempt(PAGE):
-            page = LivePage(port)
-    if page is None:
-        tell_notices(side.notices)
-        yield None
-        return
-    print(f"open {page.url} in a browser on this machine", flush=True)
-    with closing(page):
-        yield page
 
 
 def _document(
@@ -187,7 +167,7 @@ def _configuration(request: Request) -> Configuration:
         raise UsageError(f"--model is not used by --detector {request.detector}; leave one out")
     kind = NONE if request.detections else MODEL if request.model else request.detector
     given = {
-        "lines": str(request.lines) if request.lines else None, "page_port": request.serve,
+        "lines": str(request.lines) if request.lines else None,
         "detector.kind": kind, "detector.model": request.model,
     }  # fmt: skip
     changes = {name: value for name, value in given.items() if value is not None}

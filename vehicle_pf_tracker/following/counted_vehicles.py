@@ -15,6 +15,7 @@ from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.following.detectors import PacedDetector, Run, call, detector_maker
 from vehicle_pf_tracker.following.fetching import Progress, silent
+from vehicle_pf_tracker.following.live_facts import RecentCrossings, traffic_facts
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
@@ -23,6 +24,9 @@ from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+
+_LEARNING = "learning what stands"
+"""Said in motion's first second, in which there are no vehicles yet, however many drive."""
 
 
 class CountedVehicles:
@@ -46,6 +50,7 @@ class CountedVehicles:
     def __init__(self, session: TrafficSession, counter: Counter) -> None:
         self.session, self.counter = session, counter
         self.trails = Trails()
+        self._recent = RecentCrossings()
         self._restarts = session.restarts
 
     @property
@@ -73,27 +78,32 @@ class CountedVehicles:
         if self.session.restarts != self._restarts:
             self._begin_anew()
         self.trails.add(self.estimates)
-        return self.counter.update(self.estimates, stamp_ns)
+        crossings = self.counter.update(self.estimates, stamp_ns)
+        self._recent.add(crossings, stamp_ns)
+        return crossings
+
+    @property
+    def is_learning(self) -> bool:
+        """True while a detector of motion does not know yet what stands, and reports nothing."""
+        return self.session.detector is not None and not self.session.found.images
 
     def drawn(self, frame: Frame, head: str = "") -> Frame:
         """Return a copy of the last image with vehicles, counts, `head` and their number."""
         modes = Tally(one.mode for one in self.estimates)
-        hidden = f", {modes[TrackMode.OCCLUDED]} occluded" if modes[TrackMode.OCCLUDED] else ""
-        words = f"{head}{sum(modes[mode] for mode in CONFIRMED)} vehicles{hidden}"
+        hidden = f", {modes[TrackMode.OCCLUDED]} hidden" if modes[TrackMode.OCCLUDED] else ""
+        count = f"{sum(modes[mode] for mode in CONFIRMED)} vehicles{hidden}"
+        words = f"{head}{_LEARNING if self.is_learning else count}"
         return annotated(frame, words, self.estimates, self.counter, self.trails)
 
-    def facts(self) -> dict[str, object]:
-        """Return the number of vehicles, and what was counted, by name."""
-        counter = self.counter
-        return {
-            "vehicles": sum(one.mode in CONFIRMED for one in self.estimates),
-            **{f"{zone}: inside": there for zone, there in counter.occupancy.items()},
-            **{
-                f"{place}: {to}": counter.count(place, to)
-                for place, both in counter.directions.items()
-                for to in both
-            },
-        }
+    def shown(self, frame: Frame) -> Frame:
+        """Return a copy of the last image with vehicles and counts, without words about all."""
+        return annotated(frame, "", self.estimates, self.counter, self.trails)
+
+    def facts(self, when: str = "") -> dict[str, object]:
+        """Return the numbers for a page; `when` is the time of the last image in words."""
+        learning = _LEARNING if self.is_learning else ""
+        words = ", ".join(filter(None, (when, learning)))
+        return traffic_facts(self.counter, self._recent, self.estimates, words)
 
     def _begin_anew(self) -> None:
         """Note that the session has discarded all vehicles but its `successors`."""

@@ -18,6 +18,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.following.live_facts import target_facts
 from vehicle_pf_tracker.image.stillness import Stillness
 from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
@@ -30,6 +31,7 @@ from vehicle_pf_tracker.results.estimates import (
 )
 from vehicle_pf_tracker.showing.drawing import Annotator, annotated
 from vehicle_pf_tracker.showing.estimates_recording import OnFrame
+from vehicle_pf_tracker.showing.live_page import PAGE, LivePage
 from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
 from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
 from vehicle_pf_tracker.trackers.image_stream import StrayImageError
@@ -214,6 +216,7 @@ def follow(
     frames: Numbered,
     pictures: Pictures,
     on_frame: OnFrame | None = None,
+    page: LivePage | None = None,
 ) -> dict[str, list[EstimateRow]]:
     """Track every target through the same frames, each decoded once.
 
@@ -227,6 +230,8 @@ def follow(
         Pictures to make meanwhile.
     on_frame : callable or None
         Takes each frame with its rows.
+    page : LivePage or None
+        Page to show them on.
 
     Returns
     -------
@@ -260,6 +265,13 @@ def follow(
                 draw = partial(annotated, found.frame, found.stamp_ns - start_ns, states)
                 modes = tuple(row.mode for row in of_frame.values())
                 take(modes, draw, found.frame, found.stamp_ns)
+                if page is not None and not pictures.side.failed(PAGE):
+                    elapsed_ns = found.stamp_ns - start_ns
+                    with pictures.side.attempt(PAGE):
+                        page.show(
+                            partial(annotated, found.frame, None, states),
+                            partial(target_facts, of_frame, elapsed_ns),
+                        )
     for tracker in trackers.values():
         tracker.check_started()
     return rows

@@ -22,7 +22,7 @@ from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.results.estimates import clock_words, start_of_clock
 from vehicle_pf_tracker.results.traffic_results import TrackFiles
 from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
-from vehicle_pf_tracker.showing.page_server import PAGE, LivePage
+from vehicle_pf_tracker.showing.live_page import PAGE, LivePage
 from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
 from vehicle_pf_tracker.showing.traffic_pictures import TrafficPictures
 from vehicle_pf_tracker.trackers.session import TrackerError
@@ -129,7 +129,8 @@ class TrafficRun(CountedVehicles):
                 take((), draw, found.frame, found.stamp_ns)
                 if page is not None and not pictures.side.failed(PAGE):
                     with pictures.side.attempt(PAGE):
-                        page.show(draw, self.facts)
+                        when = f"{elapsed}, frame {number}"
+                        page.show(partial(self.shown, found.frame), partial(self.facts, when))
 
     def sentences(self, detector: str) -> list[str]:
         """Return the summary, a line for each fact, or why there is no vehicle.

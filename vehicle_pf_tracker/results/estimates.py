@@ -161,8 +161,12 @@ _MOST_SPANS = 12
 """Spans in a summary; more are counted, since nobody reads a line of hundreds."""
 
 
-def summary(rows: Sequence[EstimateRow]) -> str:
-    """Return the modes of a run in one sentence, times in min:s after its first frame."""
+def summary(rows: Sequence[EstimateRow], size: tuple[int, int] | None = None) -> str:
+    """Return the modes of a run in one sentence, times in min:s after its first frame.
+
+    A vehicle that was lost for good at the border of images of the `size` given (width, height in
+    px) has left.
+    """
     if not rows:
         return "no frames"
     start_ns, timed = rows[0].stamp_ns, []
@@ -171,10 +175,22 @@ def summary(rows: Sequence[EstimateRow]) -> str:
         timed.append((row.mode, clock_words(row.stamp_ns - start_ns)))
     spans = [list(group) for _, group in groupby(timed, key=itemgetter(0))]
     words = [_words(span, is_last=span is spans[-1]) for span in spans]
+    mode, since = spans[-1][0]
+    before = rows[-len(spans[-1]) - 1] if len(spans) > 1 else None
+    if mode == Mode.LOST.value and _is_leaving(before, size):
+        words[-1] = f"LEFT the image at {since}"
     if len(spans) > _MOST_SPANS:
         words[_MOST_SPANS:] = [f"and {len(spans) - _MOST_SPANS} more changes of the mode"]
     tracked = sum(row.mode == Mode.TRACKING.value for row in rows)
     return f"{', '.join(words)}; {tracked} of {len(rows)} frames tracked"
+
+
+def _is_leaving(row: EstimateRow | None, size: tuple[int, int] | None) -> bool:
+    """Return whether the box of a row, the last before a loss, reaches the border of the image."""
+    if row is None or row.box is None or size is None:
+        return False
+    (left, top), (right, bottom) = row.box.corners[0], row.box.corners[2]
+    return min(left, top) <= 0 or right >= size[0] or bottom >= size[1]
 
 
 def clock_words(nanoseconds: int) -> str:

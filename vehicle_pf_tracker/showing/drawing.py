@@ -34,8 +34,25 @@ def line_width_of(size: tuple[int, int]) -> int:
     return max(1, round(min(size) / 300))
 
 
+_LETTER_SCALE = 0.45
+"""Scale of OpenCV's letters by the width of their strokes: ten widths high."""
+LETTER = 14
+"""Height of a line of words, in widths of a stroke."""
+_SMALL = 2.0
+"""Width of a letter's strokes in small pictures, px, which is twice that of their lines: letters of
+a line's width are illegible in a player's window."""
+_PART = 200.0
+"""Height of a picture in widths of a letter's stroke at least: a line of words is a fourteenth."""
+
+
+def letter_width(picture: Frame) -> float:
+    """Return the width of a letter's strokes that suits the picture's size, px."""
+    part = min(frame_size(picture)) / _PART
+    return max(line_width(picture), min(_SMALL, max(part, 1.0)))
+
+
 def write_words(
-    picture: Frame, words: str, corner: tuple[int, int], colour: Colour, width: int = 1
+    picture: Frame, words: str, corner: tuple[int, int], colour: Colour, width: float = 1
 ) -> None:
     """Write words with a dark edge.
 
@@ -49,19 +66,25 @@ def write_words(
         Lower left corner of the words, px.
     colour : (int, int, int)
         Red, green, blue.
-    width : int
+    width : float
         Width of the strokes, px; the letters grow with it.
     """
-    font, scale, smooth = cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, cv2.LINE_AA
+    font, smooth = cv2.FONT_HERSHEY_SIMPLEX, cv2.LINE_AA
+    scale = _LETTER_SCALE * width
+    pen = max(1, round(width))
     x, y = corner
     # Not by a thicker stroke: in OpenCV 5 that makes the letters wider.
-    for across, down in ((-width, 0), (width, 0), (0, -width), (0, width)):
-        cv2.putText(picture, words, (x + across, y + down), font, scale, (0, 0, 0), width, smooth)
-    cv2.putText(picture, words, corner, font, scale, colour, width, smooth)
+    for across, down in ((-pen, 0), (pen, 0), (0, -pen), (0, pen)):
+        cv2.putText(picture, words, (x + across, y + down), font, scale, (0, 0, 0), pen, smooth)
+    cv2.putText(picture, words, corner, font, scale, colour, pen, smooth)
 
 
-LETTER = 14
-"""Height of a line of words, in line widths."""
+def write_line(picture: Frame, words: str, colour: Colour, row: int = 1) -> None:
+    """Write words into a row at the upper left, counted from 1."""
+    width = letter_width(picture)
+    write_words(picture, words, (round(5 * width), round(16 * width * row)), colour, width)
+
+
 _DASH = 6
 """Length of a dash and of a gap, in line widths."""
 _FAR = 20_000
@@ -98,28 +121,33 @@ Label: TypeAlias = tuple[Box, Colour, tuple[str, ...]]
 Labels: TypeAlias = list[Label]
 
 
-def write_labels(picture: Frame, labels: Iterable[Label], width: int = 0) -> None:
+def write_labels(picture: Frame, labels: Iterable[Label], width: float = 0) -> None:
     """Write words around boxes, in the picture, where no others are; the first go first.
 
     Strokes are `width` px wide or, with 0, as suits the picture.
     """
-    width, taken = width or line_width(picture), np.zeros((0, 4))
+    width = width or letter_width(picture)
+    taken = np.zeros((0, 4))
     for box, colour, choice in labels:
         options = [(words, at) for words in choice for at in _places(picture, words, box, width)]
         free = (one for one in options if not intersections(one[1], taken).any())
         # Without room the shortest words cover others: a vehicle always has its number.
         words, place = next(free, options[-4])
         taken = np.vstack([taken, place])
-        corner = int(place[0]), int(place[3]) - 3 * width
+        corner = int(place[0]), round(float(place[3]) - 3 * width)
         write_words(picture, words, corner, colour, width)
 
 
-def _places(picture: Frame, words: str, box: Box, width: int) -> Array:
-    """Return the edges (4, 4) of words above, below, right and left of a box."""
-    (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, width)
-    (left, top), (right, bottom), size = box.corners[0], box.corners[2], (across, LETTER * width)
-    corners = (left, top - size[1]), (left, bottom), (right, top), (left - across, top)
-    inside = np.clip(corners, 0, np.maximum(np.subtract(frame_size(picture), size), 0))
+def _places(picture: Frame, words: str, box: Box, width: float) -> Array:
+    """Return the edges (4, 4) of words above, below, right and left of a box, in the picture."""
+    pen = max(1, round(width))
+    scale = _LETTER_SCALE * width
+    (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, scale, pen)
+    (left, top), (right, bottom) = box.corners[0], box.corners[2]
+    size = np.array((across + 2 * pen, LETTER * width))  # with the dark edge
+    corners = (left, top - size[1]), (left, bottom), (right, top), (left - size[0], top)
+    room = np.subtract(frame_size(picture), size) - pen
+    inside = np.clip(corners, pen, np.maximum(room, pen))
     return np.hstack([inside, inside + size])
 
 
@@ -166,13 +194,14 @@ class Annotator:
         else:
             self._path.append(estimate.position)
 
-    def draw(self, picture: Frame, estimate: Estimate | None) -> None:
-        """Draw a frame's estimate into `picture`.
+    def draw(self, picture: Frame, estimate: Estimate | None, words: str = "") -> bool:
+        """Draw a frame's estimate into `picture`, with `words` beside it.
 
-        A predicted position, under an occluder, is dashed; a lost target has neither box nor path.
+        A predicted position, under an occluder, is dashed; a lost target has neither box nor path,
+        nor words. Returns whether anything was drawn.
         """
         if estimate is None or estimate.mode is Mode.LOST:
-            return
+            return False
         colour, width = COLOURS[estimate.mode.value], line_width(picture)
         if self._shows_particles:
             for centre in pixels_at(estimate.particles):
@@ -180,8 +209,22 @@ class Annotator:
         draw_path(picture, self._path, colour)
         is_predicted = estimate.mode is Mode.OCCLUDED
         draw_box(picture, estimate.box, colour, width, dashed=is_predicted)
-        if self.name:
-            write_labels(picture, [(estimate.box, colour, (self.name,))])
+        if label := words or self.name:
+            write_labels(picture, [(estimate.box, colour, (label,))])
+        return True
+
+
+def draw_target(
+    picture: Frame, annotator: Annotator, mode: str, estimate: Estimate | None, words: str, row: int
+) -> bool:
+    """Draw a target with its words: beside it, or into a row at the upper left where it has no box.
+
+    Returns whether the row was used.
+    """
+    if annotator.draw(picture, estimate, words):
+        return False
+    write_line(picture, words, COLOURS.get(mode, NEUTRAL), row)
+    return True
 
 
 def estimate_words(name: str, row: EstimateRow) -> str:
@@ -191,19 +234,23 @@ def estimate_words(name: str, row: EstimateRow) -> str:
 
 
 def annotated(
-    frame: Frame, elapsed_ns: int, states: Iterable[tuple[Annotator, EstimateRow, Estimate | None]]
+    frame: Frame,
+    elapsed_ns: int | None,
+    states: Iterable[tuple[Annotator, EstimateRow, Estimate | None]],
 ) -> Frame:
-    """Return a copy of `frame` with all targets, and a line for the time and for each of them."""
+    """Return a copy of `frame` with all targets, their modes beside them, and a line for the time.
+
+    A target without a box has a line below that. Where no time is given, there is no such line.
+    """
     picture: Frame = np.array(frame, order="C")
-    number, lines = 0, []
+    number = 0
+    line = 1 if elapsed_ns is None else 2
     for annotator, row, estimate in states:
-        annotator.draw(picture, estimate)
-        lines.append((estimate_words(annotator.name, row), COLOURS.get(row.mode, NEUTRAL)))
+        words = estimate_words(annotator.name, row)
+        line += draw_target(picture, annotator, row.mode, estimate, words, line)
         number = row.frame
-    width = line_width(picture)
-    head = (f"{clock_words(elapsed_ns)}  frame {number}", NEUTRAL)
-    for index, (words, colour) in enumerate([head, *lines], start=1):
-        write_words(picture, words, (5 * width, 16 * width * index), colour, width)
+    if elapsed_ns is not None:
+        write_line(picture, f"{clock_words(elapsed_ns)}  frame {number}", NEUTRAL)
     return picture
 
 

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.counting.counter import CONFIRMED
@@ -24,13 +26,23 @@ _LONGEST_GAP = 1.0
 """Longest time in s that a frame stands for; over a longer one nobody knows who was there."""
 _FOOTPRINT = 0.3
 """Lower part of a box, as a share of its height, that is taken for the road below the vehicle."""
-_DROVE, _STOOD = (40, 160, 255), (255, 60, 30)
+_COLOURS: tuple[tuple[str, drawing.Colour], ...] = (
+    ("drove", (40, 160, 255)),
+    ("stood", (255, 60, 30)),
+)
 _MOST_OPAQUE = 0.8
 """Opacity of the place with the longest time, so that the road can be seen below it."""
+_LEAST_SCALE = 1.0
+"""Time in s at the end of the scale at least: a run without a stop or a jam is not dramatic."""
+_BAR = (80, 7)
+"""Length and height of a colour bar, in widths of a letter's stroke."""
 
 
 class HeatPicture:
-    """Shows where vehicles drove and where they stood, by the time that they were there."""
+    """Shows where vehicles drove and where they stood, by the time that they were there.
+
+    Both are on one scale, which bars in the corner show.
+    """
 
     def __init__(self) -> None:
         self._seconds = np.zeros((2, 0, 0), np.float32)
@@ -40,7 +52,8 @@ class HeatPicture:
         self, frame: Frame, estimates: Sequence[TrackEstimate], stamp_ns: int, period: float
     ) -> None:
         """Take the next frame and the nominal period in s; another size begins anew."""
-        gap, self._last_ns = (stamp_ns - self._last_ns) * 1e-9, stamp_ns
+        gap = (stamp_ns - self._last_ns) * 1e-9
+        self._last_ns = stamp_ns
         seconds = gap if 0 < gap < _LONGEST_GAP else period
         if self._seconds.shape[1:] != frame.shape[:2]:
             self._seconds = np.zeros((2, *frame.shape[:2]), np.float32)
@@ -65,13 +78,32 @@ class HeatPicture:
         """
         grey = cv2.cvtColor(ground, cv2.COLOR_RGB2GRAY)
         picture = np.repeat(grey[:, :, None], 3, axis=2).astype(np.float32)
-        for seconds, colour in zip(self._seconds, (_DROVE, _STOOD), strict=True):
-            # By the logarithm: a car that is parked for an hour leaves the others visible.
-            opacity = np.log1p(seconds) / max(np.log1p(seconds.max()), 1e-9) * _MOST_OPAQUE
-            picture += opacity[:, :, None] * (np.array(colour, np.float32) - picture)
+        longest = max(float(self._seconds.max()), _LEAST_SCALE)
+        for seconds, (_, colour) in zip(self._seconds, _COLOURS, strict=True):
+            picture += _opacity(seconds, longest) * (np.array(colour, np.float32) - picture)
         drawn: Frame = picture.astype(np.uint8)
-        width = drawing.line_width(drawn)
-        for row, words in enumerate(("drove (blue)", "stood (red)"), start=1):
-            line = f"{words}: at most {self._seconds[row - 1].max():.1f} s"
-            drawing.write_words(drawn, line, (5 * width, 16 * width * row), drawing.NEUTRAL, width)
+        for row, (words, colour) in enumerate(_COLOURS, start=1):
+            _draw_bar(drawn, row, words, colour, longest)
         write_picture(path, drawn)
+
+
+def _opacity(seconds: npt.NDArray[Any], longest: float) -> npt.NDArray[Any]:
+    """Return the opacity (..., 1) of times on the scale that ends with the longest, s."""
+    # By the logarithm: a car that is parked for an hour leaves the others visible.
+    opacity: npt.NDArray[Any] = (np.log1p(seconds) / np.log1p(longest) * _MOST_OPAQUE)[..., None]
+    return opacity
+
+
+def _draw_bar(picture: Frame, row: int, words: str, colour: drawing.Colour, longest: float) -> None:
+    """Draw the colours of the scale, from no time to the longest in s, with its meaning."""
+    unit = drawing.letter_width(picture)
+    length, height = (round(side * unit) for side in _BAR)
+    left = round(5 * unit)
+    bottom = round(16 * unit * row)
+    bar = picture[max(bottom - height, 0) : bottom, left : left + length]
+    times = np.expm1(np.linspace(0.0, np.log1p(longest), bar.shape[1]))
+    ground = np.full(3, 128.0)  # the middle of the grey that the picture has
+    bar[:] = ground + _opacity(times, longest) * (np.array(colour, float) - ground)
+    corner = left + length + round(4 * unit), bottom
+    text = f"{words}: 0 to {longest:.1f} s, log."
+    drawing.write_words(picture, text, corner, drawing.NEUTRAL, unit)

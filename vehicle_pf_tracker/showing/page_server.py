@@ -5,26 +5,19 @@
 
 from __future__ import annotations
 
-import json
 import secrets
 import socket
 import sys
 import threading
 import time
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
 from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from importlib import resources
 from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.compressed_image import jpeg
 
-PAGE = "the live page"
-"""What a message calls it."""
 Content = tuple[str, bytes]
 """Media type and bytes of an answer."""
 
@@ -36,8 +29,14 @@ _MOST_STRANGERS = 64
 """Connections that have not asked under the secret path yet, which cost a thread each."""
 
 
+LOCAL = "127.0.0.1"
+"""Address of this machine alone."""
+_EVERYWHERE = frozenset({"0.0.0.0", "::"})  # noqa: S104 - only where it is asked for
+"""Addresses at which a server listens on every network."""
+
+
 class PageServer(ThreadingHTTPServer):
-    """Serves a page to this machine, under a path that nobody can guess.
+    """Serves a page, under a path that nobody can guess: to this machine unless told otherwise.
 
     Each connection has a thread: browsers open some ahead and leave them idle. One that does not
     ask under the path in time is closed.
@@ -48,6 +47,10 @@ class PageServer(ThreadingHTTPServer):
         Answers the requests.
     port : int
         Port; 0 takes a free one.
+    host : str
+        Address to listen at; 0.0.0.0 lets other machines in, in clear text.
+    token : str
+        Takes the place of the random path.
 
     Attributes
     ----------
@@ -65,15 +68,20 @@ class PageServer(ThreadingHTTPServer):
     daemon_threads = True
     block_on_close = False
 
-    def __init__(self, handler: type[PageHandler], port: int = 0) -> None:
+    def __init__(
+        self, handler: type[PageHandler], port: int = 0, host: str = LOCAL, token: str = ""
+    ) -> None:
+        self.address_family = socket.AF_INET6 if ":" in host else socket.AF_INET
         try:
-            super().__init__(("127.0.0.1", port), handler)
+            super().__init__((host, port), handler)
         except OSError as error:
-            raise InputError(f"cannot serve at port {port}: {error.strerror}") from None
+            raise InputError(f"cannot serve at port {port}: {error.strerror or error}") from None
         self._strangers: dict[Any, float] = {}
         self._lock = threading.Lock()
-        self.base = f"/{secrets.token_urlsafe(16)}/"
-        self.url = f"http://127.0.0.1:{self.server_port}{self.base}"
+        self.base = f"/{token or secrets.token_urlsafe(16)}/"
+        shown = socket.gethostname() if host in _EVERYWHERE else host
+        name = f"[{shown}]" if ":" in shown else shown
+        self.url = f"http://{name}:{self.server_port}{self.base}"
 
     @abstractmethod
     def content(self, what: str) -> Content | None:
@@ -145,57 +153,3 @@ class PageHandler(BaseHTTPRequestHandler):
         self.send_header("Cache-Control", "no-store")
         self.end_headers()
         self.wfile.write(content[1])
-
-
-_SECONDS = 2.0
-"""Longest wait for the next image, after which the one before is shown: cameras of less than one
-image per s are shown late."""
-
-
-class LivePage(PageServer):
-    """Serves the latest picture, which is drawn only when it is asked for, until it is closed.
-
-    Parameters
-    ----------
-    port : int
-        Port; 0 takes a free one.
-
-    Raises
-    ------
-    InputError
-        If the port cannot be had.
-    """
-
-    def __init__(self, port: int) -> None:
-        super().__init__(PageHandler, port)
-        self._shown = threading.Condition()
-        self._is_wanted = False
-        self._picture, self._facts = b"", b"{}"
-        threading.Thread(target=self.serve_forever, args=[0.1], daemon=True).start()
-
-    def close(self) -> None:
-        """Serve no more."""
-        self.shutdown()
-        self.server_close()
-
-    def show(self, draw: Callable[[], Frame], facts: Callable[[], Mapping[str, object]]) -> None:
-        """Take the next image: what draws it, and what tells the numbers beside it."""
-        with self._shown:
-            if self._is_wanted:
-                self._is_wanted = False
-                self._picture, self._facts = jpeg(draw()), json.dumps(facts()).encode()
-                self._shown.notify_all()
-
-    def content(self, what: str) -> Content | None:
-        """Return the page, the next picture, or the numbers of the last one."""
-        if what == "":
-            page = resources.files(__package__).joinpath("live.html")
-            return "text/html; charset=utf-8", page.read_bytes()
-        if what == "counts.json":
-            return "application/json", self._facts
-        if what.partition("?")[0] != "picture.jpg":
-            return None
-        with self._shown:
-            self._is_wanted = True
-            self._shown.wait(_SECONDS)
-            return ("image/jpeg", self._picture) if self._picture else None

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import astuple, replace
 from pathlib import Path
@@ -27,10 +28,63 @@ _HIDDEN = 0.4
 """Brightness of a path's hidden parts."""
 
 
+_LANES_FROM = 12
+"""Vehicles from which on lanes are drawn: of more, lines of their own are a skein."""
+_STEP = 2.0
+"""Longest step that is drawn, in diagonals of the box: over a longer one, as of a vehicle that was
+found again elsewhere, nobody knows the way."""
+_LANE_WIDTH = 5
+"""Width of a lane in widths of a line: the paths of a lane's vehicles lie about so far apart."""
+_LANE_OPACITY = 0.85
+"""Opacity of the busiest lane, so that the road can be seen below it."""
+
+
+class Lanes:
+    """Adds up the paths of all vehicles by their heading: how many passed a pixel, and whither.
+
+    Parameters
+    ----------
+    size : (int, int)
+        Height and width of the picture in px.
+    """
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        # Sums of the headings' cosines and sines, and the number of steps.
+        self._sums = np.zeros((*size, 3), np.float32)
+
+    def add(self, begin: tuple[int, int], end: tuple[int, int], width: int) -> None:
+        """Add a step of a vehicle between two pixels."""
+        if begin == end:
+            return
+        low = np.maximum(np.minimum(begin, end) - width, 0)
+        high = np.maximum(begin, end) + width + 1
+        part = self._sums[low[1] : high[1], low[0] : high[0]]
+        if not part.size:
+            return
+        heading = np.subtract(end, begin) / math.dist(begin, end)
+        mask = np.zeros(part.shape[:2], np.uint8)
+        shift = low.tolist()
+        points = [(x - shift[0], y - shift[1]) for x, y in (begin, end)]
+        cv2.line(mask, points[0], points[1], 1, width)
+        part[mask > 0] += np.array([*heading, 1.0], np.float32)
+
+    def draw(self, picture: Frame) -> None:
+        """Colour the picture by heading, the more the more vehicles passed."""
+        count = self._sums[:, :, 2]
+        angle = np.arctan2(self._sums[:, :, 1], self._sums[:, :, 0])
+        hue = ((angle / (2 * np.pi) % 1.0) * 180).astype(np.uint8)
+        full = np.full_like(hue, 255)
+        colours = cv2.cvtColor(np.dstack([hue, full, full]), cv2.COLOR_HSV2RGB).astype(np.float32)
+        share = np.log1p(count) / max(float(np.log1p(count.max())), 1.0)
+        opacity = (_LANE_OPACITY * share)[:, :, None]
+        picture[:] = (picture + opacity * (colours - picture)).astype(np.uint8)
+
+
 class PathPicture:
     """Draws the path of every confirmed vehicle over the frame that shows the most of them.
 
-    Paths are drawn as they grow: memory depends on the number of vehicles, not on the time.
+    Few vehicles have lines of their colours, many are lanes coloured by their heading. Paths are
+    drawn as they grow: memory depends on the number of vehicles, not on the time.
 
     Attributes
     ----------
@@ -46,6 +100,7 @@ class PathPicture:
         self._size, self._scale = size, scale
         self._ends: dict[int, tuple[int, int]] = {}
         self._layer: Frame = np.zeros((size[0] * scale, size[1] * scale, 3), np.uint8)
+        self._lanes = Lanes(self._layer.shape[:2])
         self.ground: Frame | None = None
         self._on_ground: list[TrackEstimate] = []
 
@@ -60,7 +115,12 @@ class PathPicture:
         for one in estimates:
             if one.mode in CONFIRMED:
                 (end,) = drawing.pixels_at(np.array([one.box.centre]) * self._scale)
-                begin, self._ends[one.identity] = self._ends.get(one.identity, end), end
+                begin = self._ends.get(one.identity, end)
+                self._ends[one.identity] = end
+                reach = _STEP * self._scale * math.hypot(one.box.width, one.box.height)
+                if math.dist(begin, end) > reach:
+                    continue
+                self._lanes.add(begin, end, _LANE_WIDTH * drawing.line_width(self._layer))
                 share = _HIDDEN if one.mode is TrackMode.OCCLUDED else 1.0
                 colour = [int(share * value) for value in identity_colour(one.identity)]
                 cv2.line(self._layer, begin, end, colour, drawing.line_width(self._layer))
@@ -78,8 +138,11 @@ class PathPicture:
         scale, (height, width) = self._scale, self._size
         size = width * scale, height * scale
         picture = np.asarray(cv2.resize(self.ground, size, interpolation=cv2.INTER_CUBIC), np.uint8)
-        drawn = self._layer.any(axis=2)
-        picture[drawn] = self._layer[drawn]
+        if len(self._ends) >= _LANES_FROM:
+            self._lanes.draw(picture)
+        else:
+            drawn = self._layer.any(axis=2)
+            picture[drawn] = self._layer[drawn]
         labels: Labels = []
         draw_counts(picture, labels, counter, scale)
         for one in self._on_ground:

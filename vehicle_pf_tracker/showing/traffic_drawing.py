@@ -65,9 +65,11 @@ def draw_vehicle(
     width = drawing.line_width(picture)
     colour, is_hidden = identity_colour(estimate.identity), estimate.mode is TrackMode.OCCLUDED
     drawing.draw_box(picture, estimate.box, colour, width, dashed=is_hidden)
-    words = [str(estimate.identity), estimate.label, "" if kmh is None else f"{kmh:.0f} km/h"]
-    words += [estimate.mode.value] if is_hidden else []
-    labels.append((estimate.box, colour, (" ".join(filter(None, words)), words[0])))
+    number = f"#{estimate.identity}"
+    speed = "" if kmh is None else f"{kmh:.0f} km/h"
+    named = f"{number} {estimate.label}".rstrip()
+    words = "  ".join(filter(None, (named, speed, "hidden" if is_hidden else "")))
+    labels.append((estimate.box, colour, (words, number)))
 
 
 def draw_counts(picture: Frame, labels: Labels, counter: Counter, scale: float = 1.0) -> None:
@@ -102,10 +104,12 @@ def draw_counts(picture: Frame, labels: Labels, counter: Counter, scale: float =
 def annotated(
     frame: Frame, words: str, estimates: Iterable[TrackEstimate], counter: Counter, trails: Trails
 ) -> Frame:
-    """Return a copy of `frame` with counts, vehicles and a line of words."""
+    """Return a copy of `frame` with counts, vehicles and a line of words, if there are any."""
     picture: Frame = np.array(frame, order="C")
-    width = drawing.line_width(picture)
-    labels: Labels = [(Box(5 * width, 19 * width, 0, 0), drawing.NEUTRAL, (words,))]
+    width = drawing.letter_width(picture)
+    labels: Labels = []
+    if words:
+        labels.append((Box(5 * width, 19 * width, 0, 0), drawing.NEUTRAL, (words,)))
     draw_counts(picture, labels, counter)
     for one in estimates:
         trail, colour = trails.of.get(one.serial, ()), identity_colour(one.identity)

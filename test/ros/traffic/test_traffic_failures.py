@@ -15,7 +15,7 @@ from failing import ERROR, failing
 from tracker_rig import diagnostics_of, ended_by_failures, overrides, values_of
 from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, lanes
 
-from vehicle_pf_tracker.showing.page_server import LivePage
+from vehicle_pf_tracker.showing.live_page import LivePage
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 pytestmark = pytest.mark.ros

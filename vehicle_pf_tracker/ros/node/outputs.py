@@ -26,7 +26,7 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.ros import messages
-from vehicle_pf_tracker.showing.drawing import COLOURS, NEUTRAL, Annotator, line_width, write_words
+from vehicle_pf_tracker.showing.drawing import Annotator, draw_target
 from vehicle_pf_tracker.trackers.estimate import START, Estimate
 from vehicle_pf_tracker.trackers.localisation import Localisation
 
@@ -204,8 +204,6 @@ class TrackerOutputs(Outputs):
         if not self.is_heard("overlay"):
             return
         picture: Frame = np.array(frame, order="C")
-        self._annotator.draw(picture, estimate)
         words = mode if estimate is None else f"{mode} {estimate.confidence:.2f}"
-        words, width = f"{words}  {more}".rstrip(), line_width(picture)
-        write_words(picture, words, (5 * width, 16 * width), COLOURS.get(mode, NEUTRAL), width)
+        draw_target(picture, self._annotator, mode, estimate, f"{words}  {more}".rstrip(), row=1)
         self.send("overlay", messages.image_message, header, picture)

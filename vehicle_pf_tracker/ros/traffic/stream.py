@@ -31,7 +31,7 @@ from vehicle_pf_tracker.ros.traffic import messages
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
-from vehicle_pf_tracker.showing.page_server import LivePage
+from vehicle_pf_tracker.showing.live_page import LivePage
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
@@ -256,4 +256,4 @@ class TrafficStream(NodeStream):
                 self._outputs.publish_overlay(header, frame, self.vehicles)
         if self.page is not None:
             with self.drawing("the live page"):
-                self.page.show(partial(self.vehicles.drawn, frame), self.vehicles.facts)
+                self.page.show(partial(self.vehicles.shown, frame), self.vehicles.facts)

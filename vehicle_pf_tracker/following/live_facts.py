@@ -1,0 +1,111 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Numbers beside the picture of a live page: tables of what is followed and counted."""
+
+from __future__ import annotations
+
+from collections import Counter as Tally
+from collections import deque
+from collections.abc import Iterable, Mapping
+from statistics import fmean
+
+from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
+from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.results.estimates import EstimateRow, clock_words
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+
+_MINUTE_NS = 60 * 10**9
+
+
+class RecentCrossings:
+    """Crossings of the last minute, by the stamps."""
+
+    def __init__(self) -> None:
+        self._of: deque[Crossing] = deque()
+
+    def add(self, crossings: Iterable[Crossing], stamp_ns: int) -> None:
+        """Take the plausible ones of the next image."""
+        self._of.extend(one for one in crossings if not one.doubt)
+        while self._of and not 0 <= stamp_ns - self._of[0].stamp_ns < _MINUTE_NS:
+            self._of.popleft()
+
+    def at(self, place: str, direction: str) -> list[Crossing]:
+        """Return those at a place in a direction."""
+        return [one for one in self._of if (one.place, one.direction) == (place, direction)]
+
+
+def traffic_facts(
+    counter: Counter, recent: RecentCrossings, estimates: Iterable[TrackEstimate], when: str
+) -> dict[str, object]:
+    """Return what a page shows of all vehicles: a summary, and tables of classes, lines and zones.
+
+    Parameters
+    ----------
+    counter : Counter
+        Counts, with their lines and zones.
+    recent : RecentCrossings
+        Crossings of the last minute.
+    estimates : iterable of TrackEstimate
+        Vehicles of the last image.
+    when : str
+        Time of the image, and words about it.
+    """
+    confirmed = [one for one in estimates if one.mode in CONFIRMED]
+    hidden = sum(one.mode is TrackMode.OCCLUDED for one in confirmed)
+    speeds = [kmh for one in confirmed if (kmh := counter.speed_kmh(one.serial)) is not None]
+    tables = []
+    classes = Tally(one.label or "unknown" for one in confirmed)
+    if set(classes) - {"unknown"}:
+        tables.append(_table("in view", ("class", "vehicles"), classes.most_common()))
+    lines = [
+        (
+            line.name,
+            to,
+            counter.count(line.name, to),
+            len(last := recent.at(line.name, to)),
+            _mean([one.speed_kmh for one in last]),
+        )
+        for line in counter.plan.lines
+        for to in line.directions
+    ]
+    if lines:
+        columns = ("line", "direction", "counted", "last minute", "km/h")
+        tables.append(_table("lines", columns, lines))
+    zones = [
+        (zone.name, counter.occupancy[zone.name], *(counter.count(zone.name, to) for to in both))
+        for zone in counter.plan.zones
+        for both in [counter.directions[zone.name]]
+    ]
+    if zones:
+        tables.append(_table("zones", ("zone", "inside", "entered", "left"), zones))
+    words = [when, f"{len(confirmed)} vehicles in view"]
+    words += [f"{hidden} hidden"] if hidden else []
+    words += [f"mean {fmean(speeds):.0f} km/h"] if speeds else []
+    return {"vehicles": len(confirmed), "summary": ", ".join(filter(None, words)), "tables": tables}
+
+
+def target_facts(rows: Mapping[str, EstimateRow], elapsed_ns: int) -> dict[str, object]:
+    """Return what a page shows of single targets, by their names, some ns after the first frame."""
+    cells = [
+        (name, row.mode, _digits(row.confidence, 2), _digits(row.x, 1), _digits(row.y, 1))
+        for name, row in rows.items()
+    ]
+    number = max((row.frame for row in rows.values()), default=0)
+    table = _table("targets", ("target", "mode", "confidence", "x, px", "y, px"), cells)
+    return {"summary": f"{clock_words(elapsed_ns)}, frame {number}", "tables": [table]}
+
+
+def _table(
+    title: str, columns: tuple[str, ...], rows: Iterable[tuple[object, ...]]
+) -> dict[str, object]:
+    return {"title": title, "columns": columns, "rows": list(rows)}
+
+
+def _mean(values: Iterable[float | None]) -> str | None:
+    known = [value for value in values if value is not None]
+    return f"{fmean(known):.0f}" if known else None
+
+
+def _digits(value: float | None, decimals: int) -> str | None:
+    return None if value is None else f"{value:.{decimals}f}"
