@@ -165,3 +165,28 @@ def test_a_page_may_be_served_elsewhere_under_a_word_of_ones_own(host, shown):
         assert b"picture.jpg" in get(f"{local}/a-word-of-mine/").read()
         with pytest.raises(HTTPError, match="404"):
             get(f"{local}/")
+
+
+def test_chromium_shows_picture_and_tables(browse):
+    table = {
+        "title": "lines",
+        "columns": ["line", "counted"],
+        "rows": [["gate", 12], ["exit", None]],
+    }
+    facts = {"summary": "0:03.0, frame 75, 2 vehicles in view", "tables": [table]}
+    page, ended = LivePage(0), threading.Event()
+
+    def camera():
+        while not ended.wait(0.01):
+            page.show(lambda: GREY, lambda: facts)
+
+    with closing(page):
+        thread = threading.Thread(target=camera)
+        thread.start()
+        # A busy machine may take the browser's whole time for its first picture.
+        shown = next((dom for _ in range(4) if "0:03.0" in (dom := browse(page.url))), "")
+        ended.set()
+        thread.join()
+    assert "0:03.0, frame 75, 2 vehicles in view" in shown
+    assert "<td>gate</td><td>12</td>" in shown and "<td>exit</td><td>–</td>" in shown
+    assert 'src="blob:' in shown

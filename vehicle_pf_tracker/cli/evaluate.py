@@ -142,7 +142,8 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
     with console.stages("evaluate") as on_stage:
         recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)
     console.tell_notices(notes)
-    seeds, command = request.some_seeds(SEEDS), list(request.command)
+    seeds = request.some_seeds(SEEDS)
+    command = list(request.command)
     part = request.part or ALL_CELLS
     plan = Plan(dict(recordings), systems, seeds, command, request.max_diff, part)
     with console.counting("evaluated", "runs") as on_progress:
@@ -157,7 +158,8 @@ def _judge(written: Report, limit: float | None) -> int:
     """Print the means, and return the status that they give."""
     from vehicle_pf_tracker.evaluation.tables import overall_table
 
-    evaluation, aggregates = written.evaluation, written.aggregates
+    evaluation = written.evaluation
+    aggregates = written.aggregates
     failed = dict.fromkeys((cell.system, cell.reason) for cell in evaluation.failed)
     for system, reason in failed:
         console.tell_notices([f"{system} did not run everywhere: {reason}"])

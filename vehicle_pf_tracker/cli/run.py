@@ -143,7 +143,8 @@ def _trackers(
 ) -> dict[str, OfflineTracker]:
     """Make a tracker for each target given; without any, for the one configured, or for truth."""
     configuration = chosen(variant, request)
-    targets, box = by_name(request.given_targets(), first), configuration.session.target.box
+    targets = by_name(request.given_targets(), first)
+    box = configuration.session.target.box
     targets = targets or {"1": {} if box is None else {first: box}}
     truth = None
     if not any(targets.values()):

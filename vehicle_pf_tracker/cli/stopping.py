@@ -167,7 +167,8 @@ def _numbered(
     source: ImageSource, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
 ) -> Iterator[tuple[int, StampedFrame]]:
     first_ns: int | None = None
-    number, is_empty = 0, True
+    number = 0
+    is_empty = True
     frames = source.frames()
     if source.frame_count is None:  # it may stall
         frames = _leavable(frames, stop)

@@ -87,7 +87,8 @@ def record_scene(scene: Scene, out: Path, *, overwrite: bool = False) -> None:
 
 def _film(scene: Scene, out: Path, *, overwrite: bool) -> Path:
     """Render `scene` into a video, and its truth into a table, whose path is returned."""
-    table, size = out.with_suffix(".csv"), (scene.width, scene.height)
+    table = out.with_suffix(".csv")
+    size = (scene.width, scene.height)
     rows = []
     with claimed([out, table], [], overwrite=overwrite):
         with video_writer(out, size, scene.frame_rate) as write, counting("rendered") as progress:

@@ -148,7 +148,8 @@ def parse_target(text: str) -> TargetOption:
 
 def target_of(entry: Mapping[str, Any]) -> TargetOption:
     """Read a target of a file, as `TARGET_FORM` shows one."""
-    numbers, name = entry["box"], str(entry.get("name", ""))
+    numbers = entry["box"]
+    name = str(entry.get("name", ""))
     if not isinstance(numbers, list):
         raise TypeError(numbers)
     return parse_target(f"{name}@{entry.get('frame', 1)}:{','.join(map(str, numbers))}")

@@ -104,7 +104,8 @@ def run(request: Request) -> int:
     words = [word for text in request.search for word in text.split(",") if word]
     space = tuning.search_space(variant, dict(base.parameters), words)
     with stages("tune") as on_stage:
-        tuned, held_out = find_recordings(request.sources), find_recordings(request.held_out)
+        tuned = find_recordings(request.sources)
+        held_out = find_recordings(request.held_out)
         locations = [*tuned, *held_out]
         recordings = describe(locations, request.topic, request.max_diff, on_stage)
     sources = [source for source, _ in recordings[: len(tuned)]]

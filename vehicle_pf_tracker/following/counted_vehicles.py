@@ -48,7 +48,8 @@ class CountedVehicles:
     """
 
     def __init__(self, session: TrafficSession, counter: Counter) -> None:
-        self.session, self.counter = session, counter
+        self.session = session
+        self.counter = counter
         self.trails = Trails()
         self._recent = RecentCrossings()
         self._restarts = session.restarts
@@ -131,9 +132,11 @@ def session_and_counter(
         If the network or the file of lines and zones cannot be used, or a library is missing.
     """
     check_library()
-    parameters, plane = configuration.tracker, configuration.session.road.fixed_plane()
+    parameters = configuration.tracker
+    plane = configuration.session.road.fixed_plane()
     plan = read_counting_plan(Path(parameters.lines)) if parameters.lines else CountingPlan()
-    make, tracker = detector_maker(parameters.detector, progress), TrafficTracker(parameters, plane)
+    make = detector_maker(parameters.detector, progress)
+    tracker = TrafficTracker(parameters, plane)
     session = TrafficSession(
         tracker,
         (lambda: PacedDetector(make(), lambda: tracker.parameters.detector.every, run))

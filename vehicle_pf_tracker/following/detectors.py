@@ -127,25 +127,31 @@ class PacedDetector:
     def __init__(
         self, detector: Detector, wanted: Callable[[], int] = lambda: 1, run: Run = call
     ) -> None:
-        self._detector, self._run = detector, run
+        self._detector = detector
+        self._run = run
         self._wanted = wanted
         self.every = 1
-        self.found, self.seconds = 0, 0.0
+        self.found = 0
+        self.seconds = 0.0
         self.disturbed = self.is_blind = False
-        self._images, self._others = 0, 0.0
+        self._images = 0
+        self._others = 0.0
 
     def detect(self, frame: Frame, tracks: Sequence[FollowedVehicle] = ()) -> Detections:
         """Find vehicles, if it is this image's turn; see `Detector`."""
         self._images += 1
         self.every = self._wanted() or self.every
-        self.disturbed, self.is_blind = False, self._images > 1 and self._images <= self.every
+        self.disturbed = False
+        self.is_blind = self._images > 1 and self._images <= self.every
         if self.is_blind:
             return Detections.make([], [])
         self._images = 1
         began = time.perf_counter()
         found = self._run(partial(self._detector.detect, frame, tracks))
-        self.found, self.seconds = len(found), time.perf_counter() - began
-        self.disturbed, self.is_blind = self._detector.disturbed, self._detector.is_blind
+        self.found = len(found)
+        self.seconds = time.perf_counter() - began
+        self.disturbed = self._detector.disturbed
+        self.is_blind = self._detector.is_blind
         return found
 
     def pace(self, seconds: float, period: float) -> None:
@@ -202,7 +208,8 @@ class DetectionFile:
                 "numbers that are not finite, and are left out"
             )
         self._path = path
-        self._frames, self._rows = rows[usable, 0], rows[usable, 1:]
+        self._frames = rows[usable, 0]
+        self._rows = rows[usable, 1:]
 
     def misfit(self, size: tuple[int, int]) -> str:
         """Return why the boxes do not fit images of a size (px); empty where they do."""

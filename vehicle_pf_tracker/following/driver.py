@@ -117,7 +117,8 @@ class OfflineTracker:
         self, number: int, found: StampedFrame, following: StampedFrame | None, *, is_first: bool
     ) -> EstimateRow:
         """Take the next frame, with its number and the one after it; see `rows`."""
-        stamp_ns, frame = found.stamp_ns, found.frame
+        stamp_ns = found.stamp_ns
+        frame = found.frame
         next_ns = None if following is None else following.stamp_ns
         self._on_road.append({})
         truth = self._first_truth
@@ -251,9 +252,11 @@ def follow(
     }
     with pictures.drawing(frames) as (take, all_frames):
         for (number, found), later in with_next(all_frames):
-            following, is_first = later and later[1], start_ns is None
+            following = later and later[1]
+            is_first = start_ns is None
             start_ns = start_of_clock(start_ns, found.stamp_ns)
-            of_frame, states = {}, []
+            of_frame = {}
+            states = []
             for name, tracker in trackers.items():
                 of_frame[name] = row = tracker.row(number, found, following, is_first=is_first)
                 rows[name].append(row)

@@ -121,7 +121,9 @@ class _Download:
     """
 
     def __init__(self, url: str, path: Path, progress: Progress, requests: Any) -> None:
-        self._url, self._path, self._progress = url, path, progress
+        self._url = url
+        self._path = path
+        self._progress = progress
         self._requests = requests
         self.digest = ""
 

@@ -69,7 +69,8 @@ def write_words(
     width : float
         Width of the strokes, px; the letters grow with it.
     """
-    font, smooth = cv2.FONT_HERSHEY_SIMPLEX, cv2.LINE_AA
+    font = cv2.FONT_HERSHEY_SIMPLEX
+    smooth = cv2.LINE_AA
     scale = _LETTER_SCALE * width
     pen = max(1, round(width))
     x, y = corner
@@ -87,13 +88,13 @@ def write_line(picture: Frame, words: str, colour: Colour, row: int = 1) -> None
 
 _DASH = 6
 """Length of a dash and of a gap, in line widths."""
-_FAR = 20_000
+_LAST_PIXEL = 20_000
 """Pixels beyond which OpenCV's coordinates, of 16 bits and a fraction, overflow."""
 
 
 def pixels_at(points: Array) -> list[tuple[int, int]]:
     """Return the pixel that each continuous position (N, 2) lies in."""
-    return [(int(x), int(y)) for x, y in np.floor(np.clip(points, -_FAR, _FAR))]
+    return [(int(x), int(y)) for x, y in np.floor(np.clip(points, -_LAST_PIXEL, _LAST_PIXEL))]
 
 
 def draw_box(picture: Frame, box: Box, colour: Colour, width: int, *, dashed: bool = False) -> None:
@@ -202,7 +203,8 @@ class Annotator:
         """
         if estimate is None or estimate.mode is Mode.LOST:
             return False
-        colour, width = COLOURS[estimate.mode.value], line_width(picture)
+        colour = COLOURS[estimate.mode.value]
+        width = line_width(picture)
         if self._shows_particles:
             for centre in pixels_at(estimate.particles):
                 cv2.circle(picture, centre, width, _PARTICLE, -1)

@@ -52,8 +52,10 @@ def image_annotations(name: str, row: EstimateRow, size: tuple[int, int]) -> Any
     annotations = messages.message_class(messages.IMAGE_ANNOTATIONS)
     if box is None:
         return annotations(circles=[], points=[], texts=[])
-    width, stamp = drawing.line_width_of(size), messages.header(row.stamp_ns).stamp
-    height, colour = float(_LETTERS * width), _colour(drawing.COLOURS[row.mode])
+    width = drawing.line_width_of(size)
+    stamp = messages.header(row.stamp_ns).stamp
+    height = float(_LETTERS * width)
+    colour = _colour(drawing.COLOURS[row.mode])
     is_dashed = row.mode == Mode.OCCLUDED
     dashes = drawing.dashes(box.corners, _DASH * width)
     ends = np.concatenate(list(dashes)) if is_dashed else box.corners
@@ -136,7 +138,8 @@ def run_recording(
     """
     is_single = len(targets) == 1
     topics = {name: node if is_single else f"{node}/{messages.as_token(name)}" for name in targets}
-    is_first, waiting = True, list(reversed(truths))
+    is_first = True
+    waiting = list(reversed(truths))
     with RecordingWriter(folder, overwrite=True) as writer:
 
         def keep(found: StampedFrame, rows: Mapping[str, EstimateRow]) -> None:
@@ -148,7 +151,8 @@ def run_recording(
                 truth = waiting.pop()
                 if not is_first or truth.stamp_ns == found.stamp_ns:
                     writer.write_truth(truth)
-            is_first, size = False, frame_size(found.frame)
+            is_first = False
+            size = frame_size(found.frame)
             for name, row in rows.items():
                 drawn = image_annotations("" if is_single else name, row, size)
                 _write_estimate(writer, topics[name], row, drawn)

@@ -60,7 +60,8 @@ class HeatPicture:
         width, height = frame_size(frame)
         for one in estimates:
             if one.mode in CONFIRMED:
-                box, speed = one.box, float(np.hypot(*one.velocity)) / period
+                box = one.box
+                speed = float(np.hypot(*one.velocity)) / period
                 (left, _), (right, bottom) = box.corners[0], box.corners[2]
                 edges = [left, bottom - _FOOTPRINT * box.height, right, bottom]
                 within = np.clip(np.round(edges), 0, [width, height] * 2)

@@ -50,7 +50,8 @@ class LivePage(PageServer):
         self._is_wanted = False
         self._asked = -_LOOKED_ON
         self._has_ended = self._was_told = False
-        self._picture, self._facts = b"", b"{}"
+        self._picture = b""
+        self._facts = b"{}"
         self._latest: tuple[Callable[[], Frame], Callable[[], Mapping[str, object]]] | None = None
         threading.Thread(target=self.serve_forever, args=[0.1], daemon=True).start()
 

@@ -97,7 +97,8 @@ class PathPicture:
 
     def _begin(self, size: tuple[int, int], scale: int) -> None:
         """Begin anew for frames of (height, width) px, enlarged `scale` times."""
-        self._size, self._scale = size, scale
+        self._size = size
+        self._scale = scale
         self._ends: dict[int, tuple[int, int]] = {}
         self._layer: Frame = np.zeros((size[0] * scale, size[1] * scale, 3), np.uint8)
         self._lanes = Lanes(self._layer.shape[:2])
@@ -111,7 +112,8 @@ class PathPicture:
             self._begin(size, max(1, round(_LEAST_WIDTH / frame.shape[1])))
         visible = [one for one in estimates if one.mode is TrackMode.TRACKING]
         if self.ground is None or len(visible) > len(self._on_ground):
-            self.ground, self._on_ground = frame.copy(), visible
+            self.ground = frame.copy()
+            self._on_ground = visible
         for one in estimates:
             if one.mode in CONFIRMED:
                 (end,) = drawing.pixels_at(np.array([one.box.centre]) * self._scale)

@@ -119,7 +119,8 @@ def _film(path: Path, rate: float) -> Iterator[Callable[[Draw, tuple[int, int], 
     """
     with ExitStack() as stack:
         write: Write | None = None
-        at, last_ns = 0.0, 0
+        at = 0.0
+        last_ns = 0
 
         def add(draw: Draw, size: tuple[int, int], stamp_ns: int) -> None:
             nonlocal write, at, last_ns

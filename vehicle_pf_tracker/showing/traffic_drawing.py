@@ -63,7 +63,8 @@ def draw_vehicle(
     if estimate.mode not in CONFIRMED:
         return
     width = drawing.line_width(picture)
-    colour, is_hidden = identity_colour(estimate.identity), estimate.mode is TrackMode.OCCLUDED
+    colour = identity_colour(estimate.identity)
+    is_hidden = estimate.mode is TrackMode.OCCLUDED
     drawing.draw_box(picture, estimate.box, colour, width, dashed=is_hidden)
     number = f"#{estimate.identity}"
     speed = "" if kmh is None else f"{kmh:.0f} km/h"
@@ -112,7 +113,8 @@ def annotated(
         labels.append((Box(5 * width, 19 * width, 0, 0), drawing.NEUTRAL, (words,)))
     draw_counts(picture, labels, counter)
     for one in estimates:
-        trail, colour = trails.of.get(one.serial, ()), identity_colour(one.identity)
+        trail = trails.of.get(one.serial, ())
+        colour = identity_colour(one.identity)
         drawing.draw_path(picture, trail, colour)
         draw_vehicle(picture, labels, one, counter.speed_kmh(one.serial))
     drawing.write_labels(picture, labels)
