@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
@@ -246,16 +246,13 @@ def follow(
     """
     rows: dict[str, list[EstimateRow]] = {name: [] for name in trackers}
     start_ns: int | None = None
-    annotators = {
-        name: Annotator(name if len(trackers) > 1 else "", particles=pictures.particles)
-        for name in trackers
-    }
+    annotators = _annotators(list(trackers), pictures)
     with pictures.drawing(frames) as (take, all_frames):
         for (number, found), later in with_next(all_frames):
             following = later and later[1]
             is_first = start_ns is None
             start_ns = start_of_clock(start_ns, found.stamp_ns)
-            of_frame = {}
+            of_frame: dict[str, EstimateRow] = {}
             states = []
             for name, tracker in trackers.items():
                 of_frame[name] = row = tracker.row(number, found, following, is_first=is_first)
@@ -269,15 +266,20 @@ def follow(
                 modes = tuple(row.mode for row in of_frame.values())
                 take(modes, draw, found.frame, found.stamp_ns)
                 if page is not None and not pictures.side.failed(PAGE):
-                    elapsed_ns = found.stamp_ns - start_ns
+                    facts = partial(target_facts, of_frame, found.stamp_ns - start_ns)
                     with pictures.side.attempt(PAGE):
-                        page.show(
-                            partial(annotated, found.frame, None, states),
-                            partial(target_facts, of_frame, elapsed_ns),
-                        )
+                        page.show(partial(annotated, found.frame, None, states), facts)
     for tracker in trackers.values():
         tracker.check_started()
     return rows
+
+
+def _annotators(names: Sequence[str], pictures: Pictures) -> dict[str, Annotator]:
+    """Make what draws each target; a single one needs no name in the picture."""
+    is_single = len(names) == 1
+    return {
+        name: Annotator("" if is_single else name, particles=pictures.particles) for name in names
+    }
 
 
 def with_next(items: Iterable[ItemT]) -> Iterator[tuple[ItemT, ItemT | None]]:
