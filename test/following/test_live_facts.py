@@ -8,7 +8,7 @@ import json
 from traffic_samples import vehicle
 
 from vehicle_pf_tracker.counting.counter import Counter
-from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.following.live_facts import RecentCrossings, target_facts, traffic_facts
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.results.estimates import EstimateRow

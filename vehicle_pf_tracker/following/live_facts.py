@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from statistics import fmean
 
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
-from vehicle_pf_tracker.counting.plausibility import Crossing
+from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.results.estimates import EstimateRow, clock_words
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
