@@ -67,3 +67,9 @@ def test_normalised_weights_sum_to_one_and_n_eff_is_between_one_and_n(raw):
     weights, _ = normalise(raw)
     assert weights.sum() == pytest.approx(1.0)
     assert 1 - 1e-9 <= effective_sample_size(weights) <= len(raw) + 1e-6
+
+
+def test_a_weight_of_zero_is_as_sound_as_any():
+    weights, sound = normalise(np.array([0.0, 3.0, 1.0]))
+    assert sound
+    assert weights.tolist() == [0.0, 0.75, 0.25]
