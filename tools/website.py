@@ -27,7 +27,7 @@ OUTSIDE = re.compile(r"\[([^\]]*)\]\(\.\./([^)]*)\)")
 
 
 def on_files(files: Any, config: Any) -> Any:
-    """Add the pages that are not in docs/."""
+    """Add the pages and the script that are not in docs/."""
     from mkdocs.structure.files import File  # noqa: PLC0415 - with `make docs` only
 
     pages = {
@@ -38,6 +38,9 @@ def on_files(files: Any, config: Any) -> Any:
     }
     for name, write in pages.items():
         files.append(File.generated(config, name, content=write()))
+    # Search of a page that was opened as a file, where browsers refuse workers.
+    shim = (ROOT / "tools" / "iframe-worker.js").read_text(encoding="utf-8")
+    files.append(File.generated(config, "assets/iframe-worker.js", content=shim))
     return files
 
 
