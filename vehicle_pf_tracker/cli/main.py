@@ -32,6 +32,7 @@ VERBS: Mapping[str, tuple[str, str]] = {
     "tune": ("tune", "search a variant's parameters on recordings, and validate them on others"),
     "report": ("report", "write the report of an evaluation again"),
     "replay": ("replay", "feed a recording to ROS nodes"),
+    "set-target": ("set_target", "give a running ROS node its target"),
     "road": ("road", "calibrate a camera, for metres and km/h on the road"),
     "compile": ("compile_kernels", "compile the extra [numba] now, so that no start waits"),
 }

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-from argparse import REMAINDER
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING
 from vehicle_pf_tracker.cli.console import UsageError, shown_progress, tell_notice, tell_notices
 from vehicle_pf_tracker.cli.requests import (
     OverwriteOption,
+    RosOptions,
     TopicOption,
     number,
     option,
@@ -64,7 +64,7 @@ def _absolute(topic: str) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(TopicOption, OverwriteOption):
+class Request(TopicOption, OverwriteOption, RosOptions):
     """Request of `replay`, with options named as the rosbag2 player's where it has them."""
 
     recording: Path = positional(metavar="REC", help="rosbag2 folder or MCAP file")
@@ -111,13 +111,6 @@ class Request(TopicOption, OverwriteOption):
         "-o", metavar="DIR",
         help="write what the nodes answered: estimates.csv, in a folder for each of several nodes",
     )  # fmt: skip
-    timeout: float = option(
-        type=positive_number, default=10.0, metavar="S",
-        help="longest wait for a node in seconds (default: 10)",
-    )  # fmt: skip
-    ros_args: Sequence[str] = option(
-        nargs=REMAINDER, default=[], metavar="...", help="all words after this go to ROS"
-    )
 
 
 def run(request: Request) -> int:

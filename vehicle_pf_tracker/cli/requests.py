@@ -170,6 +170,19 @@ class MaxDiffOption(VerbRequest):
 
 
 @dataclass(frozen=True, kw_only=True)
+class RosOptions(VerbRequest):
+    """Request that talks to nodes."""
+
+    timeout: float = option(
+        type=positive_number, default=10.0, metavar="S",
+        help="longest wait for a node in seconds (default: 10)",
+    )  # fmt: skip
+    ros_args: Sequence[str] = option(
+        nargs=argparse.REMAINDER, default=[], metavar="...", help="all words after this go to ROS"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class TopicOption(VerbRequest):
     """Request that reads recordings."""
 
