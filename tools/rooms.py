@@ -49,7 +49,7 @@ def reduced(graph: Graph) -> dict[str, set[str]]:
 
 
 def _name(path: Path, source: Path) -> str:
-    """Return the dotted name below the package: ``ros.node.stream``."""
+    """Return the dotted name below the package: ``ros.node.outputs``."""
     return ".".join(path.relative_to(source).with_suffix("").parts)
 
 

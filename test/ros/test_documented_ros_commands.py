@@ -86,7 +86,7 @@ def give(rig, topic, kind, text):
     if topic.endswith("/select"):
         rig.bench.wait_for(lambda: rig.vehicles.selection.identity == message.data)
     else:
-        rig.bench.wait_for(lambda: rig.node.stream.asked is not None)
+        rig.bench.wait_for(lambda: rig.node.feed.asked is not None)
         answer = rig.show_frame(road(1, *SIZE)[0], 1)
         assert answer.status[0].message == "TRACKING"
     assert rig.node.diagnostics.health.refused_targets == 0

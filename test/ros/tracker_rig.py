@@ -98,7 +98,7 @@ class Rig:
                 parameter_overrides=[Parameter("queue_depth", value=50), *parameters],
             )
         )
-        bench.wait_for(lambda: self.node.stream is None or self.node.stream.get_ready())
+        bench.wait_for(lambda: self.node.feed is None or self.node.feed.get_ready())
         self.name = f"/{variant}_tracker"
         self.camera = bench.publisher(kind, topic, QUEUE)
         self.modes = bench.collect(DiagnosticArray, f"{self.name}/mode", QUEUE)

@@ -12,7 +12,7 @@ from sensor_msgs.msg import Image, PointCloud2
 from tracker_rig import QUEUE, header
 
 from vehicle_pf_tracker.ros.messages import image_message
-from vehicle_pf_tracker.ros.node import node_stream
+from vehicle_pf_tracker.ros.node import journal
 from vehicle_pf_tracker.ros.node.notices import Notices
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
 
@@ -48,7 +48,7 @@ def lanes(count: int) -> list[np.ndarray]:
 def hear_notices(monkeypatch) -> list[str]:
     """Sentences that nodes made from now on log: each kind once, however long the test takes."""
     said: list[str] = []
-    monkeypatch.setattr(node_stream, "Notices", lambda _: Notices(said.append, lambda: 0.0))
+    monkeypatch.setattr(journal, "Notices", lambda _: Notices(said.append, lambda: 0.0))
     return said
 
 
@@ -71,7 +71,7 @@ class TrafficRig:
 
     @property
     def vehicles(self):
-        return self.node.stream.vehicles
+        return self.node.feed.vehicles
 
     def show(self, message, answers: int = 1) -> DiagnosticArray:
         """Publish one image, and return the last of the answers that came."""

@@ -157,7 +157,7 @@ def test_the_selection_of_a_killed_node_comes_back(bench, folder):
         rig = TrafficRig(bench, parameters)
         if turn == "first":
             x, y, width, height = boxes(WARM_UP + 10)[0]
-            rig.node.stream.start_on(Box(*map(float, (x, y, width, height))))
+            rig.node.feed.start_on(Box(*map(float, (x, y, width, height))))
         rig.play(frames)
         assert rig.vehicles.selected is not None, turn
         bench.remove(rig.node)

@@ -33,7 +33,7 @@ def test_a_detection_starts_a_node_and_comes_back(bench, messages, monkeypatch):
     wanted.bbox.center.position.x, wanted.bbox.center.position.y = x + width / 2, y + height / 2
     wanted.bbox.size_x, wanted.bbox.size_y = width, height
     target.publish(wanted)
-    bench.wait_for(lambda: rig.node.stream.asked is not None)
+    bench.wait_for(lambda: rig.node.feed.asked is not None)
     answers = [rig.show_frame(frame, index) for index, frame in enumerate(road(3))]
     bench.wait_for(lambda: len(found) == 3)
     assert found[0].bbox == wanted.bbox
@@ -44,7 +44,7 @@ def test_a_detection_starts_a_node_and_comes_back(bench, messages, monkeypatch):
     assert result.hypothesis.class_id == "vehicle"
     assert result.hypothesis.score == float(values_of(answers[2])["confidence"])
     target.publish(wanted)
-    bench.wait_for(lambda: rig.node.stream.asked is not None)
+    bench.wait_for(lambda: rig.node.feed.asked is not None)
     rig.show_frame(road(1)[0], 3)
     bench.wait_for(lambda: len(found) == 4)
     assert found[3].id == "2"

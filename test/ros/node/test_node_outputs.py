@@ -62,7 +62,7 @@ def test_particles_come_while_subscribed(bench, rig, monkeypatch):
     assert cloud.header == answer.header
     assert [field.name for field in cloud.fields] == ["x", "y", "z", "weight"]
     points = np.frombuffer(cloud.data, "<f4").reshape(cloud.width, 4)
-    estimate = rig.node.stream.estimate
+    estimate = rig.node.feed.estimate
     assert points[:, :2] == pytest.approx(estimate.particles.astype(np.float32))
     assert points[:, 3].sum() == pytest.approx(1.0, rel=1e-5)
     assert not points[:, 2].any()

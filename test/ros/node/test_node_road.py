@@ -203,7 +203,7 @@ def test_frames_of_pixel_outputs_can_be_marked(bench):
     publisher = bench.publisher(PolygonStamped, f"{NODE}/set_box")
     health = rig.node.diagnostics.health
     publisher.publish(boxes[0])
-    bench.wait_for(lambda: rig.node.stream.asked is not None)
+    bench.wait_for(lambda: rig.node.feed.asked is not None)
     assert health.refused_targets == 0
     boxes[0].header.frame_id = "map"
     publisher.publish(boxes[0])

@@ -51,7 +51,7 @@ class Targets:
         }
 
     def give(self, message) -> None:
-        stream, health = self.rig.node.stream, self.rig.node.diagnostics.health
+        stream, health = self.rig.node.feed, self.rig.node.diagnostics.health
         before = stream.asked, health.refused_targets
         self.topics[type(message)].publish(message)
         self.rig.bench.wait_for(lambda: (stream.asked, health.refused_targets) != before)

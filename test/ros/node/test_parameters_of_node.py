@@ -249,9 +249,9 @@ def test_values_that_fit_only_together_can_be_set_together(rig, setter):
 
 def test_a_drawn_seed_is_told(bench):
     rig = Rig(bench, overrides(seed=-1))
-    first = rig.node.stream.facts["seed"]
+    first = rig.node.feed.facts["seed"]
     assert first >= 0
     told = diagnostics_of(bench, "apf_tracker", lambda table: True)
     assert told["seed"] == str(first)
     assert Setter(bench).together(seed=12).successful
-    assert rig.node.stream.facts["seed"] == 12
+    assert rig.node.feed.facts["seed"] == 12

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros import messages as ros_messages
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
-from vehicle_pf_tracker.ros.traffic import stream
+from vehicle_pf_tracker.ros.traffic import traffic_node
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
@@ -72,7 +72,7 @@ class DetectorRig(TrafficRig):
         self.said = hear_notices(monkeypatch)
         self.clock = Clock()
         self.waiting = WaitingImages(self.clock)
-        monkeypatch.setattr(stream, "WaitingImages", lambda: self.waiting)
+        monkeypatch.setattr(traffic_node, "WaitingMessages", lambda: self.waiting)
         super().__init__(bench, overrides(detector__kind="topic", **given))
         self.vision = vision
         self.detector = bench.publisher(vision.Detection2DArray, "detections", QUEUE)

@@ -63,5 +63,5 @@ def test_a_page_that_cannot_be_drawn_costs_no_image_its_answer(bench, monkeypatc
 def test_a_port_that_is_taken_costs_the_page_alone(bench):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         rig = TrafficRig(bench, overrides(page_port=taken.getsockname()[1]))
-        assert rig.node.stream.page is None
+        assert rig.node.outputs.page is None
         assert len(rig.play(lanes(4))) == 4

@@ -332,7 +332,7 @@ def test_a_page_shows_picture_and_counts_until_the_node_is_cleaned_up(
 ):
     monkeypatch.setenv("ROS_HOME", str(tmp_path))
     rig, answers = TrafficRig(bench, overrides(page_port=0)), []
-    url, get = rig.node.stream.page.url, build_opener(ProxyHandler({})).open
+    url, get = rig.node.outputs.page.url, build_opener(ProxyHandler({})).open
 
     def ask():
         answers.append(get(f"{url}picture.jpg").read())

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.ros import rclpy_internals
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
 from vehicle_pf_tracker.ros.node.image_input import ImageInput
-from vehicle_pf_tracker.ros.node.node_stream import NodeStream
+from vehicle_pf_tracker.ros.node.image_path import Feed, ImagePath
 from vehicle_pf_tracker.ros.node.parameters import ParameterTable, take_overrides, unknown_overrides
 
 
@@ -46,8 +46,12 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
     ----------
     failure : str
         Reason of the last transition that failed; empty before one did.
-    stream : NodeStream or None
+    path : ImagePath or None
         Where images go; None while the node is not configured.
+    accept : callable or None
+        Takes each image: the path, or what lies before it; None while the node is not configured.
+    feed : Feed or None
+        What follows in them; None while the node is not configured.
     table : ParameterTable
         The parameters.
     diagnostics : Diagnostics
@@ -60,13 +64,16 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         Releases all that a clean-up ends.
     """
 
-    stream: NodeStream | None
+    path: ImagePath | None
+    feed: Feed | None
 
     def __init__(self, name: str, **options: Any) -> None:
         super().__init__(name, automatically_declare_parameters_from_overrides=True, **options)
         self.overrides = take_overrides(self)
         self.failure = ""
-        self.stream = None
+        self.path = None
+        self.feed = None
+        self.accept: Callable[[Image | CompressedImage], None] | None = None
         self.inputs: list[Subscription] = []
         self.held = ExitStack()
         service = rclpy_internals.change_state_service(self)
@@ -85,7 +92,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
             given = self.overrides
             self.table = ParameterTable(self, defaults, given, self._check, self._reconfigure)
             self.diagnostics = Diagnostics(
-                self, lambda: self.stream.facts if self.stream is not None else {}
+                self, lambda: self.feed.facts if self.feed is not None else {}
             )
             if rclpy_internals.state_machine(self) is None:
                 words = "this release of rclpy was not tried: its state machine is hidden"
@@ -99,13 +106,13 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
 
     def _check(self, configuration: Configuration) -> None:
         """Refuse parameters that do not fit what the node is doing."""
-        if self.stream is not None:
-            self.stream.check(configuration)
+        if self.path is not None:
+            self.path.check(configuration)
 
     def _reconfigure(self, configuration: Configuration) -> None:
         """Take parameters that were changed."""
-        if self.stream is not None:
-            self.stream.reconfigure(configuration)
+        if self.path is not None:
+            self.path.reconfigure(configuration)
 
     def open_images(self) -> ImageInput:
         """Listen to images."""
@@ -119,16 +126,16 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
     ) -> None:
         """Subscribe until the node is deactivated, to requests for a change of `what`.
 
-        `change` takes a message and the stream; where it raises InputError, the reason is reported.
+        `change` takes a message and the path; where it raises InputError, the reason is reported.
         """
 
         def take(message: Any) -> None:
-            if self.stream is None:
+            if self.path is None:
                 return
             try:
-                change(message, self.stream)
+                change(message, self.path)
             except InputError as error:
-                self.stream.refuse(what, str(error))
+                self.path.journal.refuse(what, str(error))
 
         self.inputs.append(self.create_subscription(kind, topic, take, 10))
 
@@ -157,16 +164,17 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
 
     @abstractmethod
     def prepare(self) -> None:
-        """Make stream, outputs and services; `held` releases them, also where this fails."""
+        """Make path, feed, outputs and services; `held` releases them, also where this fails."""
 
     def configure(self) -> None:
         """Prepare for images."""
         try:
             self.prepare()
-            assert self.stream is not None
-            self.serve("~/reset", self.stream.reset)
-            if self.stream.incidents is not None:
-                self.serve("~/snapshot", self.stream.write_incident)
+            assert self.feed is not None
+            assert self.path is not None
+            self.serve("~/reset", self.feed.reset)
+            if self.path.incidents is not None:
+                self.serve("~/snapshot", self.path.write_incident)
         except Exception:  # of whatever a network or numba raises
             self.cleanup()
             raise
@@ -180,16 +188,18 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
     def cleanup(self) -> None:
         """Release session, outputs and services."""
         self.held.close()
-        self.stream = None
+        self.path = None
+        self.feed = None
+        self.accept = None
 
     def _on_image(self, image: Image | CompressedImage, info: Mapping[str, Any]) -> None:
-        """Note an image, and pass it to the stream; not one that a deactivation has overtaken."""
+        """Note an image, and pass it on; not one that a deactivation has overtaken."""
         source = self.diagnostics.source
-        if source is None or self.stream is None:
+        if source is None or self.accept is None:
             return
         age = self.get_clock().now().nanoseconds - stamp_ns(image.header)
         self.diagnostics.health.arrived(info, age * 1e-9, source.count_publishers)
-        self.stream.take(image)
+        self.accept(image)
 
     def warn_of_overrides(self, *, qos: bool) -> None:
         """Log the overrides that are ignored, a line each: of QoS, once all topics are open."""

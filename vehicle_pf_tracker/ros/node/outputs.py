@@ -26,9 +26,11 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.ros import messages
+from vehicle_pf_tracker.ros.node.answer import Answer, TrackerAnswer
+from vehicle_pf_tracker.ros.node.camera_inputs import StreamLocalisation
+from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.showing.drawing import Annotator, draw_target
 from vehicle_pf_tracker.trackers.estimate import START, Estimate
-from vehicle_pf_tracker.trackers.localisation import Localisation
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
@@ -82,7 +84,7 @@ class Outputs:
         """Return whether the topic exists and anybody subscribes to it."""
         return name in self._publishers and bool(self._publishers[name].get_subscription_count())
 
-    def send(self, name: str, make: Callable[..., Any], *arguments: object) -> None:
+    def publish(self, name: str, make: Callable[..., Any], *arguments: object) -> None:
         """Publish on a topic what `make` makes of `arguments`, if anybody listens."""
         if self.is_heard(name):
             self._publishers[name].publish(make(*arguments))
@@ -91,34 +93,25 @@ class Outputs:
         self, header: Header, estimate: Estimate | TrackEstimate, own: NodeParameters, period: float
     ) -> None:
         """Publish where a vehicle is; the frame `period` in s makes px/frame to px/s."""
-        self.send("position", messages.point_message, header, estimate.position)
+        self.publish("position", messages.point_message, header, estimate.position)
         if own.publish.box:
-            self.send("box", messages.box_message, header, estimate.box)
+            self.publish("box", messages.box_message, header, estimate.box)
         if own.publish.velocity:
-            self.send("velocity", messages.velocity_message, header, estimate.velocity, period)
+            self.publish("velocity", messages.velocity_message, header, estimate.velocity, period)
 
-    def publish_mode(
-        self,
-        header: Header,
-        mode: str,
-        values: Mapping[str, object],
-        *,
-        is_kept: bool,
-        is_doubtful: bool = False,
-    ) -> DiagnosticArray | None:
-        """Publish the one `~/mode` of an image: of an estimate, `WAITING` or `REJECTED`.
+    def publish_mode(self, answer: Answer, *, is_kept: bool) -> DiagnosticArray | None:
+        """Publish and return the one `~/mode` of an image.
 
-        Its values are the estimate's, or a reason. The level is the mode's, and at least WARN where
-        the target `is_doubtful`. It is not made where nobody listens, unless the caller keeps it.
+        It is None where nobody listens, unless the caller keeps it.
         """
         if not (is_kept or self.is_heard("mode")):
             return None
-        level = messages.LEVELS[mode]
-        if is_doubtful:
+        level = messages.LEVELS[answer.mode]
+        if answer.is_doubtful:
             level = max(level, DiagnosticStatus.WARN)
-        status = level, "target", mode, {"mode": mode, **values}
-        message = self.statuses(header, [status])
-        self.send("mode", lambda: message)
+        status = level, "target", answer.mode, {"mode": answer.mode, **answer.values}
+        message = self.statuses(answer.header, [status])
+        self.publish("mode", lambda: message)
         return message
 
     def statuses(self, header: Header, found: Iterable[messages.Status]) -> DiagnosticArray:
@@ -153,9 +146,19 @@ class TrackerOutputs(Outputs):
         Its publishers are silent unless it is active.
     hardware_id : str
         Topic of the images, for `~/mode`.
+    localisation : StreamLocalisation
+        Uncertainty of the estimates, and the road.
+    journal : Journal
+        Log and counts.
     """
 
-    def __init__(self, node: LifecycleNode, hardware_id: str) -> None:
+    def __init__(
+        self,
+        node: LifecycleNode,
+        hardware_id: str,
+        localisation: StreamLocalisation,
+        journal: Journal,
+    ) -> None:
         more = {
             "particles": (PointCloud2, BEST_EFFORT),
             "pose_with_covariance": (PoseWithCovarianceStamped, RELIABLE),
@@ -164,16 +167,23 @@ class TrackerOutputs(Outputs):
             "detection": (messages.detection_type(), RELIABLE),
         }
         super().__init__(node, hardware_id, more)
+        self._localisation = localisation
+        self._journal = journal
         self._annotator = Annotator(particles=True)
         self._track = 0
 
-    def publish_estimate(
-        self,
-        header: Header,
-        estimate: Estimate,
-        own: NodeParameters,
-        localisation: Localisation,
-        period: float,
+    def send(self, answer: Answer, own: NodeParameters, *, is_kept: bool) -> DiagnosticArray | None:
+        """Publish an answer, its `~/mode` last; returns that, if it was made."""
+        if isinstance(answer, TrackerAnswer):
+            if answer.estimate is not None:
+                self._publish_estimate(answer.header, answer.estimate, own, answer.period)
+            if own.publish.overlay:
+                with self._journal.drawing("the overlay"):
+                    self._publish_overlay(answer)
+        return self.publish_mode(answer, is_kept=is_kept)
+
+    def _publish_estimate(
+        self, header: Header, estimate: Estimate, own: NodeParameters, period: float
     ) -> None:
         """Publish where the vehicle is; the frame `period` in s makes px/frame to px/s."""
         if estimate.regime == START:
@@ -183,27 +193,31 @@ class TrackerOutputs(Outputs):
         header = in_pixels(header, own)
         self.publish_vehicle(header, estimate, own, period)
         if own.publish.particles:
-            self.send("particles", messages.particles_message, header, estimate)
-        self.send("detection", messages.detection_message, header, estimate, str(self._track))
+            self.publish("particles", messages.particles_message, header, estimate)
+        self.publish("detection", messages.detection_message, header, estimate, str(self._track))
+        localisation = self._localisation
         road = localisation.road
         if road is not None:
             there = in_frame(header, localisation.parameters.frame_id)
-            self.send(
+            self.publish(
                 "pose_with_covariance", messages.pose_message, there, road.position, road.covariance
             )
-            self.send("road_position", messages.point_message, there, road.position)
-            self.send("road_velocity", messages.velocity_message, there, road.velocity)
+            self.publish("road_position", messages.point_message, there, road.position)
+            self.publish("road_velocity", messages.velocity_message, there, road.velocity)
         elif not localisation.has_road and self.is_heard("pose_with_covariance"):
             position, covariance = np.asarray(estimate.position), localisation.covariance
-            self.send("pose_with_covariance", messages.pose_message, header, position, covariance)
+            self.publish(
+                "pose_with_covariance", messages.pose_message, header, position, covariance
+            )
 
-    def publish_overlay(
-        self, header: Header, frame: Frame, mode: str, estimate: Estimate | None, more: str = ""
-    ) -> None:
-        """Publish the drawn-on image, if anybody looks; `more` is written after the mode."""
+    def _publish_overlay(self, answer: TrackerAnswer) -> None:
+        """Publish the drawn-on image, if anybody looks; the speed stands after the mode."""
         if not self.is_heard("overlay"):
             return
-        picture: Frame = np.array(frame, order="C")
-        words = mode if estimate is None else f"{mode} {estimate.confidence:.2f}"
-        draw_target(picture, self._annotator, mode, estimate, f"{words}  {more}".rstrip(), row=1)
-        self.send("overlay", messages.image_message, header, picture)
+        mode, estimate = answer.mode, answer.estimate
+        picture: Frame = np.array(answer.frame, order="C")
+        words = mode
+        if estimate is not None:
+            words = f"{mode} {estimate.confidence:.2f}  {self._localisation.words}".rstrip()
+        draw_target(picture, self._annotator, mode, estimate, words, row=1)
+        self.publish("overlay", messages.image_message, answer.header, picture)

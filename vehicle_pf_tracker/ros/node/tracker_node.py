@@ -14,11 +14,13 @@ from sensor_msgs.msg import RegionOfInterest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros import messages
-from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
+from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation
 from vehicle_pf_tracker.ros.node.image_input import image_topic
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
+from vehicle_pf_tracker.ros.node.image_path import ImagePath
+from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
-from vehicle_pf_tracker.ros.node.stream import Stream
+from vehicle_pf_tracker.ros.node.tracker_feed import TrackerFeed
 from vehicle_pf_tracker.trackers.registry import Variant
 
 _POLL = 0.1
@@ -37,8 +39,8 @@ class TrackerNode(ImageNode):
 
     Attributes
     ----------
-    stream : Stream or None
-        Processing of the images; None while the node is not configured.
+    feed : TrackerFeed or None
+        Session of the target; None while the node is not configured.
 
     Raises
     ------
@@ -46,7 +48,7 @@ class TrackerNode(ImageNode):
         If a parameter or a QoS override does not fit.
     """
 
-    stream: Stream | None
+    feed: TrackerFeed | None
 
     def __init__(self, variant: Variant, **options: Any) -> None:
         super().__init__(f"{variant.name}_tracker", **options)
@@ -57,10 +59,15 @@ class TrackerNode(ImageNode):
     def prepare(self) -> None:
         """Make session, outputs and services."""
         configuration = self.table.configuration
-        outputs = TrackerOutputs(self, image_topic(self, configuration.node.image_transport))
+        journal = Journal(self, self.diagnostics.begin())
+        road = configuration.session.road
+        localisation = StreamLocalisation(self._variant.name, road, self._cameras)
+        topic = image_topic(self, configuration.node.image_transport)
+        outputs = TrackerOutputs(self, topic, localisation, journal)
         self.held.callback(outputs.close)
-        health = self.diagnostics.begin()
-        self.stream = Stream(self, self._variant, configuration, outputs, health, self._cameras)
+        self.feed = TrackerFeed(self._variant, configuration, localisation, journal)
+        self.path = ImagePath(self, configuration, self.feed, outputs, journal)
+        self.accept = self.path.take
         self._ready_timer = self.poll(_POLL, self._await_kernels)
 
     def activate(self) -> None:
@@ -84,31 +91,32 @@ class TrackerNode(ImageNode):
     def _take_target(self, topic: str, kind: Any, read: Callable[[Any], Box]) -> None:
         """Start on the boxes that messages on `topic` give, those with a header in its frame."""
 
-        def start(message: Any, stream: Stream) -> None:
+        def start(message: Any, path: ImagePath) -> None:
+            assert self.feed is not None
             if kind is not RegionOfInterest:
-                stream.check_frame_id(topic, message.header)
-            stream.start_on(read(message))
+                path.check_frame_id(topic, message.header)
+            self.feed.start_on(read(message))
 
         self.listen(kind, topic, "target", start)
 
     def _box_at(self, message: PointStamped) -> Box:
-        return messages.box_of_point(message, self.stream.box if self.stream is not None else None)
+        return messages.box_of_point(message, self.feed.box if self.feed is not None else None)
 
     def _await_kernels(self) -> None:
         """Log once that the node is ready: active, and with kernels."""
         source = self.diagnostics.source
-        if self.stream is None or not self.stream.get_ready():
+        if self.feed is None or not self.feed.get_ready():
             return
         self._ready_timer.cancel()
         if source is not None and not self._has_logged_ready:
             self._has_logged_ready = True
-            kernels = self.stream.facts["kernels"]
-            words = f"ready: images on {source}, {self.stream.target_words}, {kernels} kernels"
+            kernels = self.feed.facts["kernels"]
+            words = f"ready: images on {source}, {self.feed.target_words}, {kernels} kernels"
             self.get_logger().info(words)
 
     def _reconfigure(self, configuration: Configuration) -> None:
         super()._reconfigure(configuration)
-        if self.stream is not None:
+        if self.feed is not None:
             self._ready_timer.reset()
         if self.diagnostics.source is not None:
             self._cameras.open(configuration.session.road)

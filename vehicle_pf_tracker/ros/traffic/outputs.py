@@ -5,6 +5,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import partial
+
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.lifecycle import LifecycleNode
@@ -13,13 +16,33 @@ from std_msgs.msg import Header
 from visualization_msgs.msg import MarkerArray
 
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.ros.messages import detections_type, image_message
-from vehicle_pf_tracker.ros.node.outputs import RELIABLE, Outputs
+from vehicle_pf_tracker.ros.node.answer import Answer
+from vehicle_pf_tracker.ros.node.journal import Journal
+from vehicle_pf_tracker.ros.node.outputs import RELIABLE, Outputs, in_pixels
 from vehicle_pf_tracker.ros.traffic import messages
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.showing.drawing import Colour, draw_box, line_width
+from vehicle_pf_tracker.showing.live_page import LivePage
 
 _SELECTED: Colour = (255, 255, 255)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrafficAnswer(Answer):
+    """Answer of all vehicles to an image that they could be followed in.
+
+    Attributes
+    ----------
+    frame : (H, W, 3) array
+        The image.
+    period : float
+        Nominal time between images, s.
+    """
+
+    frame: Frame
+    period: float
 
 
 class TrafficOutputs(Outputs):
@@ -31,9 +54,22 @@ class TrafficOutputs(Outputs):
         Its publishers are silent unless it is active.
     hardware_id : str
         Topic of the images, for the statuses.
+    vehicles : Vehicles
+        All vehicles.
+    page : LivePage or None
+        Page that shows them.
+    journal : Journal
+        Log and counts.
     """
 
-    def __init__(self, node: LifecycleNode, hardware_id: str) -> None:
+    def __init__(
+        self,
+        node: LifecycleNode,
+        hardware_id: str,
+        vehicles: Vehicles,
+        page: LivePage | None,
+        journal: Journal,
+    ) -> None:
         more = {
             "tracks": (PointCloud2, RELIABLE),
             "modes": (DiagnosticArray, RELIABLE),
@@ -43,27 +79,49 @@ class TrafficOutputs(Outputs):
         }
         super().__init__(node, hardware_id, more)
 
-    def publish_vehicles(
-        self, header: Header, there: Header, vehicles: Vehicles, period: float
-    ) -> None:
+        self._vehicles = vehicles
+        self._journal = journal
+        self.page = page
+
+    def send(self, answer: Answer, own: NodeParameters, *, is_kept: bool) -> DiagnosticArray | None:
+        """Publish an answer, its `~/mode` last; returns that, if it was made."""
+        if isinstance(answer, TrafficAnswer):
+            there, selected = in_pixels(answer.header, own), self._vehicles.selected
+            self._publish_vehicles(answer.header, there, answer.period)
+            if selected is not None:
+                self.publish_vehicle(there, selected, own, answer.period)
+            self._show(answer, own)
+        return self.publish_mode(answer, is_kept=is_kept)
+
+    def _publish_vehicles(self, header: Header, there: Header, period: float) -> None:
         """Publish all vehicles, px under the header `there`, and what was counted.
 
         The frame `period` is in s.
         """
-        estimates = vehicles.estimates
-        self.send("tracks", messages.tracks_message, there, estimates, period)
-        self.send("modes", self.statuses, header, messages.mode_statuses(estimates))
-        self.send("detections", messages.detections_message, there, estimates)
-        self.send("markers", messages.markers_message, there, estimates)
-        if vehicles.counter.plan.is_counting:
-            counts = messages.count_statuses(vehicles.counter, vehicles.latest)
-            self.send("counts", self.statuses, header, counts)
+        counter, estimates = self._vehicles.counter, self._vehicles.estimates
+        self.publish("tracks", messages.tracks_message, there, estimates, period)
+        self.publish("modes", self.statuses, header, messages.mode_statuses(estimates))
+        self.publish("detections", messages.detections_message, there, estimates)
+        self.publish("markers", messages.markers_message, there, estimates)
+        if counter.plan.is_counting:
+            counts = messages.count_statuses(counter, self._vehicles.latest)
+            self.publish("counts", self.statuses, header, counts)
 
-    def publish_overlay(self, header: Header, frame: Frame, vehicles: Vehicles) -> None:
+    def _show(self, answer: TrafficAnswer, own: NodeParameters) -> None:
+        """Draw the image for those who look at it."""
+        if own.publish.overlay:
+            with self._journal.drawing("the overlay"):
+                self._publish_overlay(answer)
+        if self.page is not None:
+            with self._journal.drawing("the live page"):
+                self.page.show(partial(self._vehicles.shown, answer.frame), self._vehicles.facts)
+
+    def _publish_overlay(self, answer: TrafficAnswer) -> None:
         """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
         if not self.is_heard("overlay"):
             return
-        if vehicles.selected is not None:
+        frame, selected = answer.frame, self._vehicles.selected
+        if selected is not None:
             frame = np.array(frame, order="C")
-            draw_box(frame, vehicles.selected.box, _SELECTED, 3 * line_width(frame))
-        self.send("overlay", image_message, header, vehicles.drawn(frame))
+            draw_box(frame, selected.box, _SELECTED, 3 * line_width(frame))
+        self.publish("overlay", image_message, answer.header, self._vehicles.drawn(frame))

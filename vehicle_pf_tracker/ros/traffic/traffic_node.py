@@ -20,9 +20,14 @@ from vehicle_pf_tracker.ros.image_memory import return_memory
 from vehicle_pf_tracker.ros.messages import box_of_region, detections_type, finite
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
+from vehicle_pf_tracker.ros.node.image_path import ImagePath
+from vehicle_pf_tracker.ros.node.journal import Journal
+from vehicle_pf_tracker.ros.traffic.detection_queue import DetectionQueue, WaitingMessages
+from vehicle_pf_tracker.ros.traffic.live_page import open_page
 from vehicle_pf_tracker.ros.traffic.messages import LONGEST
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
-from vehicle_pf_tracker.ros.traffic.stream import TrafficStream
+from vehicle_pf_tracker.ros.traffic.traffic_feed import TrafficFeed
+from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
@@ -43,8 +48,8 @@ class TrafficNode(ImageNode):
 
     Attributes
     ----------
-    stream : TrafficStream or None
-        Processing of images and detections; None while the node is not configured.
+    feed : TrafficFeed or None
+        All vehicles; None while the node is not configured.
 
     Raises
     ------
@@ -52,7 +57,7 @@ class TrafficNode(ImageNode):
         If a parameter or a QoS override does not fit.
     """
 
-    stream: TrafficStream | None
+    feed: TrafficFeed | None
 
     def __init__(self, **options: Any) -> None:
         super().__init__(TRAFFIC.executable, **options)
@@ -68,16 +73,40 @@ class TrafficNode(ImageNode):
             )
         if is_fetched(configuration.tracker.detector.model):
             self.get_logger().info("fetching the network, unless it is in the cache")
-        outputs = TrafficOutputs(self, image_topic(self, configuration.node.image_transport))
-        self.held.callback(outputs.close)
-        self.stream = TrafficStream(self, configuration, outputs, self.diagnostics.begin())
-        if self.stream.page is not None:
-            self.held.callback(self.stream.page.close)
+        journal = Journal(self, self.diagnostics.begin())
+        waiting = WaitingMessages()
+        self.feed = TrafficFeed(configuration, waiting, journal)
+        self.outputs = self._open_outputs(configuration, self.feed.vehicles, journal)
+        self.path = ImagePath(self, configuration, self.feed, self.outputs, journal)
+        self.accept = self.path.take
+        self._queue: DetectionQueue | None = None
+        if configuration.tracker.detector.kind == TOPIC:
+            self._queue = DetectionQueue(
+                waiting,
+                lambda: self.table.configuration.tracker.detector,
+                self.path.take,
+                journal.warnings,
+            )
+            self.accept = self._await_detections
         self._look_timer = self.poll(_LOOK_EVERY, self._look)
         self._free_timer = self.poll(_FREE_AFTER, self._free)
         for timer in (self._look_timer, self._free_timer):
             timer.cancel()
         self.serve("~/remove_selected", self._remove)
+
+    def _open_outputs(
+        self, configuration: Configuration, vehicles: Vehicles, journal: Journal
+    ) -> TrafficOutputs:
+        """Open publishers and page; a clean-up closes them."""
+        page, port = None, configuration.tracker.page_port
+        if port >= 0:
+            page = open_page(self.get_fully_qualified_name(), port, journal)
+        if page is not None:
+            self.held.callback(page.close)
+        topic = image_topic(self, configuration.node.image_transport)
+        outputs = TrafficOutputs(self, topic, vehicles, page, journal)
+        self.held.callback(outputs.close)
+        return outputs
 
     def activate(self) -> None:
         """Open the inputs."""
@@ -94,19 +123,21 @@ class TrafficNode(ImageNode):
     def deactivate(self) -> None:
         """Close the inputs."""
         super().deactivate()
-        if self.stream is not None:
+        if self.feed is not None:
             self._look_timer.cancel()
-            self.stream.drop_waiting()
+        if self.feed is not None and self._queue is not None:
+            self._queue.clear()
 
-    def _on_image(self, image: Any, info: Any) -> None:
-        super()._on_image(image, info)
-        kind = self.table.configuration.tracker.detector.kind
+    def _await_detections(self, image: Any) -> None:
+        """Let an image wait for its detections."""
+        assert self._queue is not None
+        self._queue.add_image(image)
         # Without an image that waits, 50 looks a second would take a fortieth of a processor.
-        if kind == TOPIC and self._look_timer.is_canceled():
+        if self._look_timer.is_canceled():
             self._look_timer.reset()
 
     def _look(self) -> None:
-        if self.stream is None or not self.stream.go_on():
+        if self.feed is None or self._queue is None or not self._queue.go_on():
             self._look_timer.cancel()
 
     def _listen_to_detections(self) -> None:
@@ -116,11 +147,11 @@ class TrafficNode(ImageNode):
         self.inputs.append(subscribe(self, detections_type(), topic, take, qos, raw=True))
 
     def _on_detections(self, message: bytes) -> None:
-        if self.stream is None:
+        if self.feed is None or self._queue is None:
             return
         if len(message) > LONGEST and self._free_timer.is_canceled():
             self._free_timer.reset()
-        self.stream.take_detections(message)
+        self._queue.add_detections(message)
 
     def _free(self) -> None:
         """Free what a flood took: Fast DDS keeps each of a reader's buffers at its longest."""
@@ -130,23 +161,29 @@ class TrafficNode(ImageNode):
             self._listen_to_detections()
         return_memory()
 
-    def _add(self, message: RegionOfInterest, stream: TrafficStream) -> None:
+    def _add(self, message: RegionOfInterest, _: ImagePath) -> None:
         box = box_of_region(message)
-        identity = stream.vehicles.add(box)
+        identity = self._vehicles.add(box)
         if identity is not None:
             self.get_logger().info(f"following {box} as {identity}")
 
-    def _choose_at(self, message: PointStamped, stream: TrafficStream) -> None:
-        stream.check_frame_id("~/clicked_point", message.header)
+    def _choose_at(self, message: PointStamped, path: ImagePath) -> None:
+        path.check_frame_id("~/clicked_point", message.header)
         x, y = finite("~/clicked_point", message.point.x, message.point.y)
-        stream.vehicles.selection.choose_at((x, y), stream.vehicles.estimates)
+        vehicles = self._vehicles
+        vehicles.selection.choose_at((x, y), vehicles.estimates)
 
-    def _choose(self, message: Int64, stream: TrafficStream) -> None:
-        stream.vehicles.selection.choose(message.data, stream.vehicles.estimates)
+    def _choose(self, message: Int64, _: ImagePath) -> None:
+        vehicles = self._vehicles
+        vehicles.selection.choose(message.data, vehicles.estimates)
 
     def _remove(self) -> str:
-        assert self.stream is not None
-        return f"vehicle {self.stream.vehicles.remove_selected()} is forgotten"
+        return f"vehicle {self._vehicles.remove_selected()} is forgotten"
+
+    @property
+    def _vehicles(self) -> Vehicles:
+        assert self.feed is not None
+        return self.feed.vehicles
 
     def _check(self, configuration: Configuration) -> None:
         configuration.session.road.fixed_plane()
