@@ -54,6 +54,26 @@ def test_a_recording_with_truth_is_tracked_and_scored(run, bag, variant, capsys)
     assert [line for line in err.splitlines() if not line.startswith("tracked")] == []
 
 
+def test_a_trajectory_and_its_truth_have_a_line_per_frame(run, bag, tmp_path, capsys):
+    path = tmp_path / "seen.tum"
+    rows, *_ = run(bag, "--tum", str(path))
+    estimated = [line.split() for line in path.read_text().splitlines()]
+    assert [(float(x), float(y)) for _, x, y, *_ in estimated] == [row.position for row in rows]
+    true = (tmp_path / "seen_truth.tum").read_text().splitlines()
+    assert [line.split()[0] for line in true] == [line[0] for line in estimated]
+    assert len(true) == COUNT
+    assert main(["run", str(bag), "-o", str(tmp_path / "other"), "--tum", str(path)]) == 1
+    assert f"{path} exists; give --overwrite" in capsys.readouterr().err
+
+
+def test_trajectories_of_two_targets_are_two_files(bag, tmp_path):
+    words = ["--target", TARGET, "--target", f"van:{TARGET}", "--variant", "apf"]
+    out = ["-o", str(tmp_path / "out"), "--tum", str(tmp_path / "tum" / "seen.tum")]
+    assert main(["run", str(bag), *words, *out]) == 0
+    names = {path.name for path in (tmp_path / "tum").iterdir()}
+    assert names == {"seen_1.tum", "seen_van.tum"}
+
+
 def test_a_drawn_seed_is_kept(run, bag):
     _, _, info = run(bag, "--seed", "-1")
     assert info["parameters"]["seed"] == -1

@@ -26,6 +26,7 @@ from vehicle_pf_tracker.recordings.truth_files import Beside
 from vehicle_pf_tracker.results.estimates import EstimateRow, summary, write_tracks
 from vehicle_pf_tracker.results.output_files import write_json
 from vehicle_pf_tracker.results.run_folder import ESTIMATES, METRICS, RUN, describe_run, write_run
+from vehicle_pf_tracker.results.trajectories import trajectory_files, write_trajectories
 from vehicle_pf_tracker.showing.estimates_recording import run_recording
 from vehicle_pf_tracker.showing.pictures import Pictures
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
@@ -53,6 +54,11 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
         help="write images (JPEG), truth, estimates and Foxglove's annotations to the rosbag2 "
         "folder OUT",
     )  # fmt: skip
+    tum: Path | None = option(
+        metavar="FILE",
+        help="write the positions (px) as a TUM trajectory for evo, and the true ones as "
+        "FILE_truth; for several targets FILE_NAME",
+    )  # fmt: skip
     particles: bool = switch(help="draw the particles too")
 
 
@@ -69,7 +75,7 @@ def run(request: Request) -> int:
         beside=Beside.NOTED,
     )
     path = request.output or Path("results", short_name(request.source) or "run")
-    outputs = (Products(path, PRODUCTS), request.video, request.recording)
+    outputs = (Products(path, PRODUCTS), request.video, request.recording, *_tum_files(request))
     stop = Stop()
     with claimed(outputs, (*request.inputs, request.truth), overwrite=request.overwrite):
         status = _track(request, variant, source, path, stop)
@@ -102,6 +108,8 @@ def _track(
         write_tracks(folder / TRACKS, rows)
     else:
         _score(request, source, folder, *rows.values())
+    if request.tum:
+        write_trajectories(request.tum, rows, source.truth())
     for name, of_target in rows.items():
         size = trackers[name].session.size
         print(f"{name + ': ' if len(rows) > 1 else ''}{summary(of_target, size)}")
@@ -112,6 +120,15 @@ def _track(
     if request.recording and not side.failed(_recording_of(request)):
         print(f"the recording is {request.recording}, for Foxglove and `ros2 bag play`")
     return stop.status if ended else int(bool(side.notices))
+
+
+def _tum_files(request: Request) -> list[Path]:
+    """Return every trajectory file that the run may write."""
+    if request.tum is None:
+        return []
+    # Only the names count here; frames are checked when the first one is known.
+    names = list(by_name(request.given_targets(), 1))
+    return trajectory_files(request.tum, names)
 
 
 def _follow(
