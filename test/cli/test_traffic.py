@@ -297,6 +297,7 @@ def test_what_can_have_no_effect_is_said(run, tmp_path, capsys):
         (["--detector", "none"], False, "without a detector nothing is followed", 2),
         (["--detector", "motion"], True, "give either --detections, or --detector", 2),
         (["--detector", "none", "--model", "a.onnx"], False, "--model is not used by", 2),
+        (["--classes", "car", "--conf", ".3"], False, "are for a network; give it with", 2),
         (["--detector", "model"], False, "detector.model names no .onnx file", 1),
         (["--set", "lost_afterr=1"], True, "did you mean 'lost_after'", 1),
         (["--set", "target.width=5", "--set", "target.height=5"], True, "give --target", 1),

@@ -3,12 +3,15 @@
 
 """Many vehicles from Python, and the programs of docs/examples.md."""
 
+import copy
 import json
 import os
+import pickle
 import re
 import shutil
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -245,3 +248,68 @@ def test_supervision_s_own_detections_come_in_and_go_out(clips):
     boxes[:, 2:] -= boxes[:, :2]
     assert boxes == pytest.approx(truth(39), abs=2)
     assert rest == "2 65"  # a detector that saw nothing leaves both for a while
+
+
+def test_a_copy_goes_on_with_the_same_numbers():
+    """Pickled and copied, by motion and with boxes given, bit for bit."""
+    rng = np.random.default_rng(4)
+    road = rng.integers(90, 130, (120, 160, 3), np.uint8)
+    car = rng.integers(0, 255, (16, 28, 3), np.uint8)
+
+    def image(index):
+        frame = road + rng.integers(0, 3, road.shape, np.uint8)
+        frame[60:76, 2 * index : 2 * index + 28] = car
+        return frame
+
+    for is_given in (True, False):
+        tracker = TrafficTracker(25.0)
+        for index in range(30):
+            boxes = [[2.0 * index, 60.0, 28.0, 16.0]] if is_given else None
+            tracker.update(image(index), boxes)
+        copies = [pickle.loads(pickle.dumps(tracker)), copy.deepcopy(tracker)]
+        for index in range(30, 60):
+            frame, boxes = image(index), [[2.0 * index, 60.0, 28.0, 16.0]] if is_given else None
+            tracker.update(frame, boxes)
+            for other in copies:
+                other.update(frame, boxes)
+                assert repr(other.estimates) == repr(tracker.estimates)
+        assert tracker.estimates
+
+
+def test_the_forms_of_boxes_say_the_same():
+    frame = np.zeros((120, 160, 3), np.uint8)
+    forms = {"ltwh": [10, 20, 40, 30], "xyxy": [10, 20, 50, 50], "cxcywh": [30, 35, 40, 30]}
+    results = set()
+    for form, box in forms.items():
+        tracker = TrafficTracker(25.0)
+        for index in range(40):
+            moved = np.array([box], float)
+            moved[:, [0, 2] if form == "xyxy" else 0] += 2 * index
+            shown = tracker.update(frame, moved, format=form)
+        results.add(repr(shown))
+    assert len(results) == 1 and results != {"()"}
+    with pytest.raises(ValueError, match="format is one of 'ltwh', 'xyxy', 'cxcywh', not 'xywh'"):
+        TrafficTracker(25.0).update(frame, [[1, 2, 3, 4]], format="xywh")
+
+
+def test_corners_taken_for_sizes_are_warned_of_once():
+    frame = np.zeros((120, 160, 3), np.uint8)
+    tracker = TrafficTracker(25.0)
+    with pytest.warns(UserWarning, match="not two corners"):
+        tracker.update(frame, [[60, 50, 120, 90]])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        tracker.update(frame, [[60, 50, 120, 90]])
+        TrafficTracker(25.0).update(frame, [[150, 50, 30, 20]])  # a vehicle that drives in
+        TrafficTracker(25.0).update(frame, [[60, 50, 120, 90]], format="xyxy")
+
+
+def test_images_of_opencv_are_said_once():
+    rng = np.random.default_rng(1)
+    frames = [rng.integers(0, 255, (120, 160, 3), np.uint8) for _ in range(30)]
+    ours, theirs = TrafficTracker(25.0), TrafficTracker(25.0, colour="bgr")
+    for index, frame in enumerate(frames):
+        boxes = [[2.0 * index, 60.0, 28.0, 16.0]]
+        assert repr(ours.update(frame, boxes)) == repr(theirs.update(frame[..., ::-1], boxes))
+    with pytest.raises(ValueError, match="colour is one of 'rgb', 'bgr', not 'BGR'"):
+        TrafficTracker(25.0, colour="BGR")

@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.counting.counter import Counter
-from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
+from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, Region
 from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.showing import drawing
 from vehicle_pf_tracker.showing.heat_picture import HeatPicture
@@ -177,3 +177,15 @@ def test_a_vehicle_that_is_found_elsewhere_draws_no_line_across(tmp_path):
     picture.write(tmp_path / "paths.png", NOWHERE)
     image = cv2.imread(str(tmp_path / "paths.png"))
     assert not image[2 * 70, 2 * 60 : 2 * 250].any()
+
+
+def test_driving_out_of_a_region_of_interest_is_leaving():
+    region = Region(((0.0, 0.0), (200.0, 0.0), (200.0, 100.0), (0.0, 100.0)), is_inside=True)
+    ended = []
+    for last_seen in (190.0, 100.0):  # its front reaches over the edge; in the middle
+        summary = TrafficSummary([region])
+        for x in np.arange(0.0, 240.0, 10.0):
+            one = estimate(1, "T" if x <= last_seen else "O", Box(x - 15, 40, 30, 20))
+            summary.add([replace(one, velocity=(10.0, 0.0))])
+        ended.append(summary.ended_hidden)
+    assert ended == [0, 1]

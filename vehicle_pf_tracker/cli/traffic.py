@@ -61,6 +61,14 @@ class Request(TrackingRequest):
         help="a network, YOLOX, YOLOv8 or SSD: an .onnx file, its URL, or one of the names "
         f"{', '.join(NETWORKS)}, which are fetched once from their makers",
     )
+    classes: str | None = option(
+        metavar="NAMES",
+        help="classes of the network that are followed, as car,truck (detector.classes)",
+    )
+    conf: float | None = option(
+        type=float, metavar="SCORE",
+        help="least score of a detection of the network (detector.min_score)",
+    )  # fmt: skip
     lines: Path | None = option(help="lines, zones and regions of interest, lines.yaml")
 
 
@@ -169,9 +177,13 @@ def _configuration(request: Request) -> Configuration:
     given = {
         "lines": str(request.lines) if request.lines else None,
         "detector.kind": kind, "detector.model": request.model,
+        "detector.classes": request.classes, "detector.min_score": request.conf,
     }  # fmt: skip
     changes = {name: value for name, value in given.items() if value is not None}
     configuration = configuration.updated(changes)
+    has_network = configuration.tracker.detector.kind == MODEL
+    if not has_network and not (request.classes is None and request.conf is None):
+        raise UsageError("--classes and --conf are for a network; give it with --model")
     if configuration.tracker.detector.kind == TOPIC:
         raise InputError("detector.kind topic is for nodes; offline, give --detections FILE")
     return configuration

@@ -10,6 +10,7 @@ import statistics
 from collections import defaultdict, deque
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import partial
 
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.counting.foot_point import FootPoint
@@ -80,7 +81,7 @@ class Plausibility:
 
     def __init__(self) -> None:
         self._past: dict[str, deque[tuple[Crossing, Life]]] = defaultdict(
-            lambda: deque(maxlen=_REMEMBERED)
+            partial(deque, maxlen=_REMEMBERED)
         )
 
     def doubt(self, crossing: Crossing, life: Life) -> str:

@@ -7,12 +7,16 @@ from __future__ import annotations
 
 import time
 from collections import Counter as Tally
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
 from vehicle_pf_tracker.counting.crossing import Crossing
+from vehicle_pf_tracker.counting.vehicle_class import VehicleClasses
 from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.detection.detector import Detector
 from vehicle_pf_tracker.following.detectors import PacedDetector, Run, call, detector_maker
 from vehicle_pf_tracker.following.fetching import Progress, silent
 from vehicle_pf_tracker.following.live_facts import RecentCrossings, traffic_facts
@@ -45,6 +49,10 @@ class CountedVehicles:
         The same.
     trails : Trails
         Paths over the last images.
+    classes : VehicleClasses
+        Decides the vehicles' classes.
+    estimates : tuple of TrackEstimate
+        Estimates of the last image, with these classes.
     """
 
     def __init__(self, session: TrafficSession, counter: Counter) -> None:
@@ -52,12 +60,9 @@ class CountedVehicles:
         self.counter = counter
         self.trails = Trails()
         self._recent = RecentCrossings()
+        self.classes = VehicleClasses()
+        self.estimates: tuple[TrackEstimate, ...] = ()
         self._restarts = session.restarts
-
-    @property
-    def estimates(self) -> tuple[TrackEstimate, ...]:
-        """Estimates of the last image."""
-        return self.session.estimates
 
     def follow(
         self, image: Frame | CodedImage, stamp_ns: int, detections: Detections | None
@@ -78,8 +83,11 @@ class CountedVehicles:
             detector.pace(time.perf_counter() - began, self.session.tracker.frame_period)
         if self.session.restarts != self._restarts:
             self._begin_anew()
+        self.estimates = self.classes.named(self.session.estimates)
         self.trails.add(self.estimates)
         crossings = self.counter.update(self.estimates, stamp_ns)
+        for crossing in crossings:
+            self.classes.decide(crossing.identity)
         self._recent.add(crossings, stamp_ns)
         return crossings
 
@@ -110,6 +118,23 @@ class CountedVehicles:
         """Note that the session has discarded all vehicles but its `successors`."""
         self._restarts = self.session.restarts
         self.counter.forget_vehicles()
+        self.classes.clear()
+
+
+@dataclass(frozen=True)
+class _PacedMaker:
+    """Makes detectors that look as often as the tracker's parameters say."""
+
+    make: Callable[[], Detector]
+    tracker: TrafficTracker
+    run: Run
+
+    def every(self) -> int:
+        """Return the parameter in use, which may change."""
+        return self.tracker.parameters.detector.every
+
+    def __call__(self) -> PacedDetector:
+        return PacedDetector(self.make(), self.every, self.run)
 
 
 def session_and_counter(
@@ -139,9 +164,7 @@ def session_and_counter(
     tracker = TrafficTracker(parameters, plane)
     session = TrafficSession(
         tracker,
-        (lambda: PacedDetector(make(), lambda: tracker.parameters.detector.every, run))
-        if make
-        else None,
+        _PacedMaker(make, tracker, run) if make else None,
         frame_rate=parameters.frame_rate,
         reset_on_time_jump=configuration.session.reset_on_time_jump,
         regions=plan.regions,

@@ -10,10 +10,11 @@ import math
 import os
 import time
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import Detector, FollowedVehicle
 from vehicle_pf_tracker.detection.motion_detector import MotionDetector
-from vehicle_pf_tracker.detection.network import Network
+from vehicle_pf_tracker.detection.network import Network, Tensor
 from vehicle_pf_tracker.detection.network_detector import NetworkDetector
 from vehicle_pf_tracker.detection.parameters import MODEL, MOTION, DetectorParameters
 from vehicle_pf_tracker.following.fetching import Progress, silent
@@ -32,14 +33,55 @@ from vehicle_pf_tracker.recordings.box_sizes import misfit
 from vehicle_pf_tracker.recordings.text_tables import numbers_in, table_rows
 
 
-def open_network(model: str, progress: Progress = silent) -> Network:
-    """Load a network from its file or URL.
+class OpenedNetwork:
+    """A network by ONNX Runtime, loaded from its file or URL.
+
+    A copy, also one in another process, loads it again: the runtime's sessions cannot be copied.
+
+    Parameters
+    ----------
+    model : str
+        The file or URL.
+    progress : Progress
+        Shows how it is fetched.
 
     Raises
     ------
     InputError
         If ONNX Runtime is not installed, or the file cannot be used.
     """
+
+    def __init__(self, model: str, progress: Progress = silent) -> None:
+        self._model = model
+        self._session = _loaded(model, progress)
+
+    def __reduce__(self) -> tuple[Callable[[str], OpenedNetwork], tuple[str]]:
+        """Be copied by what it was loaded from."""
+        return open_network, (self._model,)
+
+    def get_inputs(self) -> Sequence[Tensor]:
+        """Describe the inputs."""
+        return self._session.get_inputs()
+
+    def get_outputs(self) -> Sequence[Tensor]:
+        """Describe the outputs."""
+        return self._session.get_outputs()
+
+    def get_modelmeta(self) -> Any:
+        """Return what its author noted."""
+        return self._session.get_modelmeta()
+
+    def run(self, names: Sequence[str], inputs: Mapping[str, Array]) -> Sequence[Array]:
+        """Compute the outputs of these names."""
+        return self._session.run(names, inputs)
+
+
+def open_network(model: str, progress: Progress = silent) -> OpenedNetwork:
+    """Load a network; see `OpenedNetwork`."""
+    return OpenedNetwork(model, progress)
+
+
+def _loaded(model: str, progress: Progress) -> Network:
     os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # by default it reports to its makers
     try:
         runtime = importlib.import_module("onnxruntime")
@@ -62,6 +104,16 @@ def open_network(model: str, progress: Progress = silent) -> Network:
     return network
 
 
+@dataclass(frozen=True)
+class _Same:
+    """Makes a detector that keeps nothing between images: it is always the same."""
+
+    detector: Detector
+
+    def __call__(self) -> Detector:
+        return self.detector
+
+
 def detector_maker(
     parameters: DetectorParameters, progress: Progress = silent
 ) -> Callable[[], Detector] | None:
@@ -76,8 +128,7 @@ def detector_maker(
         return MotionDetector
     if parameters.kind == MODEL:
         model = parameters.model
-        network = NetworkDetector(open_network(model, progress), model, parameters)
-        return lambda: network  # it keeps nothing between images
+        return _Same(NetworkDetector(open_network(model, progress), model, parameters))
     return None
 
 
@@ -98,6 +149,11 @@ Run: TypeAlias = Callable[[Callable[[], Detections]], Detections]
 def call(work: Callable[[], Detections]) -> Detections:
     """Call `work`, and return what it returns."""
     return work()
+
+
+def every_image() -> int:
+    """Return 1, for a detector that looks at every image."""
+    return 1
 
 
 class PacedDetector:
@@ -125,7 +181,7 @@ class PacedDetector:
     """
 
     def __init__(
-        self, detector: Detector, wanted: Callable[[], int] = lambda: 1, run: Run = call
+        self, detector: Detector, wanted: Callable[[], int] = every_image, run: Run = call
     ) -> None:
         self._detector = detector
         self._run = run

@@ -54,7 +54,7 @@ class TrafficRun(CountedVehicles):
         self, session: TrafficSession, counter: Counter, detections: DetectionFile | None = None
     ) -> None:
         super().__init__(session, counter)
-        self.summary = TrafficSummary()
+        self.summary = TrafficSummary(counter.plan.regions)
         self._notices = list(detections.notices) if detections is not None else []
         self._more_notices = 0
         self._last_events: list[str] = []
@@ -119,7 +119,8 @@ class TrafficRun(CountedVehicles):
                 if not self.summary.frames:
                     self._check_plan_and_detections(frame_size(found.frame))
                 estimates = self.estimates
-                files.write(number, found.stamp_ns, estimates, crossings)
+                undecided = self.classes.undecided
+                files.write(number, found.stamp_ns, estimates, crossings, undecided)
                 self.summary.add(estimates)
                 if overview is not None:
                     period = self.session.tracker.frame_period

@@ -5,23 +5,26 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, TypeVar
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame, check_frame
+from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.parameters import MODEL
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import unknown_name
+from vehicle_pf_tracker.recordings.box_sizes import misfit
 from vehicle_pf_tracker.recordings.footage import check_fps
 from vehicle_pf_tracker.results.traffic_results import mot_numbers
 from vehicle_pf_tracker.trackers.image_stream import checked_stamp
@@ -31,8 +34,19 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMod
 DetectionsT = TypeVar("DetectionsT")
 
 
+_RGB, _BGR = "rgb", "bgr"
+"""Orders of an image's colours: ours, and that of images which OpenCV reads."""
+_LTWH, _XYXY, _CXCYWH = "ltwh", "xyxy", "cxcywh"
+"""Forms of a box: left, top, width, height; left, top, right, bottom; centre, width, height."""
+_JUDGED = 50
+"""Boxes by which their form is judged: some images, in which not all vehicles leave."""
+
+
 class TrafficTracker(CountedVehicles):
-    """Follow and count every vehicle of a stream, image by image.
+    """Follow and count every vehicle of a stream of RGB images, or of BGR with ``colour="bgr"``.
+
+    It can be copied and pickled, as for a pool of processes or a checkpoint: the copy goes on with
+    the same numbers.
 
     Parameters
     ----------
@@ -45,6 +59,8 @@ class TrafficTracker(CountedVehicles):
     model : str or Path
         Network, a file or a URL, that looks for vehicles where no detections are given. Without
         one, what moves before the standing camera is looked for.
+    colour : str
+        Order of the images' colours: "rgb", or "bgr" as OpenCV reads them.
 
     Attributes
     ----------
@@ -64,7 +80,9 @@ class TrafficTracker(CountedVehicles):
         *,
         lines: str | Path = "",
         model: str | Path = "",
+        colour: str = _RGB,
     ) -> None:
+        self._is_bgr = _chosen(colour, "colour", (_RGB, _BGR)) == _BGR
         named = {"detector.kind": MODEL, "detector.model": str(model)} if model else {}
         given = {"frame_rate": frame_rate, "lines": str(lines), **named, **parameters}
         known = (configuration := Configuration.of(TRAFFIC)).specs()
@@ -75,6 +93,8 @@ class TrafficTracker(CountedVehicles):
         self._period_ns = round(1e9 / check_fps(frame_rate, "frame_rate"))
         self._stamp_ns = self._images = 0
         self._class_ids: dict[str, int] = {}
+        self._is_warned = False
+        self._boxes: Array = np.empty((0, 4))
 
     def update(
         self,
@@ -83,6 +103,7 @@ class TrafficTracker(CountedVehicles):
         scores: npt.ArrayLike | None = None,
         labels: Sequence[str] | None = None,
         *,
+        format: str = _LTWH,  # noqa: A002 - the word that OpenCV's and torchvision's users know
         stamp_ns: int | None = None,
     ) -> tuple[TrackEstimate, ...]:
         """Follow all vehicles into the next image.
@@ -90,15 +111,19 @@ class TrafficTracker(CountedVehicles):
         Parameters
         ----------
         frame : Frame
-            RGB image, bytes of the shape (height, width, 3).
+            Image, bytes of the shape (height, width, 3), its colours in the order given to the
+            constructor.
         boxes : array-like, shape (N, 4), optional
-            Detections: left, top, width and height in px; empty where the detector saw nothing.
-            None: the tracker looks for vehicles itself.
+            Detections in px, in the form of `format`; empty where the detector saw nothing. None:
+            the tracker looks for vehicles itself.
         scores : array-like, shape (N,), optional
             Their scores: between 0 and 1 the probability of a vehicle, by which one that stands is
             reported, too; of another scale only their order counts. None: all alike.
         labels : sequence of str, optional
             Their classes.
+        format : str
+            "ltwh": left, top, width, height; "xyxy": left, top, right, bottom; "cxcywh": centre,
+            width, height.
         stamp_ns : int, optional
             Stamp of the image in ns; None: one period after the image before.
 
@@ -112,17 +137,43 @@ class TrafficTracker(CountedVehicles):
         InputError
             If the image is not usable, or the stamp is no integer.
         ValueError
-            If a box has not four numbers, or there are not as many scores or labels as boxes.
+            If a box has not four numbers, the form is unknown, or there are not as many scores or
+            labels as boxes.
+
+        Warns
+        -----
+        UserWarning
+            Once, where most boxes reach beyond the image, or none lies in it: they are of another
+            form.
         """
+        _chosen(format, "format", (_LTWH, _XYXY, _CXCYWH))
         if boxes is not None and np.ndim(boxes) > 1 and np.shape(boxes)[-1] not in {0, 4}:
             raise ValueError("a box is left, top, width and height in px")
         check_frame(np.asarray(frame))
+        if self._is_bgr:
+            frame = np.asarray(cv2.cvtColor(np.asarray(frame), cv2.COLOR_BGR2RGB), np.uint8)
         stamp_ns = self._stamp_ns + self._period_ns if stamp_ns is None else stamp_ns
         self._stamp_ns = checked_stamp(stamp_ns)
         self._images += 1
-        detections = None if boxes is None else Detections.make(boxes, scores, labels)
+        detections = None
+        if boxes is not None:
+            sizes = _sizes(np.asarray(boxes, np.float64).reshape(-1, 4), format)
+            detections = Detections.make(sizes, scores, labels)
+            self._check_form(detections.boxes, frame_size(frame))
         self.crossings = self.follow(frame, self._stamp_ns, detections)
         return tuple(one for one in self.estimates if one.id and one.mode is not TrackMode.LOST)
+
+    def _check_form(self, boxes: Array, size: tuple[int, int]) -> None:
+        """Warn once of boxes that are two corners, taken for sizes, or no px of this image."""
+        if self._is_warned or len(self._boxes) >= _JUDGED:
+            return
+        self._boxes = np.concatenate([self._boxes, boxes])
+        found = misfit(self._boxes, size)
+        # A vehicle that drives in from the right reaches beyond the image, too, but not as corners.
+        are_corners = (self._boxes[:, 2:] > self._boxes[:, :2]).all(axis=1)
+        if found is not None and (found.is_fatal or 2 * np.count_nonzero(are_corners) > len(boxes)):
+            self._is_warned = True
+            warnings.warn(f"{found.sentence} (format=)", stacklevel=3)
 
     def update_with_detections(
         self, frame: Frame, detections: DetectionsT, *, stamp_ns: int | None = None
@@ -133,14 +184,13 @@ class TrafficTracker(CountedVehicles):
         `tracker_id`, and ``data`` with their ``class_name`` and ``mode``. Masks are not carried on.
         """
         given: Any = detections
-        corners = np.asarray(given.xyxy, np.float64).reshape(-1, 4)
-        boxes = np.hstack([corners[:, :2], corners[:, 2:] - corners[:, :2]])
         ids = given.class_id
         names = given.data.get("class_name", ids)
         labels = None if names is None else [str(name) for name in names]
         if labels is not None and ids is not None:
             self._class_ids.update(zip(labels, map(int, ids), strict=True))
-        tracks = self.update(frame, boxes, given.confidence, labels, stamp_ns=stamp_ns)
+        scores, form = given.confidence, _XYXY
+        tracks = self.update(frame, given.xyxy, scores, labels, format=form, stamp_ns=stamp_ns)
         # -1: a class that no detection has had, as of a vehicle that was given by hand.
         known = [self._class_ids.get(one.label, -1) for one in tracks]
         followed: DetectionsT = type(given)(
@@ -183,3 +233,24 @@ class TrafficTracker(CountedVehicles):
         tracks = self.update(frame, given[:, 2:6], scores, stamp_ns=stamp_ns)
         found = [mot_numbers(self._images, one) for one in tracks]
         return np.array(found, np.float64).reshape(-1, 10)
+
+
+def _chosen(value: str, name: str, known: Sequence[str]) -> str:
+    """Return one of the known values.
+
+    Raises
+    ------
+    ValueError
+        If it is another.
+    """
+    if value not in known:
+        raise ValueError(f"{name} is one of {', '.join(map(repr, known))}, not {value!r}")
+    return value
+
+
+def _sizes(boxes: Array, form: str) -> Array:
+    """Return boxes of a form (N, 4) by left, top, width and height, px."""
+    first, second = boxes[:, :2], boxes[:, 2:]
+    if form == _XYXY:
+        return np.hstack([first, second - first])
+    return np.hstack([first - second / 2, second]) if form == _CXCYWH else boxes

@@ -8,7 +8,7 @@ from __future__ import annotations
 import csv
 import math
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
 from contextlib import ExitStack, contextmanager
 from dataclasses import astuple, replace
 from pathlib import Path
@@ -54,23 +54,37 @@ Frames = Iterator[FrameEstimates]
 
 
 class Backdating:
-    """Holds frames back until it is known which of their tentative vehicles are confirmed.
+    """Holds frames back until vehicles and classes in them are known.
 
-    These get their numbers from their first detection on; the others are left out. A hidden vehicle
+    Tentative vehicles that are confirmed get their numbers from their first detection on; the
+    others are left out. A vehicle has the class that was decided for it in all frames. A hidden one
     that was found again has the boxes of the track that it turned out to be, not its prediction.
     """
 
     def __init__(self) -> None:
         self._held: deque[FrameEstimates] = deque()
         self._numbers: dict[int, int] = {}
+        self._labels: dict[int, str] = {}
 
-    def add(self, frame: int, stamp_ns: int, estimates: Sequence[TrackEstimate]) -> Frames:
-        """Take the next frame, and return those that are known, in order."""
+    def add(
+        self,
+        frame: int,
+        stamp_ns: int,
+        estimates: Sequence[TrackEstimate],
+        undecided: Set[int] = frozenset(),
+    ) -> Frames:
+        """Take the next frame, and return those that are known, in order.
+
+        `undecided` has the numbers of the vehicles whose class may still change.
+        """
         self._held.append((frame, stamp_ns, estimates))
         known = [one for one in estimates if one.identity]
         self._numbers.update({one.serial: one.identity for one in known})
         self._numbers.update({one.joined: one.identity for one in known if one.joined})
-        open_ones = {one.serial for one in estimates if not one.identity}
+        self._labels.update({one.identity: one.label for one in known if one.label})
+        open_ones = {
+            one.serial for one in estimates if not one.identity or one.identity in undecided
+        }
         while self._held and (
             len(self._held) > _HELD_FRAMES
             or open_ones.isdisjoint(one.serial for one in self._held[0][2])
@@ -90,7 +104,9 @@ class Backdating:
             number = self._numbers.get(one.serial, 0)
             other = by_number.get(number)
             if number and (other is None or other.mode not in _SEEN):
-                by_number[number] = one if one.identity == number else replace(one, identity=number)
+                label = self._labels.get(number, one.label)
+                is_same = (one.identity, one.label) == (number, label)
+                by_number[number] = one if is_same else replace(one, identity=number, label=label)
         return frame, stamp_ns, list(by_number.values())
 
 
@@ -122,9 +138,10 @@ class TrackFiles:
         stamp_ns: int,
         estimates: Sequence[TrackEstimate],
         crossings: Iterable[Crossing] = (),
+        undecided: Set[int] = frozenset(),
     ) -> None:
-        """Take what is known of a frame, whose number counts from 1."""
-        self._write(self._backdating.add(frame, stamp_ns, estimates))
+        """Take what is known of a frame, whose number counts from 1; see `Backdating`."""
+        self._write(self._backdating.add(frame, stamp_ns, estimates, undecided))
         if self._counts:
             self._counts.writerows(_count_row(frame, one) for one in crossings)
 

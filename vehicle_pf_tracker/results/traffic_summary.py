@@ -5,13 +5,17 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter as Tally
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
 from vehicle_pf_tracker.counting.zone_watch import ENTRY, EXIT
+from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.parameters.counting_plan import Region
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate, TrackMode
 
 
@@ -27,11 +31,14 @@ class VehicleLog:
         Occlusions after which it was visible under the same number.
     is_hidden : bool
         True from the beginning of an occlusion until it is visible again; leaving is none.
+    is_at_edge : bool
+        True where it was about to drive out of the regions of interest when it was last visible.
     """
 
     labels: Tally[str] = field(default_factory=Tally)
     survived: int = 0
     is_hidden: bool = False
+    is_at_edge: bool = False
 
     @property
     def label(self) -> str:
@@ -41,6 +48,11 @@ class VehicleLog:
 
 class TrafficSummary:
     """Counts vehicles and occlusions, frame by frame.
+
+    Parameters
+    ----------
+    regions : sequence of Region
+        Regions of interest: a vehicle that drives out of them leaves.
 
     Attributes
     ----------
@@ -52,7 +64,8 @@ class TrafficSummary:
         Every vehicle that was visible and confirmed, by its number.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, regions: Sequence[Region] = ()) -> None:
+        self.regions = tuple(regions)
         self.frames = 0
         self.most_at_once = 0
         self.vehicles: dict[int, VehicleLog] = {}
@@ -72,8 +85,18 @@ class TrafficSummary:
             vehicle.survived += vehicle.is_hidden
             vehicle.labels.update([one.label] * bool(one.label))
             vehicle.is_hidden = False
-        elif one.identity in self.vehicles and one.hidden_by != BORDER:
-            self.vehicles[one.identity].is_hidden = True
+            vehicle.is_at_edge = self._is_outside(_ahead(one))
+        elif one.identity in self.vehicles:
+            vehicle = self.vehicles[one.identity]
+            is_out = not vehicle.is_hidden and self._is_outside(one.position)
+            has_left = one.hidden_by == BORDER or vehicle.is_at_edge or is_out
+            vehicle.is_hidden = vehicle.is_hidden or not has_left
+
+    def _is_outside(self, point: Position) -> bool:
+        """Tell whether a point lies outside the regions."""
+        if not self.regions:
+            return False
+        return not len(Detections.make([[*point, 0.0, 0.0]], None).within(self.regions))
 
     @property
     def survived(self) -> int:
@@ -135,3 +158,11 @@ def _listed(classes: Tally[str]) -> str:
 
 def _number(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def _ahead(one: TrackEstimate) -> Position:
+    """Return the point half a vehicle ahead of its centre, px: where it is detected last."""
+    (x, y), (across, down) = one.position, one.velocity
+    speed = math.hypot(across, down)
+    way = max(one.box.width, one.box.height) / 2 / speed if speed else 0.0
+    return x + way * across, y + way * down

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from types import MappingProxyType
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -107,7 +106,7 @@ class TrafficSession(StreamSession[TrafficTracker]):
         self.estimates: tuple[TrackEstimate, ...] = ()
         self.found = DetectionTotals()
         self.restarts = 0
-        self.successors: Mapping[int, int] = MappingProxyType({})
+        self.successors: Mapping[int, int] = {}
         self.detector = make_detector() if make_detector else None
         self._make_detector = make_detector
         self._regions = tuple(regions)
@@ -197,7 +196,7 @@ class TrafficSession(StreamSession[TrafficTracker]):
 
     def _restart(self) -> None:
         self.tracker.reset()
-        self.estimates, self.successors, self._given = (), MappingProxyType({}), {}
+        self.estimates, self.successors, self._given = (), {}, {}
         self.restarts += 1
         if self._make_detector is not None:
             self.detector = self._make_detector()
@@ -209,4 +208,4 @@ class TrafficSession(StreamSession[TrafficTracker]):
         for identity, (box, label) in given.items():
             with suppress(InputError):  # of a box that has left the image
                 successors[identity] = self.add(box, label)
-        self.successors = MappingProxyType(successors)
+        self.successors = successors
