@@ -45,9 +45,9 @@ def follow():
         counter = counter or Counter(CountingPlan())
         run = TrafficRun(TrafficSession(TrafficTracker()), counter, **options)
         table, mot = io.StringIO(), io.StringIO()
-        run.follow_all(
-            stamped(stamps, unreadable), TrackFiles(table, mot, None), targets=targets or {}
-        )
+        files = TrackFiles(table, mot, None)
+        run.follow_all(stamped(stamps, unreadable), files, targets=targets or {})
+        files.finish()
         return run, table.getvalue().splitlines()[1:]
 
     return call
