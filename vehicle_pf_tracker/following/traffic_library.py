@@ -138,27 +138,19 @@ class TrafficTracker(CountedVehicles):
             If the image is not usable, or the stamp is no integer.
         ValueError
             If a box has not four numbers, the form is unknown, or there are not as many scores or
-            labels as boxes.
-
-        Warns
-        -----
-        UserWarning
-            Once, where most boxes reach beyond the image, or none lies in it: they are of another
-            form.
+            labels as boxes. Boxes that seem to be of another form are warned of once.
         """
         _chosen(format, "format", (_LTWH, _XYXY, _CXCYWH))
         if boxes is not None and np.ndim(boxes) > 1 and np.shape(boxes)[-1] not in {0, 4}:
             raise ValueError("a box is left, top, width and height in px")
         check_frame(np.asarray(frame))
-        if self._is_bgr:
-            frame = np.asarray(cv2.cvtColor(np.asarray(frame), cv2.COLOR_BGR2RGB), np.uint8)
+        frame = _swapped(frame) if self._is_bgr else frame
         stamp_ns = self._stamp_ns + self._period_ns if stamp_ns is None else stamp_ns
         self._stamp_ns = checked_stamp(stamp_ns)
         self._images += 1
         detections = None
         if boxes is not None:
-            sizes = _sizes(np.asarray(boxes, np.float64).reshape(-1, 4), format)
-            detections = Detections.make(sizes, scores, labels)
+            detections = Detections.make(_sizes(boxes, format), scores, labels)
             self._check_form(detections.boxes, frame_size(frame))
         self.crossings = self.follow(frame, self._stamp_ns, detections)
         return tuple(one for one in self.estimates if one.id and one.mode is not TrackMode.LOST)
@@ -248,9 +240,15 @@ def _chosen(value: str, name: str, known: Sequence[str]) -> str:
     return value
 
 
-def _sizes(boxes: Array, form: str) -> Array:
+def _sizes(boxes: npt.ArrayLike, form: str) -> Array:
     """Return boxes of a form (N, 4) by left, top, width and height, px."""
-    first, second = boxes[:, :2], boxes[:, 2:]
+    numbers = np.asarray(boxes, np.float64).reshape(-1, 4)
+    first, second = numbers[:, :2], numbers[:, 2:]
     if form == _XYXY:
         return np.hstack([first, second - first])
-    return np.hstack([first - second / 2, second]) if form == _CXCYWH else boxes
+    return np.hstack([first - second / 2, second]) if form == _CXCYWH else numbers
+
+
+def _swapped(frame: Frame) -> Frame:
+    """Return a BGR image as RGB."""
+    return np.asarray(cv2.cvtColor(np.asarray(frame), cv2.COLOR_BGR2RGB), np.uint8)
