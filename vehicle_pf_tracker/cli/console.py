@@ -23,6 +23,11 @@ _WIDE = 200
 """Columns of a table that is written to a file or a pipe, where lines may be long."""
 
 
+_FIRST_SECONDS, _LINE_SECONDS = 2.0, 5.0
+"""Seconds before the first plain line and between two: quick work prints none, and long work does
+not fill a log."""
+
+
 class UsageError(Exception):
     """Error in the command line itself; the program ends with status 2."""
 
@@ -66,10 +71,6 @@ def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: st
 
 Show: TypeAlias = Callable[[str, float | None], None]
 """Takes words about work under way, and its share done (0 to 1), None if unknown."""
-
-_FIRST_SECONDS, _LINE_SECONDS = 2.0, 5.0
-"""Seconds before the first plain line and between two: quick work prints none, and long work does
-not fill a log."""
 
 
 @contextmanager

@@ -36,6 +36,11 @@ SIGNALS_STATUS = 128
 """Exit status of a program that a signal ended, less the signal's number, as shells have it."""
 
 
+_PATIENCE, _POLL = 1.0, 0.1
+"""Seconds that a computation has to end by itself after a signal, and between two looks at it: a
+person who presses Ctrl-C has the terminal back within two seconds."""
+
+
 class Terminated(BaseException):
     """SIGTERM or SIGHUP came; raised as `KeyboardInterrupt` is, so that partial files go."""
 
@@ -62,11 +67,6 @@ def raising_terminated() -> Iterator[None]:
     unset = [number for number in ending if signal.getsignal(number) is signal.SIG_DFL]
     with handled(unset, raise_terminated):
         yield
-
-
-_PATIENCE, _POLL = 1.0, 0.1
-"""Seconds that a computation has to end by itself after a signal, and between two looks at it: a
-person who presses Ctrl-C has the terminal back within two seconds."""
 
 
 class StillAtWork(BaseException):

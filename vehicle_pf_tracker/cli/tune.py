@@ -141,7 +141,8 @@ def _tune(
         raise InputError(
             "no trial could be scored on all recordings; run `evaluate` on them to see why"
         )
-    best, names = study.best_trial, ", ".join(source.name for source in what.sources)
+    best = study.best_trial
+    names = ", ".join(source.name for source in what.sources)
     title = f"{variant}: tuned by `{PROGRAM} tune` on {names}; {what.objective} {best.value:.3f}."
     values = configuration.updated(best.params).to_mapping()
     write_text(folder / BEST, to_yaml(configuration.specs(), values, title))

@@ -69,7 +69,8 @@ class StampClock:
 
     def tick(self, stamp_ns: int) -> Tick:
         """Take the stamp of the next frame, in ns."""
-        last, self._last_ns = self._last_ns, stamp_ns
+        last = self._last_ns
+        self._last_ns = stamp_ns
         if last is None:
             return Tick(1.0)
         seconds = (stamp_ns - last) * 1e-9

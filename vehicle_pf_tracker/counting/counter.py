@@ -71,7 +71,8 @@ class _Vehicle:
             for own, zone in zip(self.zones, other.zones, strict=True)
             for at in zone.resume(own)
         ]
-        self.lines, self.zones = other.lines, other.zones
+        self.lines = other.lines
+        self.zones = other.zones
         self.path = self.life.path = other.path
         self.waiting = [
             one for one in other.waiting if (one.place, one.direction) not in self.counted
@@ -165,7 +166,8 @@ class Counter:
         """
         if self._last_ns is not None and stamp_ns < self._last_ns:
             self.forget_vehicles()
-        self._before_ns, self._last_ns = self._last_ns, stamp_ns
+        self._before_ns = self._last_ns
+        self._last_ns = stamp_ns
         self._occupancy = {zone.name: 0 for zone in self.plan.zones}
         counted = [one for estimate in estimates for one in self._follow(estimate, stamp_ns)]
         for one in counted:
@@ -196,7 +198,8 @@ class Counter:
             return []
         for zone in vehicle.zones:
             self._occupancy[zone.zone.name] += zone.is_inside
-        counted, vehicle.waiting = vehicle.waiting, []
+        counted = vehicle.waiting
+        vehicle.waiting = []
         vehicle.counted.update((one.place, one.direction) for one in counted)
         return [self._judged(one, estimate, vehicle.life) for one in counted]
 
@@ -226,7 +229,8 @@ def _crossings(passages: _Passages, path: RecentPath, estimate: TrackEstimate) -
     if not passages:
         return []
     speeds = path.pixels(), path.kmh()
-    identity, label = estimate.identity, estimate.label
+    identity = estimate.identity
+    label = estimate.label
     return [
         Crossing(at.stamp_ns, place, direction, identity, label, at.mode, *speeds, at.point)
         for place, direction, at in passages

@@ -51,7 +51,8 @@ class FootPoint:
     def of(cls, estimate: TrackEstimate, stamp_ns: int) -> FootPoint:
         """Make that of an estimate."""
         box = estimate.box
-        size, covariance = (box.width, box.height), estimate.foot_covariance
+        size = (box.width, box.height)
+        covariance = estimate.foot_covariance
         return cls(foot_of(box), stamp_ns, estimate.mode, size, covariance)
 
     @cached_property

@@ -154,7 +154,9 @@ def _bends(path: list[FootPoint], apart: int) -> tuple[Array, float]:
     These are products (2, 2) in px² of one point's error, and the number of independent ones.
     """
     seconds, points = _arrays(path)
-    first, middle, last = slice(None, -2 * apart), slice(apart, -apart), slice(2 * apart, None)
+    first = slice(None, -2 * apart)
+    middle = slice(apart, -apart)
+    last = slice(2 * apart, None)
     whole = np.maximum(seconds[last] - seconds[first], np.finfo(float).tiny)
     share = ((seconds[middle] - seconds[first]) / whole)[:, np.newaxis]
     bends = points[middle] - (1 - share) * points[first] - share * points[last]

@@ -129,7 +129,9 @@ class SideWatch:
         if foot.is_seen:
             self._seen = foot
             if is_clear and self._is_forecast:  # confirmed: where it was predicted is no drive
-                self._is_forecast, self._ahead, self._furthest = False, 0, distance
+                self._is_forecast = False
+                self._ahead = 0
+                self._furthest = distance
         if foot.is_seen or self._is_forecast:
             self._furthest = self.side * max(self.side * distance, self.side * self._furthest)
 
@@ -148,9 +150,11 @@ class SideWatch:
         self._ahead = self._ahead or before._ahead
         if not self.side:
             self.side = self._began = before.side
-            self._furthest, self._is_forecast = before._furthest, before._is_forecast
+            self._furthest = before._furthest
+            self._is_forecast = before._is_forecast
             return None
-        side, self._began = self._began, before._began
+        side = self._began
+        self._began = before._began
         if side == before.side:
             return None
         # From the first detection of this track on, that of before followed something else.
@@ -176,7 +180,8 @@ class SideWatch:
 
     def _note_crossing(self, foot: FootPoint, distance: float) -> None:
         """Keep the point at which the path last went over the edge."""
-        last, self._last = self._last, foot
+        last = self._last
+        self._last = foot
         if last is None:
             self._first = foot
             return
@@ -210,7 +215,8 @@ class SideWatch:
         """Tell whether the vehicle has really driven from its present side to this one."""
         if not self.side or (self._is_forecast and foot.is_seen):
             return True
-        driven, normal = side * (distance - self._furthest), self.edge.normal(foot.point)
+        driven = side * (distance - self._furthest)
+        normal = self.edge.normal(foot.point)
         scatter = path.scatter(normal)
         if not self._passages:
             return driven >= _AT_ONCE * scatter
@@ -221,9 +227,12 @@ class SideWatch:
 
     def _change(self, side: int, foot: FootPoint) -> Passage | None:
         """Be on another side; returns the passage to it."""
-        before, self.side = self.side, side
-        over, self._over = self._over, None
-        self._furthest, self._changed_ns = 0.0, foot.stamp_ns
+        before = self.side
+        self.side = side
+        over = self._over
+        self._over = None
+        self._furthest = 0.0
+        self._changed_ns = foot.stamp_ns
         if not before:
             self._began = side
             return None

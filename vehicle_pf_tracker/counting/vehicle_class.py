@@ -67,7 +67,8 @@ class VehicleClasses:
         vote = self._votes.setdefault(estimate.identity, _Vote(estimate.label))
         if not vote.is_decided:
             if estimate.label != vote.label:
-                vote.label, vote.steady = estimate.label, 0
+                vote.label = estimate.label
+                vote.steady = 0
             vote.steady += not math.isnan(estimate.score)
             vote.images += 1
             vote.is_decided = vote.steady >= _STEADY or vote.images >= _LONGEST

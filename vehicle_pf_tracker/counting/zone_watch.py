@@ -97,7 +97,8 @@ class ZoneWatch:
         A vehicle that is inside when it is first seen has not entered. One that was on both sides
         of the zone in two images has passed through it.
         """
-        last, self._last = self._last, foot
+        last = self._last
+        self._last = foot
         if last is None:
             self.is_inside = self._watch.edge.distance(foot.point) > 0
         between = [] if last is None else self._between(last, foot)
@@ -105,7 +106,8 @@ class ZoneWatch:
 
     def _between(self, last: FootPoint, foot: FootPoint) -> list[FootPoint]:
         """Return points of the path between two images by which it cannot miss the zone."""
-        edge, apart = self._watch.edge, math.dist(last.point, foot.point)
+        edge = self._watch.edge
+        apart = math.dist(last.point, foot.point)
         if abs(edge.distance(last.point) + edge.distance(foot.point)) >= apart:
             return []  # it cannot have reached the outline and come back
         steps = min(math.ceil(2 * apart / edge.room), _MOST_STEPS)

@@ -167,7 +167,8 @@ class Background:
         power = np.maximum((background**2).sum(axis=0), 1)
         share = (colours * background).sum(axis=0) / power
         apart = (colours**2).sum(axis=0) - share**2 * power
-        shares, dark = np.ones(changed.shape, np.float32), np.zeros(changed.shape, np.bool_)
+        shares = np.ones(changed.shape, np.float32)
+        dark = np.zeros(changed.shape, np.bool_)
         shares.flat[index] = share
         dark.flat[index] = (self._thresholds.shadow <= share) & (share <= 1)
         dark.flat[index] &= apart < (_SHADE * share) ** 2
@@ -187,7 +188,9 @@ def _planes(image: Colours) -> Planes:
 def _sum(planes: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """Add the channels; bytes end at 255, far above every threshold."""
     height = len(planes) // 3
-    first, second, third = planes[:height], planes[height : 2 * height], planes[2 * height :]
+    first = planes[:height]
+    second = planes[height : 2 * height]
+    third = planes[2 * height :]
     return np.asarray(cv2.add(cv2.add(first, second), third), planes.dtype)
 
 

@@ -130,7 +130,9 @@ class UsualSize:
     """Size of vehicles by where they stand: on a plane it is an affine function of the image."""
 
     def __init__(self) -> None:
-        self._squares, self._sums, self._count = np.zeros((3, 3)), np.zeros(3), 0
+        self._squares = np.zeros((3, 3))
+        self._sums = np.zeros(3)
+        self._count = 0
         self._slopes: list[float] = []
 
     def learn(self, piece: Piece) -> None:
@@ -174,7 +176,8 @@ class BlobReader:
         self._thresholds = thresholds
         self._fullness = math.log(_USUAL_FULLNESS)
         self._aspect = self._learnt_aspect = 0.0
-        self._unlearnt, self._motion = 1.0, np.zeros(2)
+        self._unlearnt = 1.0
+        self._motion = np.zeros(2)
         self._sizes = UsualSize()
 
     def read(self, mask: Mask, predicted: Array, velocities: Array) -> Blobs:

@@ -76,7 +76,8 @@ class Detections:
     def within(self, regions: Sequence[Region]) -> Detections:
         """Those whose centre lies in one of the inner regions, if any, and in no outer one."""
         centres = (self.boxes[:, :2] + self.boxes[:, 2:] / 2).astype(np.float32)
-        kept, inner = np.ones(len(self), bool), np.zeros(len(self), bool)
+        kept = np.ones(len(self), bool)
+        inner = np.zeros(len(self), bool)
         for region in regions:
             outline = np.asarray(region.corners, np.float32)
             signs = [cv2.pointPolygonTest(outline, one, False) for one in centres.tolist()]
@@ -96,7 +97,8 @@ class Detections:
         are left out, and so are scores that are not finite, exact duplicates, and whatever is
         beyond the `MOST_DETECTIONS` highest scores.
         """
-        boxes, scores = self.boxes, self.scores
+        boxes = self.boxes
+        scores = self.scores
         with np.errstate(invalid="ignore", over="ignore"):
             right, bottom = boxes[:, 0] + boxes[:, 2], boxes[:, 1] + boxes[:, 3]
             good = np.isfinite(boxes).all(axis=1) & np.isfinite(scores)

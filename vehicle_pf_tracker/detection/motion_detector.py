@@ -49,7 +49,8 @@ class MotionDetector:
     """
 
     def __init__(self, seed: int = 0, thresholds: MotionThresholds = SHIPPED) -> None:
-        self._seed, self._thresholds = seed, thresholds
+        self._seed = seed
+        self._thresholds = thresholds
         self.disturbed = False
         self.is_blind = False
         self._blobs = BlobReader(thresholds)
@@ -120,7 +121,8 @@ def _covered(boxes: Array, image: Colours) -> Pixels:
 
 def _reduced(frame: Frame) -> tuple[npt.NDArray[np.uint8], float]:
     """Halve the image until it is narrow enough; also its scale."""
-    small, zoom = np.ascontiguousarray(frame), 1.0
+    small = np.ascontiguousarray(frame)
+    zoom = 1.0
     while small.shape[1] > WIDEST:
         half = (max(small.shape[1] // 2, 1), max(small.shape[0] // 2, 1))
         small = np.asarray(cv2.resize(small, half, interpolation=cv2.INTER_AREA), np.uint8)

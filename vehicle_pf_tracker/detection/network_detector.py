@@ -76,7 +76,8 @@ class NetworkDetector:
     def __init__(self, network: Network, name: str, parameters: DetectorParameters) -> None:
         self.disturbed = self.is_blind = False
         self._parameters = parameters
-        self._network, self._name = network, name
+        self._network = network
+        self._name = name
         self._input, self._type, self._is_planar, self._fixed = self._read_input()
         size = self._size(parameters.input_size, parameters.input_size)
         # One run on grey: many files leave the shapes of their outputs open.

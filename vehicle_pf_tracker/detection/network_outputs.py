@@ -122,7 +122,8 @@ def _placed(boxes: Array, width: int, height: int) -> Array:
 
 def _cells(width: int, height: int, strides: Sequence[int]) -> tuple[Array, Array]:
     """Return column and row (N, 2) of every cell, and its size (N, 1) in px."""
-    corners, sizes = [], []
+    corners = []
+    sizes = []
     for stride in strides:
         rows, columns = np.mgrid[: height // stride, : width // stride]
         corners.append(np.stack([columns.ravel(), rows.ravel()], axis=1).astype(np.float64))

@@ -108,7 +108,8 @@ class Stabiliser:
     def _refer_to(self, grey: Image) -> None:
         corners = cv2.goodFeaturesToTrack(grey, _CORNERS, _QUALITY, _APART)
         self._corners = np.asarray([] if corners is None else corners, np.float32).reshape(-1, 2)
-        self._reference, self._age = grey, 0
+        self._reference = grey
+        self._age = 0
 
     def _moved(self, image: Image, border: int = cv2.BORDER_REPLICATE) -> Image:
         size = image.shape[1], image.shape[0]

@@ -118,7 +118,8 @@ def step(tracker: Any, image: Any, box: list[int] | None) -> dict[str, Any]:
     before = time.thread_time()
     if box is not None:
         tracker.init(image, tuple(box))
-        found, new = True, box
+        found = True
+        new = box
     else:
         found, new = tracker.update(image)
     seconds = time.thread_time() - before

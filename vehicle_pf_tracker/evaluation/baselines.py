@@ -100,17 +100,20 @@ class Worker:
     """
 
     def __init__(self, subject: str, python: Path | None, words: Sequence[str]) -> None:
-        self._subject, self._python = subject, str(baseline_python(python))
+        self._subject = subject
+        self._python = str(baseline_python(python))
         self._log = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process
         try:
-            command, pipe = [self._python, "-I", str(WORKER), *words], subprocess.PIPE
+            command = [self._python, "-I", str(WORKER), *words]
+            pipe = subprocess.PIPE
             self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=self._log)
         except OSError as error:
             self._log.close()
             raise InputError(f"cannot run {self._python}: {error.strerror}") from error
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        self._requests, self._answers = self._process.stdin, self._process.stdout
+        self._requests = self._process.stdin
+        self._answers = self._process.stdout
         try:
             self.versions: dict[str, str] = self._answer()
         except BaseException:
@@ -310,7 +313,8 @@ def baseline_rows(
 
 def baseline_row(answer: BaselineAnswer, number: int, stamp_ns: int) -> EstimateRow:
     """Return a baseline's answer as the row of an image."""
-    box, mode = answer.box, "TRACKING" if answer.found else "LOST"
+    box = answer.box
+    mode = "TRACKING" if answer.found else "LOST"
     step_ms = answer.seconds * 1e3
     return EstimateRow(
         number, stamp_ns, *box.centre, box.width, box.height, mode, None, None, step_ms

@@ -28,6 +28,9 @@ from vehicle_pf_tracker.results.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.results.output_files import read_csv, write_csv
 from vehicle_pf_tracker.results.run_folder import ESTIMATES, RUN
 
+FORMAT = 2
+"""Format of the folder; folders of another format are refused."""
+
 
 @dataclass(frozen=True, slots=True)
 class Source:
@@ -59,8 +62,6 @@ class Source:
     identity: int | None = None
 
 
-FORMAT = 2
-"""Format of the folder; folders of another format are refused."""
 PLAN, FAILED = "evaluation.json", "failed.json"
 CELLS, RECORDINGS = "cells", "recordings"
 TRUTH = "truth.csv"

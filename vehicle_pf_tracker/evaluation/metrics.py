@@ -191,7 +191,8 @@ class Metrics:
 
 def measure(scores: Scores) -> Metrics:
     """Take the metrics of a run."""
-    counted, found = scores.counted, curves(scores.counted)
+    counted = scores.counted
+    found = curves(scores.counted)
     visible = [frame for frame in counted if not frame.hidden]
     hidden = [frame for frame in counted if frame.hidden]
     occluded = [frame for frame in counted if frame.row.mode == Mode.OCCLUDED]
@@ -235,7 +236,8 @@ def measure(scores: Scores) -> Metrics:
 
 def is_on_target(frame: FrameScore) -> bool:
     """Return whether the error is below half the true box's diagonal."""
-    error, truth = frame.error, frame.truth
+    error = frame.error
+    truth = frame.truth
     return truth is not None and error is not None and error < truth.box.diagonal / 2
 
 

@@ -65,7 +65,8 @@ class System:
         cls, name: str, python: str = "", models: Settings = (), build: str = ""
     ) -> System:
         """Make the system of a baseline; `build` is the version of its OpenCV."""
-        label, parameters = f"{BASELINE}{name}", (*models, ("opencv", build))
+        label = f"{BASELINE}{name}"
+        parameters = (*models, ("opencv", build))
         return cls(label, label, True, "", models, parameters, python)
 
     @classmethod

@@ -263,7 +263,8 @@ def check_gain(
         found = [[getattr(run.metrics, objective) for run in some] for some in runs]
         part = "held out" if name in held_out else "tuned on"
         scores[part][name] = np.array(found, dtype=float)  # None is NaN
-    rows, gains = [], []
+    rows = []
+    gains = []
     for part, by_name in scores.items():
         mean = np.mean(list(by_name.values()), axis=0)
         for name, (base, best) in {**by_name, f"mean of {len(by_name)}": mean}.items():

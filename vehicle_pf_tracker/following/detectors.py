@@ -32,6 +32,15 @@ from vehicle_pf_tracker.following.model_files import discard, model_file
 from vehicle_pf_tracker.recordings.box_sizes import misfit
 from vehicle_pf_tracker.recordings.text_tables import numbers_in, table_rows
 
+_SHARE = 0.8
+"""Share of the images' period that detecting and following may take; decoding and drawing need the
+rest."""
+_LONGEST = 0.1
+"""Longest time between two looks of a detector, s, also where the rate cannot be kept. On a dual
+carriageway at 30 Hz every third image leaves 97 % of IDF1, every sixth 56 %."""
+_RECENT = 0.1
+"""Weight of the latest image among the costs."""
+
 
 class OpenedNetwork:
     """A network by ONNX Runtime, loaded from its file or URL.
@@ -130,16 +139,6 @@ def detector_maker(
         model = parameters.model
         return _Same(NetworkDetector(open_network(model, progress), model, parameters))
     return None
-
-
-_SHARE = 0.8
-"""Share of the images' period that detecting and following may take; decoding and drawing need the
-rest."""
-_LONGEST = 0.1
-"""Longest time between two looks of a detector, s, also where the rate cannot be kept. On a dual
-carriageway at 30 Hz every third image leaves 97 % of IDF1, every sixth 56 %."""
-_RECENT = 0.1
-"""Weight of the latest image among the costs."""
 
 
 Run: TypeAlias = Callable[[Callable[[], Detections]], Detections]

@@ -108,7 +108,8 @@ class Estimates(Sequence[EstimateRow]):
             If there is no such frame, or it cannot be read.
         """
         frame = frame_at(open_source(self.source, beside=Beside.IGNORED), number)
-        annotator, row = Annotator(), self.rows[number - 1]
+        annotator = Annotator()
+        row = self.rows[number - 1]
         for estimate in self._estimates[:number]:
             annotator.follow(estimate)
         states = [(annotator, row, self._estimates[number - 1])]
@@ -149,7 +150,8 @@ def track(
         If the source cannot be read, there is no such variant or parameter, a value does not fit,
         or there is no target.
     """
-    found, opened = find_variant(variant), open_source(source, beside=Beside.NOTED)
+    found = find_variant(variant)
+    opened = open_source(source, beside=Beside.NOTED)
     truth = next(iter(opened.truth()), None)
     if target is None and truth is None:
         seen = "".join(f"; {sentence}" for sentence in opened.notices)
@@ -158,10 +160,12 @@ def track(
         if len(target) != len(fields(Box)):
             raise InputError(f"the target {target} is not left, top, width and height in px")
         target = Box(*target)
-    given, targets = from_mapping(found.parameters, parameters), {1: target} if target else {}
+    given = from_mapping(found.parameters, parameters)
+    targets = {1: target} if target else {}
     first_truth = None if target else truth
     tracker = OfflineTracker(found, given, first_truth=first_truth, targets=targets)
-    rows, estimates = [], []
+    rows = []
+    estimates = []
     for row in tracker.rows((one.stamp_ns, one.frame) for one in opened.frames()):
         rows.append(row)
         one = tracker.estimate

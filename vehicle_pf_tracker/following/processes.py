@@ -23,6 +23,9 @@ TaskT = TypeVar("TaskT")
 ResultT = TypeVar("ResultT")
 
 
+PATIENCE = 10.0
+
+
 def run_in_processes(
     function: Callable[[TaskT], ResultT], tasks: Sequence[TaskT], workers: int
 ) -> Iterator[tuple[TaskT, ResultT]]:
@@ -73,9 +76,6 @@ def _end_with_parent() -> None:
     assert parent is not None
     parent.join()
     os._exit(1)
-
-
-PATIENCE = 10.0
 
 
 def wait_or_kill(process: subprocess.Popen[bytes] | subprocess.Popen[str]) -> int:

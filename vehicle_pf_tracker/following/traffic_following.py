@@ -143,7 +143,8 @@ class TrafficRun(CountedVehicles):
         """
         if self.summary.vehicles:
             return self.summary.sentences(self.counter)
-        frames, found = self.summary.frames, self.session.found
+        frames = self.summary.frames
+        found = self.session.found
         inside = found.boxes - found.outside
         if found.disturbed and 2 * found.images < frames:
             why = (

@@ -181,7 +181,8 @@ class TrafficTracker(CountedVehicles):
         labels = None if names is None else [str(name) for name in names]
         if labels is not None and ids is not None:
             self._class_ids.update(zip(labels, map(int, ids), strict=True))
-        scores, form = given.confidence, _XYXY
+        scores = given.confidence
+        form = _XYXY
         tracks = self.update(frame, given.xyxy, scores, labels, format=form, stamp_ns=stamp_ns)
         # -1: a class that no detection has had, as of a vehicle that was given by hand.
         known = [self._class_ids.get(one.label, -1) for one in tracks]
@@ -243,7 +244,8 @@ def _chosen(value: str, name: str, known: Sequence[str]) -> str:
 def _sizes(boxes: npt.ArrayLike, form: str) -> Array:
     """Return boxes of a form (N, 4) by left, top, width and height, px."""
     numbers = np.asarray(boxes, np.float64).reshape(-1, 4)
-    first, second = numbers[:, :2], numbers[:, 2:]
+    first = numbers[:, :2]
+    second = numbers[:, 2:]
     if form == _XYXY:
         return np.hstack([first, second - first])
     return np.hstack([first - second / 2, second]) if form == _CXCYWH else numbers

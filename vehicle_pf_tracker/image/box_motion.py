@@ -52,7 +52,8 @@ def shared_turn(before: Array, after: Array, strayed: float) -> Array:
     It has no shift, so that points which stay behind with an occluder do not fit into it. Those
     that are `strayed` off count half.
     """
-    turn, kept = np.eye(2), TURN_INERTIA * np.eye(2)
+    turn = np.eye(2)
+    kept = TURN_INERTIA * np.eye(2)
     for _ in range(TURN_FITS):
         off = after - before @ turn
         far = (off[:, 0] ** 2 + off[:, 1] ** 2) / strayed**2
@@ -92,7 +93,8 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
         # Each of the lower half with one of the upper half: far apart for most, and no N² pairs.
         order = before[:, axis].argsort(kind="stable")
         low, high = order[:half], order[-half:]
-        old, new = before[high, axis] - before[low, axis], after[high, axis] - after[low, axis]
+        old = before[high, axis] - before[low, axis]
+        new = after[high, axis] - after[low, axis]
         far = old > APART * size[axis]
         if far.sum() >= FEWEST_POINTS // 2:
             ratio = np.maximum(new[far] / old[far], LEAST_RATIO)

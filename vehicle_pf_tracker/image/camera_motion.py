@@ -25,6 +25,28 @@ _SPARSE_FROM = 3
 """Reduction from which rows are left out; of every two both are averaged."""
 
 
+_LEAST_SIDE = 32
+"""Side of the reduced frame in px below which its corners are too close to define a motion."""
+_GRID = (8, 6)
+"""Cells along x and y that give one corner each, so that no lorry gives most of them."""
+_BORDER = 6
+"""Margin in px without corners: a flow window, or most of one."""
+_LEAST_STRENGTH = 1e-4
+"""Smallest eigenvalue of a corner; below it a patch of road matches its whole surroundings."""
+_REFRESHED_AFTER = 5
+"""Frames that corners are followed before others are found; finding costs more than following."""
+_STANDS_AFTER = 30
+"""Frames of measured stillness after which the camera is taken to be mounted (1 s at 30 Hz)."""
+_CHECKED_EVERY = 5
+"""Frames between two measurements of a mounted camera, unless its corners change."""
+_UNCHANGED = 4.0
+"""Mean change around a corner in grey levels below which it has not moved: noise, no edge."""
+_NEIGHBOURHOOD = 5
+"""Side in px of the window over which changes around a corner are averaged, as noise cancels."""
+_CLEARANCE = 0.75
+"""Distance of corners from the target's centre, of its size: half of it, and a margin."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SmallGrey:
     """A reduced frame.
@@ -57,28 +79,8 @@ def small_grey(frame: Frame) -> SmallGrey:
     return SmallGrey(np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2GRAY), np.uint8), zoom)
 
 
-_LEAST_SIDE = 32
-"""Side of the reduced frame in px below which its corners are too close to define a motion."""
-_GRID = (8, 6)
-"""Cells along x and y that give one corner each, so that no lorry gives most of them."""
-_BORDER = 6
-"""Margin in px without corners: a flow window, or most of one."""
-_LEAST_STRENGTH = 1e-4
-"""Smallest eigenvalue of a corner; below it a patch of road matches its whole surroundings."""
-_REFRESHED_AFTER = 5
-"""Frames that corners are followed before others are found; finding costs more than following."""
-_STANDS_AFTER = 30
-"""Frames of measured stillness after which the camera is taken to be mounted (1 s at 30 Hz)."""
-_CHECKED_EVERY = 5
-"""Frames between two measurements of a mounted camera, unless its corners change."""
 _WEAR_IN_PLACE = 1 / 3
 """Share of a frame that the corners of a mounted camera age by in a frame."""
-_UNCHANGED = 4.0
-"""Mean change around a corner in grey levels below which it has not moved: noise, no edge."""
-_NEIGHBOURHOOD = 5
-"""Side in px of the window over which changes around a corner are averaged, as noise cancels."""
-_CLEARANCE = 0.75
-"""Distance of corners from the target's centre, of its size: half of it, and a margin."""
 _FLOW = PointFlow(window=9, levels=3, steps=10, precision=0.03)
 """Windows of 13 px cost twice as much, and are no nearer to what 300 corners give."""
 
@@ -149,8 +151,10 @@ class CameraFlow:
         target : Box
             Target box, px of the whole frame; corners in and close to it take no part.
         """
-        reduced, zoom = small.image, small.zoom
-        last, self._last = self._last, reduced
+        reduced = small.image
+        zoom = small.zoom
+        last = self._last
+        self._last = reduced
         if last is None or last.shape != reduced.shape or min(reduced.shape) < _LEAST_SIDE:
             return CameraMotion()
         corners = self._background(last, target, zoom)
@@ -180,7 +184,8 @@ class CameraFlow:
         """Corners outside the target, found again now and then, (N, 2)."""
         self._age += 1
         if self._age >= _REFRESHED_AFTER or len(self._corners) < _GRID[0] * _GRID[1] // 3:
-            self._corners, self._age = _find_corners(grey), 0.0
+            self._corners = _find_corners(grey)
+            self._age = 0.0
         x, y = self._corners[:, 0] / zoom, self._corners[:, 1] / zoom
         middle_x, middle_y = target.centre
         outside = np.abs(x - middle_x) > _CLEARANCE * target.width
@@ -206,11 +211,13 @@ def _find_corners(grey: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
     """Find the strongest corner of each cell of a grid, (N, 2)."""
     strength = cv2.cornerMinEigenVal(grey, 3)
     rows, columns = grey.shape
-    wide, high = (columns - 2 * _BORDER) // _GRID[0], (rows - 2 * _BORDER) // _GRID[1]
+    wide = (columns - 2 * _BORDER) // _GRID[0]
+    high = (rows - 2 * _BORDER) // _GRID[1]
     inner = strength[_BORDER : _BORDER + high * _GRID[1], _BORDER : _BORDER + wide * _GRID[0]]
     cells = inner.reshape(_GRID[1], high, _GRID[0], wide).transpose(0, 2, 1, 3)
     flat = cells.reshape(_GRID[0] * _GRID[1], high * wide)
-    best, cell = flat.argmax(axis=1), np.arange(_GRID[0] * _GRID[1])
+    best = flat.argmax(axis=1)
+    cell = np.arange(_GRID[0] * _GRID[1])
     x = _BORDER + (cell % _GRID[0]) * wide + best % wide
     y = _BORDER + (cell // _GRID[0]) * high + best // wide
     strong = flat[cell, best] > _LEAST_STRENGTH

@@ -86,13 +86,15 @@ def cut_patch(frame: Frame, centre: Array, zoom: Array, side: int) -> Patch:
 
 def cut_image(frame: Frame, centre: Array, zoom: Array, size: tuple[int, int]) -> Frame:
     """Resample a piece of this width and height; see `cut_patch`."""
-    step, sides = 1 / zoom, np.array(size)
+    step = 1 / zoom
+    sides = np.array(size)
     # Row of the affine map from pixel indices of the patch to those of the frame, x and y.
     first = centre - sides / 2 * step + 0.5 * step - 0.5
     reduction = max(int(min(step.tolist()) + 2 - _REDUCED_FROM), 1)
     if reduction > 1:
         frame, corner, factors = _reduced(frame, centre, sides * step, reduction)
-        first, step = (first - corner + 0.5) / factors - 0.5, step / factors
+        first = (first - corner + 0.5) / factors - 0.5
+        step = step / factors
     (across, down), (x, y) = step.tolist(), first.tolist()
     matrix = np.array([[across, 0.0, x], [0.0, down, y]])
     image = cv2.warpAffine(

@@ -26,6 +26,10 @@ Histogram = npt.NDArray[np.float64]
 BinIndices = npt.NDArray[np.uint16]
 
 
+CHANNEL_BINS = 21
+"""Bins of each channel (P2, section III-C)."""
+
+
 def bin_count(bits: int) -> int:
     """Count the bins of a joint histogram with `bits` bits a channel (1 to 5)."""
     return 1 << (3 * bits)
@@ -78,10 +82,6 @@ class JointColour(CountedFeature):
         region, windows = covered_region(frame, bounds(frame, positions, window))
         counts = bin_counts(bin_indices(region, self.bits), active, self.bins, windows)
         return Counted(counts, areas(windows))
-
-
-CHANNEL_BINS = 21
-"""Bins of each channel (P2, section III-C)."""
 
 
 @dataclass(frozen=True)

@@ -117,7 +117,8 @@ def read_compressed(format: str, data: Buffer) -> CodedImage:  # noqa: A002
 
 def _png_size(data: bytes) -> tuple[int, int, int]:
     """Width, height (0: not stated), and offset behind the last chunk (0: there is none)."""
-    offset, size = len(_PNG), (0, 0)
+    offset = len(_PNG)
+    size = (0, 0)
     while (end := offset + 12 + _number(data[offset : offset + 4])) <= len(data):
         kind = data[offset + 4 : offset + 8]
         if kind == b"IHDR" and end == offset + 25 and size == (0, 0):
@@ -130,9 +131,11 @@ def _png_size(data: bytes) -> tuple[int, int, int]:
 
 def _jpeg_size(data: bytes) -> tuple[int, int, int]:
     """Width, height (0: not stated), and offset behind the end marker (0: there is none)."""
-    offset, size = 2, (0, 0)
+    offset = 2
+    size = (0, 0)
     while found := _MARKER.search(data, offset):
-        marker, offset = found[1][0], found.end()
+        marker = found[1][0]
+        offset = found.end()
         if marker == _END:
             return *size, offset
         if marker in _ALONE:

@@ -112,11 +112,15 @@ class CorrelationFilter:
             Resistance against change; the first image is learnt without any.
         """
         if self.weights is None:
-            wanted, stiffness = spectrum * self._label, 0.0
-            steps, growth = _FIRST_STEPS, _FIRST_GROWTH
+            wanted = spectrum * self._label
+            stiffness = 0.0
+            steps = _FIRST_STEPS
+            growth = _FIRST_GROWTH
         else:
             before = self.weights.spectrum * np.float32(stiffness)
-            wanted, steps, growth = spectrum * self._label + before, _STEPS, _GROWTH
+            wanted = spectrum * self._label + before
+            steps = _STEPS
+            growth = _GROWTH
         conjugate = spectrum.conj()
         power = (spectrum * conjugate).sum(axis=0).real
         # ADMM in its scaled form: the multiplier, with the solution added, is confined.

@@ -99,7 +99,9 @@ def flat_bytes(data: Buffer) -> Bytes:
 
 
 def _check_layout(layout: _Encoding, message: Any) -> None:
-    width, height, step = message.width, message.height, message.step
+    width = message.width
+    height = message.height
+    step = message.step
     size = f"{width}x{height} px in {message.encoding}"
     if height <= 0 or width <= 0:
         raise InputError(f"an image of {size} has no pixels")
@@ -113,7 +115,9 @@ def _check_layout(layout: _Encoding, message: Any) -> None:
 
 def _pixels(layout: _Encoding, message: Any) -> Bytes:
     """View the data without row padding: (rows, width) or (rows, width, bytes of a pixel)."""
-    width, step, flat = message.width, message.step, flat_bytes(message.data)
+    width = message.width
+    step = message.step
+    flat = flat_bytes(message.data)
     rows = int(message.height * layout.rows)
     if flat.size < step * rows:
         raise InputError(

@@ -71,7 +71,8 @@ class Foreground:
         self._background: deque[SmallGrey] = deque(maxlen=_KEPT)
         self._latest: deque[SmallGrey] = deque(maxlen=_LATEST)
         self._frames = 0
-        self._whole, self._learnt_at = np.empty((0, 0), np.uint8), -1
+        self._whole = np.empty((0, 0), np.uint8)
+        self._learnt_at = -1
 
     def keep(self, small: SmallGrey, *, still: bool) -> None:
         """Keep a frame; discard earlier ones of another size, or if the camera has moved."""
@@ -104,7 +105,8 @@ class Foreground:
 
         The background has to be learnt.
         """
-        kept, since = list(self._background)[::-1], (self._frames - 1) % _KEPT_EVERY
+        kept = list(self._background)[::-1]
+        since = (self._frames - 1) % _KEPT_EVERY
         return (
             (float(since + _KEPT_EVERY * back), self._boxes(kept[back]))
             for back in range(0, len(kept), _LOOKED_AT)
@@ -122,7 +124,8 @@ class Foreground:
 
     def _boxes(self, small: SmallGrey) -> Array:
         *_, stats, _ = cv2.connectedComponentsWithStats(_moving(small.image, self._whole))
-        low, size = stats[1:, :2], stats[1:, 2:4]
+        low = stats[1:, :2]
+        size = stats[1:, 2:4]
         return np.stack([low, low + size], axis=1) / small.zoom
 
     def outline(self, centre: Array, size: Array, ago: int = 0) -> Outline | None:
@@ -192,7 +195,8 @@ def _bounds(
 ) -> tuple[Array, Array] | None:
     """Bounds of the connected pieces that lie mostly in a box; None where they touch the rim."""
     count, labels, stats, _ = cv2.connectedComponentsWithStats(moving)
-    shape, half = np.array(moving.shape[::-1]), _GROWN * size / 2
+    shape = np.array(moving.shape[::-1])
+    half = _GROWN * size / 2
     box = np.clip([centre - half, centre + half], 0, shape).astype(int)
     inside = np.bincount(
         labels[box[0, 1] : box[1, 1], box[0, 0] : box[1, 0]].ravel(), minlength=count

@@ -70,7 +70,8 @@ def _direction_histograms(grey: Grey) -> npt.NDArray[np.float32]:
     dx = (wide[1:-1, 2:] - wide[1:-1, :-2] + 255).ravel()
     dy = (wide[2:, 1:-1] - wide[:-2, 1:-1] + 255).ravel()
     at = dy * 511 + dx
-    direction, magnitude = DIRECTION_OF.ravel()[at], MAGNITUDE_OF.ravel()[at]
+    direction = DIRECTION_OF.ravel()[at]
+    magnitude = MAGNITUDE_OF.ravel()[at]
     first_y, share_y = _cell_shares(grey.shape[0])
     first_x, share_x = _cell_shares(grey.shape[1])
     # One cell more on each side takes what falls beyond the border.
@@ -102,7 +103,8 @@ def normalised_cells(histograms: npt.NDArray[np.float32]) -> CellFeatures:
     scale = 1 / np.sqrt(blocks + np.float32(NOISE_ENERGY))
     rows, columns = histograms.shape[:2]
     features = np.zeros((GRADIENT_CHANNELS, rows, columns), np.float32)
-    signed, plain = histograms.transpose(2, 0, 1), unsigned.transpose(2, 0, 1)
+    signed = histograms.transpose(2, 0, 1)
+    plain = unsigned.transpose(2, 0, 1)
     limit = np.float32(TRUNCATION)
     for corner, (y, x) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
         own = scale[y : y + rows, x : x + columns]

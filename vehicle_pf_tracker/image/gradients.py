@@ -106,7 +106,8 @@ class GradientDirections(CountedFeature):
         for row, (left, top, right, bottom) in enumerate(zip(*windows, strict=True)):
             inside = slice(top, bottom), slice(left, right)
             if self.in_frame:
-                strength, bins = of_frame[0][inside], of_frame[1][inside]
+                strength = of_frame[0][inside]
+                bins = of_frame[1][inside]
             else:
                 strength, bins = self._directions(grey[inside].copy())
             peak = strength.max()

@@ -74,11 +74,13 @@ def lengths_inside(segments: Segments, windows: Bounds) -> Array:
     -------
     (N, S) array
     """
-    start, step = segments[:, :2], segments[:, 2:] - segments[:, :2]
+    start = segments[:, :2]
+    step = segments[:, 2:] - segments[:, :2]
     # A step of nothing crosses nowhere: a tiny one enters long before and leaves long after, or
     # the other way round where the segment lies outside.
     safe = np.where(np.abs(step) < 1e-9, 1e-9, step)
-    enter, leave = np.zeros((len(windows.left), len(segments))), np.ones((1, 1))
+    enter = np.zeros((len(windows.left), len(segments)))
+    leave = np.ones((1, 1))
     for axis, (low, high) in enumerate(
         ((windows.left, windows.right), (windows.top, windows.bottom))
     ):
@@ -99,7 +101,8 @@ def direction_shares(segments: Segments, bins: int) -> Array:
     bin_position = np.mod(np.arctan2(y, x), np.pi) / np.pi * bins
     lower = np.floor(bin_position).astype(np.intp)
     upper_share = bin_position - lower
-    shares, rows = np.zeros((len(segments), bins)), np.arange(len(segments))
+    shares = np.zeros((len(segments), bins))
+    rows = np.arange(len(segments))
     np.add.at(shares, (rows, lower % bins), 1.0 - upper_share)
     np.add.at(shares, (rows, (lower + 1) % bins), upper_share)
     return shares

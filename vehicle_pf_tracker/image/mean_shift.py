@@ -140,7 +140,8 @@ def _cells(frame: Frame, pixel: Centres, window: Window, active: Indices, bits: 
     table = np.full(bin_count(bits), len(active))
     table[active] = np.arange(len(active))
     reach = np.array([window.half_width, window.half_height])
-    first, end = pixel.min(axis=0) - reach, pixel.max(axis=0) + reach + 1
+    first = pixel.min(axis=0) - reach
+    end = pixel.max(axis=0) + reach + 1
     low, high = np.maximum(first, 0), np.minimum(end, frame_size(frame))
     region = np.full((end - first)[::-1], len(active) + 1)
     (left, top), (right, bottom) = low - first, high - first
@@ -154,7 +155,8 @@ def _cells(frame: Frame, pixel: Centres, window: Window, active: Indices, bits: 
 
 def _masses(cells: Indices, profile: Array, bins: int) -> Array:
     """Normalised kernel mass of each active bin, shape (N, bins)."""
-    count, width = len(cells), bins + 2
+    count = len(cells)
+    width = bins + 2
     each = np.broadcast_to(profile, cells.shape)
     masses = np.bincount(cells.ravel(), each.ravel(), minlength=count * width)
     masses = masses.reshape(count, width)

@@ -40,7 +40,8 @@ def shared_similarity(before: Array, after: Array) -> Array:
     """
     # As complex numbers, of which a similarity is a factor and a summand.
     start, end = (np.ascontiguousarray(points).view(complex).ravel() for points in (before, after))
-    flow, rest = end - start, np.eye(2, 3)
+    flow = end - start
+    rest = np.eye(2, 3)
     if len(flow) < LEAST_CORNERS:
         return rest
     if (np.abs(flow) < AGREEING_PX).mean() >= STILL_SHARE:
@@ -61,7 +62,8 @@ def _robust_similarity(start: _Complex, end: _Complex) -> tuple[complex, complex
     weights = np.ones(len(start))
     for _ in range(FITS):
         shares = weights / weights.sum()
-        middle, target = shares @ start, shares @ end
+        middle = shares @ start
+        target = shares @ end
         off = start - middle
         weighted = weights * off.conj()
         factor = weighted @ (end - target) / ((weighted @ off).real + 1e-9)
@@ -74,5 +76,6 @@ def _robust_similarity(start: _Complex, end: _Complex) -> tuple[complex, complex
 
 def median(values: Array) -> float:
     """Median of up to some hundred finite values, in a fraction of the time of `np.median`."""
-    ordered, half = np.sort(values), len(values) // 2
+    ordered = np.sort(values)
+    half = len(values) // 2
     return float((ordered[(len(values) - 1) // 2] + ordered[half]) / 2)

@@ -61,8 +61,10 @@ class PartialFourier:
     def spectrum_of(self, cells: CellFeatures) -> Spectrum:
         """Half spectrum of the square from the cells of the part."""
         pairs = product(product(self._from_rows, cells), self._from_columns)
-        spectrum, half = pairs.view(np.complex64), len(self._from_rows) // 2
-        cosines, sines = spectrum[:, 2 : half + 1], 1j * spectrum[:, half + 1 :]
+        spectrum = pairs.view(np.complex64)
+        half = len(self._from_rows) // 2
+        cosines = spectrum[:, 2 : half + 1]
+        sines = 1j * spectrum[:, half + 1 :]
         spectrum[:, half + 1 :] = cosines + sines
         cosines -= sines
         return spectrum
@@ -93,7 +95,8 @@ def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
 
 def _coefficients(spectrum: Spectrum) -> _Matrix:
     """Coefficients of cosines and sines along y, real and imaginary parts by turns along x."""
-    half, found = spectrum.shape[-1] - 1, spectrum.copy()
+    half = spectrum.shape[-1] - 1
+    found = spectrum.copy()
     low, high = spectrum[..., 2 : half + 1, :], spectrum[..., half + 1 :, :]
     found[..., 2 : half + 1, :] += high
     np.multiply(low - high, np.complex64(1j), out=found[..., half + 1 :, :])

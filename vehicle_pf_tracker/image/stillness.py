@@ -55,7 +55,8 @@ class Stillness:
     def begin(self, box: Box, stamp_ns: int) -> None:
         """Watch a new target from its first box, px."""
         self.is_suspect = False
-        self._first, self._began_ns = box, stamp_ns
+        self._first = box
+        self._began_ns = stamp_ns
         self._has_driven = False
         self._looked_ns: int | None = None
         self._before: Array | None = None
@@ -75,7 +76,8 @@ class Stillness:
             self._looked_ns = stamp_ns
             self._others_move = self._compare(frame, box) or self._others_move
         waited = (stamp_ns - self._began_ns) * 1e-9
-        was_suspect, self.is_suspect = self.is_suspect, self._others_move and waited >= PATIENCE
+        was_suspect = self.is_suspect
+        self.is_suspect = self._others_move and waited >= PATIENCE
         return [SENTENCE] if self.is_suspect and not was_suspect else []
 
     def _is_elsewhere(self, box: Box) -> bool:
@@ -89,7 +91,8 @@ class Stillness:
         scale = min(_SIDE / max(width, height), 1.0)
         size = max(round(width * scale), 1), max(round(height * scale), 1)
         small = cv2.resize(frame, size, interpolation=cv2.INTER_AREA).mean(axis=2)
-        before, self._before = self._before, small
+        before = self._before
+        self._before = small
         if before is None or before.shape != small.shape:
             return False
         is_changed = np.abs(small - before) > _CHANGED

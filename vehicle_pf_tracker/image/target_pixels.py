@@ -52,7 +52,8 @@ def contrast(frame: Frame, box: Box) -> float:
 
     Infinite where the box has no pixel in the image.
     """
-    across, down = _MARGIN * box.width, _MARGIN * box.height
+    across = _MARGIN * box.width
+    down = _MARGIN * box.height
     left, top = max(int(box.x - across), 0), max(int(box.y - down), 0)
     right, bottom = np.ceil([box.x + box.width + across, box.y + box.height + down]).astype(int)
     patch = np.ascontiguousarray(frame[top : max(bottom, top), left : max(right, left)])

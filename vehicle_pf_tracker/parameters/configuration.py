@@ -24,6 +24,9 @@ from vehicle_pf_tracker.parameters.table import (
 )
 from vehicle_pf_tracker.parameters.table import to_mapping as values_of
 
+_LARGEST = 1e5
+"""Bound of target coordinates in px: three times the largest side of an image (32767 px)."""
+
 
 @dataclass(frozen=True, slots=True)
 class PublishParameters:
@@ -69,9 +72,6 @@ class NodeParameters:
     )  # fmt: skip
     publish: PublishParameters = group(PublishParameters)
 
-
-_LARGEST = 1e5
-"""Bound of target coordinates in px: three times the largest side of an image (32767 px)."""
 
 _target_number = functools.partial(parameter, 0.0, unit="px", effect="starts")
 

@@ -19,6 +19,10 @@ _LARGEST_FILE = 2**20
 """Bytes; the parameter file of a variant has 6 kB, comments included."""
 
 
+_WIDTH = 96
+"""Width of comments: with their indent of four and "# ", lines of at most about 100 characters."""
+
+
 class _Loader(yaml.SafeLoader):
     """Refuses what ROS's own reader refuses (aliases), and keys that hide others."""
 
@@ -70,10 +74,6 @@ def read_yaml_file(path: Path, what: str) -> Any:
     except (yaml.YAMLError, ValueError) as error:
         reason = " ".join(str(error).split())[:300]
         raise InputError(f"the {what} {path} is not valid YAML: {reason}") from None
-
-
-_WIDTH = 96
-"""Width of comments: with their indent of four and "# ", lines of at most about 100 characters."""
 
 
 def to_yaml(table: Mapping[str, ParameterSpec], values: Mapping[str, Value], title: str) -> str:

@@ -134,7 +134,8 @@ class RoadParameters:
 
     def validate(self) -> None:
         """Refuse what makes no road, as far as it does not wait for CameraInfo or TF."""
-        lens, pose = self.lens, self.pose
+        lens = self.lens
+        pose = self.pose
         problem = self._problem()
         if problem:
             raise InputError(problem)

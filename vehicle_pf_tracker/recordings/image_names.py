@@ -63,7 +63,8 @@ class NamedImages:
 def natural_key(name: str) -> tuple[tuple[str, Numeral], ...]:
     """Return a key that sorts names by their words and by the values of their numbers."""
     *parts, last = _PARTS.split(name)
-    words, numbers = parts[::2], map(_numeral, parts[1::2])
+    words = parts[::2]
+    numbers = map(_numeral, parts[1::2])
     return (*zip(words, numbers, strict=True), (last, (0, "")))
 
 

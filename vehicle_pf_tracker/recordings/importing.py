@@ -59,7 +59,9 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
     """
     _check_request(source, format)
     footage = open_footage(source, truth=truth, fps=fps, identity=identity)
-    frames, truths, size = 0, 0, (0, 0)
+    frames = 0
+    truths = 0
+    size = (0, 0)
     with RecordingWriter(out, overwrite=overwrite) as writer:
         for frames, picture in enumerate(_pictures(footage), start=1):
             size = _check_size(picture, size if frames > 1 else frame_size(picture.frame))

@@ -101,7 +101,8 @@ class Recording:
         self._check_readable()
         self.topics: tuple[TopicInfo, ...] = list_topics(self.files)
         chosen = choose_image_topic(self.path, self.topics, topic)
-        self.image_topic, self.image_type = chosen.name, chosen.type_name
+        self.image_topic = chosen.name
+        self.image_type = chosen.type_name
         self.frame_count = chosen.message_count
         blocks = [block for index in self.files for block in index.blocks]
         self.start_ns = min(block.start_ns for block in blocks)

@@ -100,7 +100,8 @@ class VideoFile(Footage):
                 if stamp is None:
                     stamp = last + round(1e9 / self.fps) if last else START_NS
                     untimed += 1
-                number, last = number + 1, stamp
+                number = number + 1
+                last = stamp
                 truth = self._truth.get(number)
                 if truth is not None:
                     truth = self._truth[number] = replace(truth, stamp_ns=stamp)

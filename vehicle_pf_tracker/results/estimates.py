@@ -17,6 +17,9 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.results.output_files import read_csv, write_csv
 from vehicle_pf_tracker.trackers.estimate import Mode
 
+_MOST_SPANS = 12
+"""Spans in a summary; more are counted, since nobody reads a line of hundreds."""
+
 
 @dataclass(frozen=True, slots=True)
 class EstimateRow:
@@ -157,10 +160,6 @@ def _number(name: str, value: float | str) -> float | None:
         raise InputError(f"{name} is not a number: {value!r}") from None
 
 
-_MOST_SPANS = 12
-"""Spans in a summary; more are counted, since nobody reads a line of hundreds."""
-
-
 def summary(rows: Sequence[EstimateRow], size: tuple[int, int] | None = None) -> str:
     """Return the modes of a run in one sentence, times in min:s after its first frame.
 
@@ -169,7 +168,8 @@ def summary(rows: Sequence[EstimateRow], size: tuple[int, int] | None = None) ->
     """
     if not rows:
         return "no frames"
-    start_ns, timed = rows[0].stamp_ns, []
+    start_ns = rows[0].stamp_ns
+    timed = []
     for row in rows:
         start_ns = start_of_clock(start_ns, row.stamp_ns)
         timed.append((row.mode, clock_words(row.stamp_ns - start_ns)))

@@ -33,7 +33,8 @@ def describe_run(
     `seed` is the one in use: the drawn one where the parameter `seed` is -1; `kernels` likewise
     those that `auto` chose.
     """
-    tracker, box = session.tracker, session.settings.target.box
+    tracker = session.tracker
+    box = session.settings.target.box
     return {
         **describe(
             command,

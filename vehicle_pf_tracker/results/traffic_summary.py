@@ -145,7 +145,8 @@ class TrafficSummary:
 
 
 def _direction(counter: Counter, place: str, direction: str) -> str:
-    both, totals = [place, direction], counter.totals.items()
+    both = [place, direction]
+    totals = counter.totals.items()
     classes = Tally({label: count for (*at, label), count in totals if at == both and label})
     return f"{counter.count(place, direction)} {direction}{_listed(classes)}"
 

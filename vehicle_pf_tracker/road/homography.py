@@ -85,8 +85,10 @@ def fit_homography(pixels: Array, metres: Array) -> Homography:
         raise InputError(
             f"the road needs at least {LEAST_PAIRS} pairs of points, got {len(pixels)}"
         )
-    to_unit_pixels, to_unit_metres = _normalising(pixels), _normalising(metres)
-    unit_pixels, unit_metres = _mapped(to_unit_pixels, pixels), _mapped(to_unit_metres, metres)
+    to_unit_pixels = _normalising(pixels)
+    to_unit_metres = _normalising(metres)
+    unit_pixels = _mapped(to_unit_pixels, pixels)
+    unit_metres = _mapped(to_unit_metres, metres)
     road_to_image = _refined(_linear_fit(unit_metres, unit_pixels), unit_metres, unit_pixels)
     matrix = np.linalg.inv(to_unit_metres) @ np.linalg.inv(road_to_image) @ to_unit_pixels
     near = Homography(matrix).nearness(pixels)

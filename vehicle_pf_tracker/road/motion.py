@@ -53,7 +53,8 @@ class RoadMotion:
         """
         step = np.eye(4)
         step[0, 2] = step[1, 3] = seconds
-        square, cube = seconds**2 / 2, seconds**3 / 3
+        square = seconds**2 / 2
+        cube = seconds**3 / 3
         walk = np.kron([[cube, square], [square, seconds]], np.eye(2)) * acceleration**2
         return RoadMotion(step @ self.state, step @ self.covariance @ step.T + walk)
 

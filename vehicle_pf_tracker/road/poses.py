@@ -91,7 +91,8 @@ class PoseTree:
         InputError
             If the two are not connected.
         """
-        below, above = self._chain(frame.lstrip("/")), self._chain(reference.lstrip("/"))
+        below = self._chain(frame.lstrip("/"))
+        above = self._chain(reference.lstrip("/"))
         common = next((name for name in below if name in above), None)
         if common is None:
             raise InputError(f"TF does not connect the frames {frame!r} and {reference!r}")

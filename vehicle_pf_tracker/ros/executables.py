@@ -79,7 +79,8 @@ def _run(name: str, words: Sequence[str]) -> int:
     if name == _ANY and words[:1] != ["--variant"]:
         return _run_cameras(words)
     if name == _ANY:
-        name, words = words[1] if len(words) > 1 else "", words[2:]
+        name = words[1] if len(words) > 1 else ""
+        words = words[2:]
     from vehicle_pf_tracker.trackers.registry import find_node  # noqa: PLC0415
 
     found = find_node(name)

@@ -73,6 +73,10 @@ Status = tuple[bytes, str, str, Mapping[str, object]]
 """Level, subject, words and values of a status."""
 
 
+_UPRIGHT = 1e-3
+"""Angle of a box that counts as upright, rad: over 1000 px it moves a corner by a pixel."""
+
+
 def stamp_ns(header: Header) -> int:
     """Stamp of a header in ns."""
     return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
@@ -154,7 +158,8 @@ def pose_message(header: Header, position: Array, covariance: Array) -> PoseWith
     pose = message.pose
     pose.pose.position.x, pose.pose.position.y = map(float, position)
     pose.pose.orientation.w = 1.0
-    rows, numbers = covariance.tolist(), [0.0] * 36
+    rows = covariance.tolist()
+    numbers = [0.0] * 36
     numbers[0:2], numbers[6:8] = rows[0], rows[1]
     numbers[21] = numbers[28] = numbers[35] = UNKNOWN_ANGLE
     pose.covariance = numbers
@@ -194,7 +199,8 @@ def detection_message(
     """Make the detection: box in px, confidence as score, class, and the id of the track."""
     message = Detection2D(header=header, id=identity)
     x, y = estimate.box.centre
-    message.bbox.center.position.x, message.bbox.center.position.y = float(x), float(y)
+    message.bbox.center.position.x = float(x)
+    message.bbox.center.position.y = float(y)
     message.bbox.size_x = float(estimate.box.width)
     message.bbox.size_y = float(estimate.box.height)
     result = ObjectHypothesisWithPose()
@@ -202,10 +208,6 @@ def detection_message(
     result.hypothesis.score = float(estimate.confidence)
     message.results = [result]
     return message
-
-
-_UPRIGHT = 1e-3
-"""Angle of a box that counts as upright, rad: over 1000 px it moves a corner by a pixel."""
 
 
 def finite(topic: str, *numbers: float) -> tuple[float, ...]:
@@ -270,8 +272,10 @@ def box_of_detection(message: Any) -> Box:
     InputError
         If a number is not finite, or the box is turned.
     """
-    topic, box = "~/set_detection", message.bbox
-    at, theta = box.center.position, box.center.theta
+    topic = "~/set_detection"
+    box = message.bbox
+    at = box.center.position
+    theta = box.center.theta
     x, y, _, width, height = finite(topic, at.x, at.y, theta, box.size_x, box.size_y)
     if abs(theta) > _UPRIGHT:
         raise InputError(f"{topic} got a box turned by {theta:g} rad; boxes must be upright")

@@ -137,7 +137,8 @@ def spin_nodes(
     int
         That of `spin`; 0 where a signal took the ground from under a call.
     """
-    executor, nodes = node_executor(), list[NodeT]()
+    executor = node_executor()
+    nodes = list[NodeT]()
     try:
         with image_transport(image_bytes, rclpy.get_rmw_implementation_identifier()) as notices:
             for make in makers:

@@ -102,13 +102,16 @@ class Pace:
     """
 
     def __init__(self, clock: Callable[[], int], stop: threading.Event) -> None:
-        self._clock, self._stop, self._is_live = clock, stop, False
+        self._clock = clock
+        self._stop = stop
+        self._is_live = False
         self._began: tuple[int, int, float] | None = None
         self.last = 0
 
     def begin(self, *, is_live: bool) -> None:
         """Begin a pass, of images that come by themselves where `is_live`."""
-        self._began, self._is_live = None, is_live
+        self._began = None
+        self._is_live = is_live
 
     def stamp(self, recorded_ns: int) -> int:
         """Return the stamp of an image with the source's own time, once it is due.

@@ -212,7 +212,8 @@ class Drive:
         in front, but under what `front` has.
         """
         if behind is None:
-            behind, front = self.far_traffic(), (*self.opposite_traffic(), *front)
+            behind = self.far_traffic()
+            front = (*self.opposite_traffic(), *front)
         behind = list(behind)
         own = self.target.on(self.sways(self.course(self.start, self.pace)))
         return Scene(

@@ -103,7 +103,8 @@ class Pace:
 
 def straight(start: Pose, pace: Pace) -> Course:
     """Return the course that goes straight on from `start`, as flat ground looks."""
-    east, north = math.cos(start.heading), math.sin(start.heading)
+    east = math.cos(start.heading)
+    north = math.sin(start.heading)
 
     def course(frame: float) -> Pose:
         gone = pace(frame)

@@ -220,7 +220,9 @@ class Vehicle:
     def __init__(self, faces: Sequence[Face], lane: Lane) -> None:
         self._faces = faces if lane.rightward else mirrored(faces)
         self._cast = shadow(self._faces)
-        body, shade, scale = extent(self._faces), extent(self._cast), lane.scale
+        body = extent(self._faces)
+        shade = extent(self._cast)
+        scale = lane.scale
         self.size = body.width * scale, body.height * scale
         self._shade_size = shade.width * scale, shade.height * scale
         self._shade_offset = (shade.x - body.x) * scale, (shade.y - body.y) * scale

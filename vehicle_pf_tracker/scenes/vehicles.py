@@ -118,7 +118,8 @@ def tinted(paint: Colour, light: float) -> Colour:
 
 def _flank(body: Contour, paint: Colour, door: float) -> list[Face]:
     """Near side of the body: paint, a darker lower part, the sill and the gap of a door."""
-    rear, front = body[0][0], body[-1][0]
+    rear = body[0][0]
+    front = body[-1][0]
     return [
         side_panel(body, 0, paint),
         _panel((rear, front), (0.3, 0.55), tinted(paint, 0.8)),

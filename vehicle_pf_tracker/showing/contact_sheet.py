@@ -59,7 +59,8 @@ class ContactSheet:
             return
         chosen = np.unique(np.linspace(0, len(thumbs) - 1, min(len(thumbs), _MOST)).round())
         shown = [thumbs[int(index)] for index in chosen]
-        height, columns = max(thumb.shape[0] for thumb in shown), min(_COLUMNS, len(shown))
+        height = max(thumb.shape[0] for thumb in shown)
+        columns = min(_COLUMNS, len(shown))
         rows = -(-len(shown) // columns)
         sheet: Frame = np.full((rows * height, columns * THUMB_WIDTH, 3), 24, np.uint8)
         for index, thumb in enumerate(shown):

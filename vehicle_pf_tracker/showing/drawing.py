@@ -24,16 +24,6 @@ Colour = tuple[int, int, int]
 """Red, green, blue."""
 
 
-def line_width(picture: Frame) -> int:
-    """Return the width of lines that suits the picture's size, px."""
-    return line_width_of(frame_size(picture))
-
-
-def line_width_of(size: tuple[int, int]) -> int:
-    """Return the width of lines that suits pictures of a width and height, px."""
-    return max(1, round(min(size) / 300))
-
-
 _LETTER_SCALE = 0.45
 """Scale of OpenCV's letters by the width of their strokes: ten widths high."""
 LETTER = 14
@@ -43,6 +33,30 @@ _SMALL = 2.0
 a line's width are illegible in a player's window."""
 _PART = 200.0
 """Height of a picture in widths of a letter's stroke at least: a line of words is a fourteenth."""
+_DASH = 6
+"""Length of a dash and of a gap, in line widths."""
+_LAST_PIXEL = 20_000
+"""Pixels beyond which OpenCV's coordinates, of 16 bits and a fraction, overflow."""
+NEUTRAL: Colour = (200, 200, 200)
+_PARTICLE: Colour = (96, 160, 255)
+_PATH_LENGTH = 300
+"""Positions shown of a path: ten seconds of video, longer ones hide the road."""
+_STEPS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+"""Distances of lines, px or m."""
+_LINES = 12
+"""Lines across the image, about: enough to read a point to a fifth of their distance."""
+_PIECES = 60
+"""Pieces that a line of the road is drawn in, which the lens may bend."""
+
+
+def line_width(picture: Frame) -> int:
+    """Return the width of lines that suits the picture's size, px."""
+    return line_width_of(frame_size(picture))
+
+
+def line_width_of(size: tuple[int, int]) -> int:
+    """Return the width of lines that suits pictures of a width and height, px."""
+    return max(1, round(min(size) / 300))
 
 
 def letter_width(picture: Frame) -> float:
@@ -84,12 +98,6 @@ def write_line(picture: Frame, words: str, colour: Colour, row: int = 1) -> None
     """Write words into a row at the upper left, counted from 1."""
     width = letter_width(picture)
     write_words(picture, words, (round(5 * width), round(16 * width * row)), colour, width)
-
-
-_DASH = 6
-"""Length of a dash and of a gap, in line widths."""
-_LAST_PIXEL = 20_000
-"""Pixels beyond which OpenCV's coordinates, of 16 bits and a fraction, overflow."""
 
 
 def pixels_at(points: Array) -> list[tuple[int, int]]:
@@ -166,10 +174,6 @@ COLOURS: dict[str, Colour] = {
     Mode.LOST.value: (255, 48, 48),
 }
 """Colour of each mode, (red, green, blue); `NEUTRAL` for frames without an estimate."""
-NEUTRAL: Colour = (200, 200, 200)
-_PARTICLE: Colour = (96, 160, 255)
-_PATH_LENGTH = 300
-"""Positions shown of a path: ten seconds of video, longer ones hide the road."""
 
 
 class Annotator:
@@ -258,12 +262,6 @@ def annotated(
 
 _LINE, _TEXT = (255, 240, 80), (255, 255, 255)
 _POINT, _ROAD = (255, 60, 60), (80, 220, 255)
-_STEPS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-"""Distances of lines, px or m."""
-_LINES = 12
-"""Lines across the image, about: enough to read a point to a fifth of their distance."""
-_PIECES = 60
-"""Pieces that a line of the road is drawn in, which the lens may bend."""
 
 
 def draw_pixel_grid(frame: Frame) -> Frame:

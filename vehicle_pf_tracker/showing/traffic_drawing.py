@@ -45,7 +45,8 @@ class Trails:
 
     def add(self, estimates: Iterable[TrackEstimate]) -> None:
         """Take the next image; the trail of a vehicle that is not in sight of it ends."""
-        before, self.of = self.of, {}
+        before = self.of
+        self.of = {}
         for one in estimates:
             if one.mode in CONFIRMED:
                 self.of[one.serial] = before.get(one.serial) or deque(maxlen=_TRAIL)

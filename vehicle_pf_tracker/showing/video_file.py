@@ -83,11 +83,13 @@ def _h264(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
         stream: Any = container.add_stream("libx264", rate=exact)
         stream.codec_context.time_base = Fraction(1, _TICKS)
         stream.width, stream.height = size
-        stream.pix_fmt, stream.options = "yuv420p", _QUALITY
+        stream.pix_fmt = "yuv420p"
+        stream.options = _QUALITY
 
         def write(frame: Frame, at: float) -> None:
             picture = av.VideoFrame.from_ndarray(frame, format="rgb24")
-            picture.pts, picture.time_base = round(at * _TICKS), Fraction(1, _TICKS)
+            picture.pts = round(at * _TICKS)
+            picture.time_base = Fraction(1, _TICKS)
             container.mux(stream.encode(picture))
 
         yield write

@@ -223,7 +223,8 @@ class BaseTracker(ABC, Generic[ParametersT]):
         began = time.perf_counter()
         outcome = self._advance(check_frame(frame), elapsed)
         self._first_frame = None
-        seconds, left_image = elapsed * self.frame_period, outcome.left_image
+        seconds = elapsed * self.frame_period
+        left_image = outcome.left_image
         mode = self._judge.judge(outcome.evidence, seconds, self.parameters, left_image=left_image)
         confidence = self._judge.confidence(outcome.evidence) if outcome.cloud.sound else 0.0
         estimate = self._estimate(outcome, mode, confidence, began)

@@ -95,7 +95,8 @@ class EvidenceJudge:
         evidence = parameters.evidence
         share = evidence.occluded_below if visible else evidence.clear_above
         if similarity >= max(evidence.minimum, share * self.level):
-            self.mode, self.seconds_without = Mode.TRACKING, 0.0
+            self.mode = Mode.TRACKING
+            self.seconds_without = 0.0
             # Only here: a level that followed an occluder would take it for the vehicle.
             self._level.add(similarity, evidence.level_rate)
             return self.mode

@@ -161,7 +161,10 @@ class Continuity:
 
     def _believe(self, image: _Image, interval_ns: int) -> None:
         self._believed += 1
-        self._before, self._last, self._doubted, self._odd = self._last, image, None, 0
+        self._before = self._last
+        self._last = image
+        self._doubted = None
+        self._odd = 0
         self._last_leapt = interval_ns > _LATE * min(self._intervals, default=0)
         self._interval_ns = interval_ns
         if interval_ns > 0:
@@ -239,7 +242,8 @@ class ImageStream:
 
     def reconfigure(self, frame_rate: float, reset_on_time_jump: bool) -> None:
         """Take new settings between two images."""
-        self._frame_rate, self._resets = frame_rate, reset_on_time_jump
+        self._frame_rate = frame_rate
+        self._resets = reset_on_time_jump
         for clock in (self._clock, self._clock_before):
             if clock is not None:
                 clock.set_frame_rate(frame_rate)
@@ -267,7 +271,8 @@ class ImageStream:
             If it is not usable, or its stamp is no integer.
         """
         stamp_ns = checked_stamp(stamp_ns)
-        aside, self._aside = self._aside, None
+        aside = self._aside
+        self._aside = None
         if isinstance(image, np.ndarray):
             check_frame(image)
         else:
@@ -291,7 +296,8 @@ class ImageStream:
     def _turn(
         self, frame: Frame, stamp_ns: int, continuation: Continuation, is_tracking: bool
     ) -> Turn:
-        corrects, leaps = continuation is Continuation.CORRECTS, continuation is Continuation.LEAPS
+        corrects = continuation is Continuation.CORRECTS
+        leaps = continuation is Continuation.LEAPS
         events = []
         if corrects:
             events.append("the last image's stamp was ahead")
@@ -308,7 +314,8 @@ class ImageStream:
         if begins_anew:
             self._clock = StampClock(self._frame_rate)
             tick = self._clock.tick(stamp_ns)
-        size, before = frame_size(frame), self._last_size
+        size = frame_size(frame)
+        before = self._last_size
         self._last_size = size
         if is_tracking and before is not None and before != size:
             change = f"from {_words(before)} to {_words(size)}"

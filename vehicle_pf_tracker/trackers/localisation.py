@@ -151,7 +151,8 @@ class RoadFollower:
     def follow(self, estimate: Estimate, covariance: Array, stamp_ns: int) -> RoadEstimate | None:
         """Take the next estimate with its covariance (2, 2; px²); None where it has no road."""
         if self._contact is None or estimate.regime == START:
-            self._contact, self._motion = Contact.of(self._plane, estimate.box), None
+            self._contact = Contact.of(self._plane, estimate.box)
+            self._motion = None
         centre = np.asarray(estimate.position, np.float64)
         contact = self._contact.point(centre)
         self.objection = self._object(estimate, contact)
@@ -215,7 +216,8 @@ class Localisation:
         self._uncertainty = Uncertainty(CALIBRATIONS.get(variant, CALIBRATIONS["*"]))
         self._estimate: Estimate | None = None
         self._period = 1.0
-        self._lens, self._pose = parameters.lens, parameters.pose
+        self._lens = parameters.lens
+        self._pose = parameters.pose
         self.parameters = parameters
         self._follower: RoadFollower | None = None
         self.road: RoadEstimate | None = None
@@ -229,12 +231,15 @@ class Localisation:
 
     def reconfigure(self, parameters: RoadParameters) -> None:
         """Take another mapping to the road; lens and pose that came from outside are kept."""
-        before, self.parameters = self.parameters, parameters
+        before = self.parameters
+        self.parameters = parameters
         if not (before.from_camera_info and parameters.from_camera_info):
             self._lens = parameters.lens
         if not (before.from_tf and parameters.from_tf):
             self._pose = parameters.pose
-        self._follower, self.road, self.objection = None, None, ""
+        self._follower = None
+        self.road = None
+        self.objection = ""
         self._take_plane()
 
     def set_lens(self, lens: Lens) -> None:
@@ -251,7 +256,8 @@ class Localisation:
 
     def follow(self, estimate: Estimate, stamp_ns: int, period: float) -> None:
         """Take the next estimate, with the nominal frame period in s."""
-        self._estimate, self._period = estimate, period
+        self._estimate = estimate
+        self._period = period
         self._uncertainty.follow(estimate, stamp_ns)
         if self._follower is not None:
             self.road = self._follower.follow(estimate, self.covariance, stamp_ns)
@@ -276,7 +282,9 @@ class Localisation:
             try:
                 plane = parameters.plane(self._lens, self._pose)
             except InputError as error:
-                self._follower, self.road, self.objection = None, None, str(error)
+                self._follower = None
+                self.road = None
+                self.objection = str(error)
                 return
             if self._follower is None:
                 self.objection = ""

@@ -94,7 +94,8 @@ class StreamSession(ABC, Generic[TrackerT]):
         self, image: Frame | CodedImage, stamp_ns: int, *, is_tracking: bool = True
     ) -> list[Turn]:
         """Return the images to track in now; see `ImageStream.admit`."""
-        self.events, self.recovered = [], False
+        self.events = []
+        self.recovered = False
         return self._stream.admit(image, stamp_ns, is_tracking=is_tracking)
 
     def _attempt(self, step: Callable[[], ResultT]) -> ResultT:
@@ -209,7 +210,8 @@ class Session(StreamSession[BaseTracker[Any]]):
         TrackerError
             If the tracker fails, and does not start anew for it.
         """
-        self.refusal, estimate = "", None
+        self.refusal = ""
+        estimate = None
         for turn in self._admit(image, stamp_ns, is_tracking=self._is_tracking):
             self.events += turn.events
             if turn.corrects:
@@ -232,7 +234,8 @@ class Session(StreamSession[BaseTracker[Any]]):
         """Go back to before the last image, whose stamp was ahead, unless it started the target."""
         if self._backup is None:
             return
-        parameters, self.tracker = self.tracker.parameters, self._backup
+        parameters = self.tracker.parameters
+        self.tracker = self._backup
         if self.tracker.parameters != parameters:
             self.tracker.reconfigure(parameters)
 
@@ -240,7 +243,9 @@ class Session(StreamSession[BaseTracker[Any]]):
         box = self._pending
         if box is not None and self._is_usable(box, frame_size(turn.frame)):
             estimate = self.tracker.start(turn.frame, box)
-            self._seen, self._backup, self._pending = box, None, None
+            self._seen = box
+            self._backup = None
+            self._pending = None
         elif self._is_tracking:
             estimate = self.tracker.step(turn.frame, turn.elapsed)
         else:

@@ -84,7 +84,8 @@ def _run_variant(cell: GridCell, seen: Footage) -> tuple[list[EstimateRow], dict
 
 def _run_baseline(cell: GridCell, seen: Footage) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a baseline and its `run.json`."""
-    system, name = cell.system, cell.system.kind.removeprefix(BASELINE)
+    system = cell.system
+    name = cell.system.kind.removeprefix(BASELINE)
     python = Path(system.python) if system.python else None
     with Baseline(name, python, system.model_files()) as baseline:
         rows = list(baseline_rows(baseline, seen.frames(), seen.truth[0]))

@@ -119,7 +119,8 @@ def describe(
     InputError
         If one cannot be read or has no truth, or two have one name.
     """
-    names, described = _names(locations), []
+    names = _names(locations)
+    described = []
     for location in locations:
         on_stage(f"reading {location}")
         path = _local(location)

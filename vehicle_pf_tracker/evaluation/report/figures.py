@@ -217,7 +217,8 @@ def _errors(runs: Mapping[str, Sequence[ScoredRun]], truths: Mapping[int, Truth]
     if not tables:
         return None
     highest = max(float(np.nanmax(table)) for table in tables.values())
-    count, columns = len(tables), min(len(tables), _PANELS_IN_A_ROW)
+    count = len(tables)
+    columns = min(len(tables), _PANELS_IN_A_ROW)
     rows = -(-count // columns)
     size = _WIDE if columns > 1 else _NARROW, 0.3 + _PANEL_HEIGHT * rows
     figure = Figure(figsize=size, layout="constrained")

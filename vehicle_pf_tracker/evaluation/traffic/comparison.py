@@ -118,7 +118,8 @@ def compare(
     on_progress : callable
         Called with the number of frames done and of all.
     """
-    total, done = sum(sequence.frame_count for sequence, _ in cases), 0
+    total = sum(sequence.frame_count for sequence, _ in cases)
+    done = 0
     for case in cases:
         given: list[Array] = []
         for seed in seeds:
@@ -297,7 +298,8 @@ def _table(lines: Sequence[TrafficResult]) -> tuple[list[str], Rows]:
 
 
 def _text(line: TrafficResult, name: str) -> str:
-    value, decimals = line.values.get(name), COLUMNS[name][1]
+    value = line.values.get(name)
+    decimals = COLUMNS[name][1]
     if value is None:
         return NOTHING
     if name == "kept":

@@ -35,6 +35,17 @@ _MOST_INSIDE = 0.5
 """Share of an unmatched box in a region without truth above which it is left out."""
 
 
+_WINDOW = 30
+"""Frames before and after an occlusion in which the identity is looked for: about a second."""
+_GLIMPSE = 5
+"""Frames in sight below which two occlusions are one."""
+_LEAST = 10
+"""Frames in sight before an occlusion from which a tracker can know the vehicle."""
+_LOW = 0.25
+"""Threshold of scores that suits CenterNet's on cdnet_highway, which span 0.15 to 0.74. It was
+chosen by hand for that detector; the defaults of 0.6 and 0.7 discard nearly all of its boxes."""
+
+
 def scorable(sequence: TrafficSequence, tracks: Array) -> tuple[Array, Array]:
     """Leave out what cannot be scored.
 
@@ -111,12 +122,6 @@ def _edges(boxes: Array) -> Array:
     return np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
 
 
-_WINDOW = 30
-"""Frames before and after an occlusion in which the identity is looked for: about a second."""
-_GLIMPSE = 5
-"""Frames in sight below which two occlusions are one."""
-_LEAST = 10
-"""Frames in sight before an occlusion from which a tracker can know the vehicle."""
 _SETTLED_NS = 2 * 10**9
 """Crossings before are not counted: who is on the line when a clip begins has no past, ns."""
 
@@ -226,10 +231,6 @@ def _estimate(row: list[float]) -> TrackEstimate:
         serial=int(row[1]),
     )
 
-
-_LOW = 0.25
-"""Threshold of scores that suits CenterNet's on cdnet_highway, which span 0.15 to 0.74. It was
-chosen by hand for that detector; the defaults of 0.6 and 0.7 discard nearly all of its boxes."""
 
 _BOTH_LOW = {"track_activation_threshold": _LOW, "high_conf_det_threshold": _LOW}
 TRAFFIC_BASELINES: Mapping[str, Mapping[str, float]] = {

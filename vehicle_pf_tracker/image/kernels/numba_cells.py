@@ -69,8 +69,10 @@ def _direction_histograms(
     columns = width // CELL + 2
     cells = np.zeros((DIRECTIONS, height // CELL + 2, columns), np.float32)
     sums = np.zeros(DIRECTIONS * columns, np.float32)
-    above, below = np.zeros_like(sums), np.zeros_like(sums)
-    magnitudes, places = np.empty(width, np.float32), np.empty(width, np.uint32)
+    above = np.zeros_like(sums)
+    below = np.zeros_like(sums)
+    magnitudes = np.empty(width, np.float32)
+    places = np.empty(width, np.uint32)
     place_x = (np.arange(width) + 0.5) / CELL + 0.5
     column = place_x.astype(np.uint64)
     share = (place_x - column).astype(np.float32)
@@ -126,7 +128,8 @@ def _normalise(
 ) -> None:
     """Write the channels of the inner cells; the inner loops, along x, are vectorised."""
     rows, columns = features.shape[0], features.shape[2]
-    limit, half = np.float32(TRUNCATION), np.float32(0.5)
+    limit = np.float32(TRUNCATION)
+    half = np.float32(0.5)
     texture = np.empty((4, columns), np.float32)
     for y in range(rows):
         texture[:] = 0

@@ -51,13 +51,21 @@ def direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
     if not signed and (gx < 0 or (gx == 0 and gy < 0)):
         gx, gy = -gx, -gy
     if gx > 0 and gy >= 0:
-        first, along, across = 32, gx, gy
+        first = 32
+        along = gx
+        across = gy
     elif gy > 0:
-        first, along, across = 48, gy, -gx
+        first = 48
+        along = gy
+        across = -gx
     elif gx < 0:
-        first, along, across = 0, -gx, -gy
+        first = 0
+        along = -gx
+        across = -gy
     else:
-        first, along, across = 16, -gy, gx
+        first = 16
+        along = -gy
+        across = gx
     for tangent in tangents:
         first += across >= along * tangent
     return first
@@ -72,12 +80,15 @@ def _sobel(grey: Grey, images: Images) -> None:
     """
     gx, gy, strengths = images
     height, width = grey.shape
-    smooth, slope = np.empty(width + 2, np.int16), np.empty(width + 2, np.int16)
+    smooth = np.empty(width + 2, np.int16)
+    slope = np.empty(width + 2, np.int16)
     for y in range(height):
         above = y - 1 if y > 0 else min(1, height - 1)
         below = y + 1 if y < height - 1 else max(height - 2, 0)
         for x in range(width):
-            over, here, under = grey[above, x], grey[y, x], grey[below, x]
+            over = grey[above, x]
+            here = grey[y, x]
+            under = grey[below, x]
             smooth[x + 1] = np.int16(over) + np.int16(2) * np.int16(here) + np.int16(under)
             slope[x + 1] = np.int16(under) - np.int16(over)
         for row in (smooth, slope):
@@ -203,7 +214,8 @@ def _list_points(
     left, top, right, bottom = area
     index = np.empty((strengths.shape[0], strengths.shape[1] + 1), np.int32)
     size = (right - left) * (bottom - top)
-    cells, passed = np.empty(size, np.uint16), np.empty(size, np.int32)
+    cells = np.empty(size, np.uint16)
+    passed = np.empty(size, np.int32)
     found = np.empty(right - left, np.int32)
     count = 0
     for y in range(top, bottom):
@@ -304,7 +316,8 @@ def count_edges(
     images = np.empty(shape, np.int16), np.empty(shape, np.int16), np.empty(shape, np.int32)
     _sobel(grey, images)
     limits = _limits_of(_peaks_of(images[2], middles, half), rule)
-    totals, is_open = np.zeros(len(middles), np.int64), limits != _NEVER
+    totals = np.zeros(len(middles), np.int64)
+    is_open = limits != _NEVER
     counts[:] = 0
     while True:
         lowest = _lowest(limits, is_open)

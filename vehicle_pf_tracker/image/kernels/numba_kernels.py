@@ -117,7 +117,8 @@ def kernel_similarity(
 ) -> Coefficients:
     """Compare kernel-weighted histograms; see `image.mean_shift`."""
     cells, pixels, _ = _placed_cells(frame, positions, window, reference, bits)
-    kernels, values = _kernels("numba_mean_shift"), table_of(reference).values
+    kernels = _kernels("numba_mean_shift")
+    values = table_of(reference).values
     similarity: Coefficients = kernels.compare_kernels(
         cells, pixels, *kernels.ellipse(window), values
     )
@@ -129,7 +130,8 @@ def mean_shift(
 ) -> Positions:
     """Move every position one mean-shift step; see `image.mean_shift`."""
     cells, pixels, first = _placed_cells(frame, positions, window, reference, bits)
-    kernels, values = _kernels("numba_mean_shift"), table_of(reference).values
+    kernels = _kernels("numba_mean_shift")
+    values = table_of(reference).values
     steps = kernels.shift_kernels(cells, pixels, *kernels.ellipse(window), values)
     return np.where(np.isnan(steps), positions, pixels + first + 0.5 + steps)
 
@@ -197,7 +199,8 @@ def _histogram_of_pixels(
 ) -> Histogram:
     """Count every bin of one window's pixels."""
     left, top, right, bottom = bounds_of_one(frame, position, window)
-    part, table = frame[top:bottom, left:right], _every_bin(feature.bins)
+    part = frame[top:bottom, left:right]
+    table = _every_bin(feature.bins)
     if isinstance(feature, JointColour):
         cells = _kernels("numba_windows").joint_cells(part, feature.bits, table)
     elif isinstance(feature, RgbMarginals):
@@ -237,9 +240,11 @@ def _compare_pixels(
     )
     part = frame[top:bottom, left:right]
     if isinstance(feature, RgbMarginals):
-        cells, beside = marginal_cells(part, CHANNEL_BINS, table.cells), window.half_width + 1
+        cells = marginal_cells(part, CHANNEL_BINS, table.cells)
+        beside = window.half_width + 1
     else:  # pairs end one column earlier
-        cells, beside = pair_cells(to_grey(part), table.cells), window.half_width
+        cells = pair_cells(to_grey(part), table.cells)
+        beside = window.half_width
     reach = window.half_width, beside, window.half_height
     compared: Reals = kernels.compare_windows(cells, pixels, reach, scale)
     return compared

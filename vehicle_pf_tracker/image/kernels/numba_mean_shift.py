@@ -29,7 +29,8 @@ _ARGUMENTS = CELLS, RECTANGLES, _OFFSETS, REALS, REALS
 def ellipse(window: Window) -> tuple[Offsets, Reals]:
     """Offsets x, y (P, 2) and profile (P,) of the kernel's pixels."""
     kernel = epanechnikov(window)
-    offsets, profile = kernel[0].astype(np.int64), kernel[1].copy()
+    offsets = kernel[0].astype(np.int64)
+    profile = kernel[1].copy()
     offsets.flags.writeable = profile.flags.writeable = False
     return offsets, profile
 

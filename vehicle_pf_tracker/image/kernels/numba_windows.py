@@ -205,7 +205,8 @@ def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Sc
     heads = np.empty((y1 - y0 + 1, x1 - x0 + 1), np.int64)
     others = _listed(pixels, x0, y0, heads)
     columns = np.zeros((width, len(values)), np.uint16)
-    sums, rows = np.zeros(len(values), np.int32), np.zeros(2, np.int64)
+    sums = np.zeros(len(values), np.int32)
+    rows = np.zeros(2, np.int64)
     result = np.empty(len(pixels))
     for y in range(y0, y1 + 1):
         asked = np.flatnonzero(heads[y - y0] >= 0)

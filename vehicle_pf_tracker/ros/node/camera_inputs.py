@@ -67,7 +67,8 @@ class CameraInputs:
         if asked == self._asked:
             return
         self.close()
-        self._asked, self._rectified = asked, road.rectified
+        self._asked = asked
+        self._rectified = road.rectified
         subscribe = self._node.create_subscription
         if road.from_camera_info:
             # Beside the images, as camera drivers publish it.
@@ -96,7 +97,8 @@ class CameraInputs:
 
     def _on_transforms(self, message: Any) -> None:
         for one in message.transforms:
-            at, turn = one.transform.translation, one.transform.rotation
+            at = one.transform.translation
+            turn = one.transform.rotation
             try:
                 pose = Pose.of((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))
             except InputError as error:
@@ -127,7 +129,8 @@ class StreamLocalisation(Localisation):
 
     def locate(self, estimate: Estimate, header: Header, frame: Frame, period: float) -> None:
         """Take the estimate of the image `frame`, with the nominal frame period in s."""
-        parameters, lens = self.parameters, self._cameras.lens
+        parameters = self.parameters
+        lens = self._cameras.lens
         if lens is not None:
             self.set_lens(lens.lens)
         if parameters.from_tf:
@@ -188,7 +191,8 @@ def lens_of_info(message: CameraInfo, *, rectified: bool) -> ImageLens:
     (fx, _, cx, *_), (_, fy, cy, *_) = rows[:2]
     if not (fx > 0 and fy > 0):
         raise InputError("camera_info has no calibration: its focal length is not above 0")
-    across, down = max(message.binning_x, 1), max(message.binning_y, 1)
+    across = max(message.binning_x, 1)
+    down = max(message.binning_y, 1)
     left, top = message.roi.x_offset, message.roi.y_offset
     model, coefficients = _distortion(message, rectified=rectified)
     centre = _binned(cx, left, across), _binned(cy, top, down)

@@ -16,6 +16,11 @@ from rclpy.node import Node
 from vehicle_pf_tracker.ros.messages import LEVELS, WAITING, status
 from vehicle_pf_tracker.ros.node.image_input import ImageInput
 
+PERIOD = 1.0
+SILENCE = 5.0
+"""Time without an image after which a warning is published, s."""
+_WARNING_PERIOD = 30.0
+
 
 class Health:
     """Counters since the node was configured; rates since the last report.
@@ -110,8 +115,10 @@ class Health:
     def report(self) -> dict[str, object]:
         """Give the values for `/diagnostics` by name, and begin the next interval."""
         now = self._clock()
-        new, seconds = self.images - self._images_reported, now - self._reported
-        self._images_reported, self._reported = self.images, now
+        new = self.images - self._images_reported
+        seconds = now - self._reported
+        self._images_reported = self.images
+        self._reported = now
         return {
             "mode": self.mode,
             "time in mode (s)": round(now - self._mode_since, 1),
@@ -128,13 +135,6 @@ class Health:
             "time since last image (s)": round(now - self._heard, 1),
             **self.road,
         }
-
-
-PERIOD = 1.0
-SILENCE = 5.0
-"""Time without an image after which a warning is published, s."""
-
-_WARNING_PERIOD = 30.0
 
 
 class Diagnostics:
@@ -156,7 +156,8 @@ class Diagnostics:
     """
 
     def __init__(self, node: Node, facts: Callable[[], Mapping[str, object]]) -> None:
-        self._node, self._facts = node, facts
+        self._node = node
+        self._facts = facts
         self.health = Health()
         self.source: ImageInput | None = None
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
@@ -185,7 +186,8 @@ class Diagnostics:
         publishers = self.source.count_publishers() if self.source else 0
         values = {**self.health.report(), "matched publishers": publishers, **self._facts()}
         level, words = self._judge()
-        name, topic = self._node.get_name(), self.source.topic if self.source else ""
+        name = self._node.get_name()
+        topic = self.source.topic if self.source else ""
         message = DiagnosticArray(status=[status(level, f"{name}: tracker", words, topic, values)])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
@@ -193,7 +195,8 @@ class Diagnostics:
     def _judge(self) -> tuple[bytes, str]:
         if self.source is None:
             return DiagnosticStatus.OK, "not active"
-        topic, level = self.source.topic, LEVELS[self.health.mode]
+        topic = self.source.topic
+        level = LEVELS[self.health.mode]
         if self.health.silence < SILENCE:
             return level, self.health.mode
         words = f"no image for {SILENCE:g} s on {topic}: {self.source.explain_silence()}"

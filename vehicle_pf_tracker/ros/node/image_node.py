@@ -144,9 +144,11 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
 
         def respond(_: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
             try:
-                response.success, response.message = True, act()
+                response.success = True
+                response.message = act()
             except InputError as error:
-                response.success, response.message = False, str(error)
+                response.success = False
+                response.message = str(error)
             return response
 
         self.held.callback(self.destroy_service, self.create_service(Trigger, name, respond))
@@ -264,7 +266,8 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
     def _answer_change_state(
         self, answer: Callable[..., Any], request: ChangeState.Request, response: Any
     ) -> ChangeState.Response:
-        label, state_id = rclpy_internals.state_label(self), request.transition.id
+        label = rclpy_internals.state_label(self)
+        state_id = request.transition.id
         wanted = request.transition.label or str(state_id)
         self.failure = "there is no such transition"
         try:

@@ -143,7 +143,8 @@ class ImagePath:
         if answer.is_restart:
             self._note_restart()
         self.journal.health.answered(answer.mode, answer.step_ms)
-        own, is_kept = self._configuration.node, self.incidents is not None
+        own = self._configuration.node
+        is_kept = self.incidents is not None
         mode = self._outputs.send(answer, own, is_kept=is_kept)
         if self.incidents is not None and mode is not None:
             self.incidents.keep(mode, self._feed.followed)
@@ -166,7 +167,8 @@ class ImagePath:
         InputError
             With the reason.
         """
-        box, size = configuration.session.target.box, self._feed.size
+        box = configuration.session.target.box
+        size = self._feed.size
         if box is not None and box != self._configuration.session.target.box and size:
             check_target(box, *size)
 
@@ -178,7 +180,8 @@ class ImagePath:
         InputError
             If it is.
         """
-        own, given = self._frame_id, header.frame_id
+        own = self._frame_id
+        given = header.frame_id
         suffix = self._configuration.node.output_frame_suffix
         if own is not None and given not in ("", own, own + suffix):
             raise InputError(

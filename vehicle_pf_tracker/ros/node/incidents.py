@@ -52,7 +52,9 @@ class IncidentRecorder:
     def __init__(
         self, name: str, most_bytes: int, clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._name, self._most, self._clock = name, most_bytes, clock
+        self._name = name
+        self._most = most_bytes
+        self._clock = clock
         self._kept: deque[tuple[float, int, type[Any], bytes, Box | None]] = deque()
         self._bytes = 0
         self._writing: threading.Thread | None = None
@@ -66,7 +68,8 @@ class IncidentRecorder:
         self, message: Image | CompressedImage | DiagnosticArray, box: Box | None = None
     ) -> None:
         """Keep a message, and let go of old ones; a run can start on the target's `box`."""
-        now, data = self._clock(), serialize_message(message)
+        now = self._clock()
+        data = serialize_message(message)
         self._kept.append((now, stamp_ns(message.header), type(message), data, box))
         self._bytes += len(data)
         while self._kept and (self._bytes > self._most or now - self._kept[0][0] > _LENGTH):

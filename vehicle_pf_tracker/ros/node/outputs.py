@@ -68,7 +68,8 @@ class Outputs:
 
     def __init__(self, node: LifecycleNode, hardware_id: str, more: Topics) -> None:
         self._node = node
-        self._name, self._hardware_id = str(node.get_name()), hardware_id
+        self._name = str(node.get_name())
+        self._hardware_id = hardware_id
         self._publishers = {
             name: node.create_lifecycle_publisher(kind, f"~/{name}", qos)
             for name, (kind, qos) in {**more, **_COMMON}.items()
@@ -116,7 +117,8 @@ class Outputs:
 
     def statuses(self, header: Header, found: Iterable[messages.Status]) -> DiagnosticArray:
         """Make statuses of this node."""
-        name, topic = self._name, self._hardware_id
+        name = self._name
+        topic = self._hardware_id
         made = [
             messages.status(level, f"{name}: {subject}", words, topic, values)
             for level, subject, words, values in found
@@ -205,7 +207,8 @@ class TrackerOutputs(Outputs):
             self.publish("road_position", messages.point_message, there, road.position)
             self.publish("road_velocity", messages.velocity_message, there, road.velocity)
         elif not localisation.has_road and self.is_heard("pose_with_covariance"):
-            position, covariance = np.asarray(estimate.position), localisation.covariance
+            position = np.asarray(estimate.position)
+            covariance = localisation.covariance
             self.publish(
                 "pose_with_covariance", messages.pose_message, header, position, covariance
             )
@@ -214,7 +217,8 @@ class TrackerOutputs(Outputs):
         """Publish the drawn-on image, if anybody looks; the speed stands after the mode."""
         if not self.is_heard("overlay"):
             return
-        mode, estimate = answer.mode, answer.estimate
+        mode = answer.mode
+        estimate = answer.estimate
         picture: Frame = np.array(answer.frame, order="C")
         words = mode
         if estimate is not None:

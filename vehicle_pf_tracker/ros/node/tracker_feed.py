@@ -85,7 +85,8 @@ class TrackerFeed:
         if is_applied or not self._loading.is_done:
             return self._session is not None
         self._applied = self._configuration
-        tracker, settings = self._configuration.tracker, self._configuration.session
+        tracker = self._configuration.tracker
+        settings = self._configuration.session
         seed = None
         if self._session is None:
             self._session = Session(self._variant, tracker, settings)
@@ -101,10 +102,12 @@ class TrackerFeed:
     @property
     def facts(self) -> Mapping[str, object]:
         """The variant, and choices that the parameters leave open: the seed and the kernels."""
-        seed, kernels = self._configuration.tracker.seed, self._loading.reason
+        seed = self._configuration.tracker.seed
+        kernels = self._loading.reason
         if self._session is not None:
             tracker = self._session.tracker
-            seed, kernels = tracker.seed, tracker.kernels.name
+            seed = tracker.seed
+            kernels = tracker.kernels.name
         return {"variant": self._variant.name, "seed": seed, "kernels": kernels}
 
     @property
@@ -170,7 +173,8 @@ class TrackerFeed:
         """
         if not self.get_ready() or self._session is None:
             raise InputError(self._loading.reason)
-        box, size = self._configuration.session.target.box, self.size
+        box = self._configuration.session.target.box
+        size = self.size
         self.asked = None
         self.estimate = None
         self._session.reset()
@@ -185,7 +189,8 @@ class TrackerFeed:
 
     def reconfigure(self, configuration: Configuration) -> None:
         """Take new parameters between two images, or when their kernels are loaded."""
-        before, self._configuration = self._configuration, configuration
+        before = self._configuration
+        self._configuration = configuration
         if configuration.session.target != before.session.target:
             self._target_problem = ""
         if configuration.session.road != before.session.road:
@@ -203,7 +208,8 @@ class TrackerFeed:
 
     def _answer(self, session: Session, header: Header, frame: Frame) -> TrackerAnswer:
         """Say what the session makes of an image that it took."""
-        estimate, period = self.estimate, session.tracker.frame_period
+        estimate = self.estimate
+        period = session.tracker.frame_period
         mode = WAITING
         values: dict[str, object] = {}
         sentences = self._events(session)

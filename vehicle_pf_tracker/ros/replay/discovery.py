@@ -20,6 +20,12 @@ _SLICE = 0.05
 """Longest uninterrupted wait in s: changes of the graph and signals wake no executor."""
 
 
+DISCOVERY = 5.0
+"""Shortest search for a node, s: discovery takes no longer on a quiet machine."""
+_QUIET = 1.0
+"""A search ends so many s after the last node was found."""
+
+
 class Interrupted(Exception):  # noqa: N818 (no error: the user wants it so)
     """The user asked the replay to end."""
 
@@ -69,12 +75,7 @@ class Spinner:
         self._executor.shutdown()
 
 
-DISCOVERY = 5.0
-"""Shortest search for a node, s: discovery takes no longer on a quiet machine."""
-
 _MODE = "/mode"
-_QUIET = 1.0
-"""A search ends so many s after the last node was found."""
 
 
 def full_name(name: str) -> str:

@@ -58,9 +58,12 @@ class Player:
         tell: Callable[[str], None],
     ) -> None:
         self._frames = 0
-        self._node, self._spinner = node, spinner
-        self._recording, self._options = recording, options
-        self._on_progress, self._tell = on_progress, tell
+        self._node = node
+        self._spinner = spinner
+        self._recording = recording
+        self._options = options
+        self._on_progress = on_progress
+        self._tell = tell
         self._publishers, notices = make_publishers(node, recording, options)
         for notice in notices:
             tell(notice)
@@ -80,7 +83,8 @@ class Player:
         InputError
             If a node is missing, refuses the target or does not answer in time.
         """
-        began, is_interrupted = time.monotonic(), False
+        began = time.monotonic()
+        is_interrupted = False
         try:
             targets = self._get_ready()
             began = time.monotonic()
@@ -105,7 +109,8 @@ class Player:
                 yield losses.sentence(link.name, self._frames)
 
     def _get_ready(self) -> Targets:
-        options, images = self._options, self._publishers.get(self._recording.image_topic)
+        options = self._options
+        images = self._publishers.get(self._recording.image_topic)
         if images is not None:
             self._connect(images.publisher)
         elif options.lockstep or options.nodes or options.wait_for_subscribers:
@@ -126,7 +131,8 @@ class Player:
 
     def _connect(self, images: Publisher) -> None:
         """Link the nodes, and wait until images and answers will reach each other."""
-        options, count = self._options, images.get_subscription_count
+        options = self._options
+        count = images.get_subscription_count
         if options.wait_for_subscribers and not count():
             self._tell(f"waiting for a subscriber of {images.topic_name}")
             self._spinner.until(lambda: count() > 0)

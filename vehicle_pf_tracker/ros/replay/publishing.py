@@ -103,7 +103,8 @@ def make_publishers(
             continue
         convert: Callable[[bytes], Any] = bytes
         if _is_decompressed(topic, options):
-            kind, convert = Image, decompressed
+            kind = Image
+            convert = decompressed
         qos = recorded_qos(topic.offered_qos, _IMAGE_DEPTH if kind is Image else _DEPTH)
         name = names[topic.name]
         try:

@@ -81,7 +81,8 @@ class TrackerLink:
 
     def await_answer(self, frame: int, timeout: float) -> bool:
         """Wait until image number `frame` is answered, for `timeout` s after any other answer."""
-        answers, count = self.answers, -1
+        answers = self.answers
+        count = -1
 
         def goes_on() -> bool:
             return answers.count > count

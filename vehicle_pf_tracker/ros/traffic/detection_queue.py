@@ -58,7 +58,8 @@ class DetectionQueue:
     def add_detections(self, message: bytes) -> None:
         """Take a serialized vision_msgs/Detection2DArray."""
         waiting = self._waiting
-        late, unmatched = waiting.late, waiting.unmatched
+        late = waiting.late
+        unmatched = waiting.unmatched
         stamp = header_stamp_ns(message)
         if stamp is None:
             self._warnings.say("flood", "a message of detections is cut off before its stamp")

@@ -86,7 +86,8 @@ class TrafficOutputs(Outputs):
     def send(self, answer: Answer, own: NodeParameters, *, is_kept: bool) -> DiagnosticArray | None:
         """Publish an answer, its `~/mode` last; returns that, if it was made."""
         if isinstance(answer, TrafficAnswer):
-            there, selected = in_pixels(answer.header, own), self._vehicles.selected
+            there = in_pixels(answer.header, own)
+            selected = self._vehicles.selected
             self._publish_vehicles(answer.header, there, answer.period)
             if selected is not None:
                 self.publish_vehicle(there, selected, own, answer.period)
@@ -98,7 +99,8 @@ class TrafficOutputs(Outputs):
 
         The frame `period` is in s.
         """
-        counter, estimates = self._vehicles.counter, self._vehicles.estimates
+        counter = self._vehicles.counter
+        estimates = self._vehicles.estimates
         self.publish("tracks", messages.tracks_message, there, estimates, period)
         self.publish("modes", self.statuses, header, messages.mode_statuses(estimates))
         self.publish("detections", messages.detections_message, there, estimates)
@@ -120,7 +122,8 @@ class TrafficOutputs(Outputs):
         """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
         if not self.is_heard("overlay"):
             return
-        frame, selected = answer.frame, self._vehicles.selected
+        frame = answer.frame
+        selected = self._vehicles.selected
         if selected is not None:
             frame = np.array(frame, order="C")
             draw_box(frame, selected.box, _SELECTED, 3 * line_width(frame))

@@ -65,11 +65,15 @@ class TrafficFeed:
     @property
     def facts(self) -> Mapping[str, object]:
         """Values for the node's report: seed, detector, vehicles."""
-        tracker, detector = self.vehicles.session.tracker, self.vehicles.session.detector
-        kind, waiting = self._configuration.tracker.detector.kind, self._waiting
-        count, seconds = self._detection_count, waiting.latency
+        tracker = self.vehicles.session.tracker
+        detector = self.vehicles.session.detector
+        kind = self._configuration.tracker.detector.kind
+        waiting = self._waiting
+        count = self._detection_count
+        seconds = waiting.latency
         if isinstance(detector, PacedDetector):
-            count, seconds = detector.found, detector.seconds
+            count = detector.found
+            seconds = detector.seconds
         facts = {
             "variant": TRAFFIC.name,
             "seed": tracker.seed,
@@ -157,7 +161,8 @@ class TrafficFeed:
 
     def _of_selected(self) -> tuple[str, dict[str, object]]:
         """Mode and values of the selected vehicle, or the reason why there is none."""
-        selected, chosen = self.vehicles.selected, self.vehicles.selection.identity
+        selected = self.vehicles.selected
+        chosen = self.vehicles.selection.identity
         if selected is not None:
             return selected.mode.value, dict(messages.scalars(selected))
         reason = f"vehicle {chosen} is not followed any more" if chosen else "none is selected"

@@ -98,7 +98,8 @@ class TrafficNode(ImageNode):
         self, configuration: Configuration, vehicles: Vehicles, journal: Journal
     ) -> TrafficOutputs:
         """Open publishers and page; a clean-up closes them."""
-        page, port = None, configuration.tracker.page_port
+        page = None
+        port = configuration.tracker.page_port
         if port >= 0:
             page = open_page(self.get_fully_qualified_name(), port, journal)
         if page is not None:
@@ -143,7 +144,8 @@ class TrafficNode(ImageNode):
     def _listen_to_detections(self) -> None:
         # As many as images may wait: a detector may answer several at once.
         qos = QoSProfile(depth=MOST_WAITING)
-        topic, take = self.resolve_topic_name("detections"), self._on_detections
+        topic = self.resolve_topic_name("detections")
+        take = self._on_detections
         self.inputs.append(subscribe(self, detections_type(), topic, take, qos, raw=True))
 
     def _on_detections(self, message: bytes) -> None:

@@ -29,6 +29,11 @@ _SHOWN = 10
 """Numbers of vehicles that an error lists."""
 
 
+_MOST_TARGETS = 100
+"""Targets that may wait for the first image, or come between two: more are a mistake of a program,
+and each would be followed."""
+
+
 class Selection:
     """Number of the selected vehicle.
 
@@ -83,11 +88,6 @@ class Selection:
 def _contains(box: Box, point: Position) -> bool:
     x, y = point
     return box.x <= x < box.x + box.width and box.y <= y < box.y + box.height
-
-
-_MOST_TARGETS = 100
-"""Targets that may wait for the first image, or come between two: more are a mistake of a program,
-and each would be followed."""
 
 
 class Vehicles(CountedVehicles):
@@ -146,7 +146,8 @@ class Vehicles(CountedVehicles):
         for crossing in self.follow(image, stamp_ns, detections):
             if not crossing.doubt:
                 self.latest[crossing.place] = crossing
-        self._is_shown, self._added = True, 0
+        self._is_shown = True
+        self._added = 0
         return [*self.session.events, *self._add_waiting()]
 
     def add(self, box: Box) -> int | None:
@@ -201,7 +202,8 @@ class Vehicles(CountedVehicles):
 
     def reconfigure(self, configuration: Configuration) -> None:
         """Take new parameters between two images; no vehicle is lost by it."""
-        before, self._configuration = self._configuration.session, configuration
+        before = self._configuration.session
+        self._configuration = configuration
         if configuration.session.target != before.target:
             self._configured = configuration.session.target.box
         self.session.tracker.reconfigure(configuration.tracker)
@@ -230,8 +232,10 @@ class Vehicles(CountedVehicles):
     def _add_waiting(self) -> list[str]:
         """Follow the targets that waited for an image, and select the configured one."""
         problems: list[str] = []
-        boxes, self.waiting = self.waiting, []
-        configured, self._configured = self._configured, None
+        boxes = self.waiting
+        self.waiting = []
+        configured = self._configured
+        self._configured = None
         for box in boxes:
             self._try_to_add(box, problems)
         if configured is not None:

@@ -90,7 +90,8 @@ class WaitingImages(Generic[ImageT]):
         """
         for waiting in self._images:
             if waiting.stamp_ns == stamp_ns and not waiting.is_answered:
-                waiting.is_answered, waiting.detections = True, detections
+                waiting.is_answered = True
+                waiting.detections = detections
                 self.latency = self._clock() - waiting.came
                 return
         if stamp_ns in self._passed:

@@ -146,7 +146,8 @@ class Appearance:
         self._side = _CELLS * CELL
         target = np.minimum(learnt * zoom, _LONGEST_IN_PATCH * self._side)
         self._box = target * (size / learnt)
-        self._kernels, self.first_size = kernels, size
+        self._kernels = kernels
+        self.first_size = size
         self._filter = CorrelationFilter(_CELLS, target / CELL, penalty)
         self.usual_response = 0.0
         self._least_usual = 0.0
@@ -264,7 +265,9 @@ def searched_size(
     if not parameters.step or not parameters.gain:
         return size
     factor = (1 + parameters.step) ** direction
-    at_size, smaller, larger = peak(size), peak(size / factor), peak(size * factor)
+    at_size = peak(size)
+    smaller = peak(size / factor)
+    larger = peak(size * factor)
     bend = smaller + larger - 2 * at_size
     if bend < -1e-6 * at_size:
         steps = min(max(0.5 * (smaller - larger) / bend, -1.0), 1.0)

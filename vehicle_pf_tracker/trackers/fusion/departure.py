@@ -149,7 +149,8 @@ class Departure(NamedTuple):
     def _found_in(self, view: View) -> _Candidate | None:
         """Continue the candidate by the highest peak, or begin another one there."""
         row, column = np.unravel_index(int(view.response.argmax()), view.response.shape)
-        found, before = view.position(float(column), float(row)), self.candidate
+        found = view.position(float(column), float(row))
+        before = self.candidate
         if float(view.response[row, column]) < self.response:
             return None
         reach = _FARTHEST_STEP * self._extent

@@ -59,7 +59,8 @@ class Emergence(NamedTuple):
 
     def was_alone(self, earlier: Iterable[tuple[float, Array]]) -> bool:
         """Test whether nothing else moved before; `earlier` has ages in frames, and boxes."""
-        last, velocity = self.last.position, self.motion.velocity
+        last = self.last.position
+        velocity = self.motion.velocity
         return not any(len(self._near(boxes, last - velocity * ago)) for ago, boxes in earlier)
 
     @property
@@ -76,7 +77,8 @@ class Emergence(NamedTuple):
 
     def _near(self, boxes: Array, own: Array | None) -> Array:
         """Choose the boxes within reach that are not at the vehicle's `own` position."""
-        middles, areas = boxes.mean(axis=1), (boxes[:, 1] - boxes[:, 0]).prod(axis=1)
+        middles = boxes.mean(axis=1)
+        areas = (boxes[:, 1] - boxes[:, 0]).prod(axis=1)
         reach = KEPT_FRAMES * self._speed + 2 * self._extent
         counts = np.linalg.norm(middles - self.last.position, axis=1) < reach
         counts &= areas > _LEAST_MOVING * self._extent**2
@@ -86,7 +88,8 @@ class Emergence(NamedTuple):
 
     def observed(self, boxes: Array, elapsed: float) -> Emergence | None:
         """Take what moves now; None once anything else does."""
-        new, extent = self._replace(age=self.age + elapsed), self._extent
+        new = self._replace(age=self.age + elapsed)
+        extent = self._extent
         # At first the rest of the vehicle goes in.
         is_entering = self._speed * new.age < 2 * extent
         boxes = self._near(boxes, self.last.position if is_entering else None)
@@ -94,7 +97,8 @@ class Emergence(NamedTuple):
             return new._replace(sides=())
         if len(boxes) > 1 or self._area(boxes[0]) >= _LARGEST_AREA:
             return None
-        sides, before = boxes[0], self.sides
+        sides = boxes[0]
+        before = self.sides
         if not before and not new._can_begin(sides):
             return None
         if before and np.abs(sides - before[-1]).max() > extent:

@@ -19,7 +19,8 @@ def weigh_by_flow(state: State, seen: Observation, step: Step) -> State:
     if seen.was_hidden:  # what was kept of the frame before shows an occluder
         return state
     patch = step.memory.appearance.usual_patch(seen.view.patch)
-    points, surface = state.points, state.surface
+    points = state.points
+    surface = state.surface
     if seen.tasks.follows_size:
         points = points.tracked(patch, seen.position, state.size)
     if seen.tasks.trains_filter:

@@ -88,7 +88,8 @@ def _with_whole(state: State, whole: float, seen: Observation, step: Step) -> St
     before = state.whole
     if whole > 0.5:
         return state._replace(whole=before._replace(probability=whole))
-    growth, measured = before.growth, before.measured
+    growth = before.growth
+    measured = before.measured
     if before.is_likely:
         fitted = state.sightings.fit()
         growth = 0.0 if fitted is None else fitted[0].rate
@@ -113,7 +114,8 @@ def _enter_occlusion(state: State, step: Step) -> State:
         state = state._replace(verdict=Hidden(Outlines.begun(foreground, path, last)))
     size = last.size * path.scale_at(last.age)
     state = state._replace(size=size, whole=state.whole._replace(measured=size))
-    count, sigma = step.parameters.num_particles, step.hidden_velocity_sigma(state.sightings)
+    count = step.parameters.num_particles
+    sigma = step.hidden_velocity_sigma(state.sightings)
     particles = hidden_hypotheses(step.rng, path, last.age, count, state.extent, sigma)
     return state._replace(particles=particles)
 
@@ -134,7 +136,8 @@ def _is_sure(state: State) -> bool:
 
 def _centred(state: State, seen: Observation, step: Step) -> State:
     """Centre the hypotheses on the sighting; their velocities take on the displacement."""
-    particles, position = state.particles, seen.position
+    particles = state.particles
+    position = seen.position
     if seen.was_hidden:
         visible = particles.probability_visible
         particles = gathered(state, step, position, particles.mean_velocity, visible)
@@ -153,7 +156,8 @@ def _sized(state: State, seen: Observation, step: Step) -> State:
     Each pair of frames has one direction of the search, as in undisturbed frames one of two
     follows the size.
     """
-    options, size = step.parameters.size, state.size
+    options = step.parameters.size
+    size = state.size
     peak = partial(step.memory.appearance.response_at, step.frame, state.position)
     if options.step and not seen.was_hidden:
         stretch = believed_stretch(state.points.stretch, state.surface.share, size, options)
@@ -207,7 +211,9 @@ def learn(state: State, seen: Observation, step: Step) -> State:
 
 def _learn_usual(state: State, seen: Observation, step: Step) -> State:
     """Learn the usual share of the surface, the paint, and how strangers respond."""
-    surface, strangers, memory = state.surface, state.strangers, step.memory
+    surface = state.surface
+    strangers = state.strangers
+    memory = step.memory
     if _is_sure(state) and seen.response > CLEAR_RESPONSE:
         surface = surface.learnt_usual()
         if memory.foreground.is_known:  # only then is it asked for
@@ -244,8 +250,11 @@ def _learn_turn(state: State, vehicle: Branch, view: View, step: Step) -> None:
 
 def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
     """Train the filter on a whole or turning vehicle, the less the less surely it shows."""
-    memory, options, response = step.memory, step.parameters.filter, seen.response
-    surface, appearance = state.surface, memory.appearance
+    memory = step.memory
+    options = step.parameters.filter
+    response = seen.response
+    surface = state.surface
+    appearance = memory.appearance
     turns = surface.is_reliable and surface.share > _TURNING_SHARE and response < _TURNING_RESPONSE
     turns &= not memory.foreground.is_known  # outlines tell more of a turn, size included
     if not turns and (response <= EVEN or not state.whole.is_likely):

@@ -89,7 +89,8 @@ class Hypotheses(NamedTuple):
         cls, positions: Array, velocities: Array, growths: Array, visible: float
     ) -> Hypotheses:
         """Make hypotheses of equal weights."""
-        equal, count = np.full(len(positions), 1 / len(positions)), len(positions)
+        equal = np.full(len(positions), 1 / len(positions))
+        count = len(positions)
         return cls(positions, velocities, growths, np.full(count, visible), equal)
 
     @property
@@ -133,7 +134,8 @@ class Hypotheses(NamedTuple):
         across : float
             Share of the velocity's noise across the heading.
         """
-        root, count = np.sqrt(elapsed), len(self.positions)
+        root = np.sqrt(elapsed)
+        count = len(self.positions)
         faster = np.exp(2 * self.growths * elapsed)[:, np.newaxis]
         noise = along_heading(sample_normal(rng, count, 1.0), self.mean_velocity, across)
         velocities = self.velocities * faster + noise * (sigmas[1] * root)

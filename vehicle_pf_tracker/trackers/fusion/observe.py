@@ -72,7 +72,8 @@ def predict(state: State, step: Step) -> tuple[State, Prediction]:
 
 def _moved_with_camera(state: State, step: Step) -> State:
     """Move everything that is known with the background; its zoom never changes the size."""
-    memory, camera = step.memory, CameraMotion()
+    memory = step.memory
+    camera = CameraMotion()
     if step.parameters.motion.camera:
         small = small_grey(step.frame)
         camera = memory.camera.measure(small, state.box)
@@ -105,7 +106,8 @@ def _set_off(state: State, step: Step) -> State | None:
     move = state.points.first_motion(patch, state.size)
     if move is None:
         return None
-    particles, share = state.particles, _MEASURED_SPREAD
+    particles = state.particles
+    share = _MEASURED_SPREAD
     positions = state.position + share * (particles.positions - state.position)
     velocities = move + share * particles.velocities
     particles = particles._replace(positions=positions, velocities=velocities)
@@ -114,8 +116,11 @@ def _set_off(state: State, step: Step) -> State | None:
 
 def _predicted(state: State, step: Step) -> tuple[State, Array]:
     """Predict all hypotheses, and their mean (2,) in px; a hidden vehicle grows as they do."""
-    motion, elapsed = step.parameters.motion, step.elapsed
-    particles, size, extent = state.particles, state.size, state.extent
+    motion = step.parameters.motion
+    elapsed = step.elapsed
+    particles = state.particles
+    size = state.size
+    extent = state.extent
     visible = state.is_visible
     sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
     if not visible:
@@ -168,7 +173,8 @@ def _searched(
     state: State, climb: tuple[int, float], step: Step, scale: float
 ) -> tuple[View, Array, Array]:
     """Judge the hypotheses by the response to a vehicle `scale` times as large as believed."""
-    particles, appearance = state.particles, step.memory.appearance
+    particles = state.particles
+    appearance = step.memory.appearance
     wide = not state.is_visible and particles.spread > _WIDE_FROM * state.extent
     patch = appearance.patch(step.frame, particles.mean, scale * state.size, wide=wide)
     view = _viewed(patch, step)
@@ -190,7 +196,9 @@ def _observe_return(state: State, departure: Departure, step: Step) -> tuple[Sta
     patch = appearance.patch(step.frame, departure.position, departure.size, wide=True)
     view = _viewed(patch, step)
     departure = departure.observed(view, step.elapsed)
-    particles, position, response = state.particles, departure.position, 0.0
+    particles = state.particles
+    position = departure.position
+    response = 0.0
     if departure.returned is not None:
         position, velocity = departure.returned
         particles = gathered(state, step, position, velocity, 1 - DOUBT)
@@ -204,7 +212,8 @@ def gathered(
     state: State, step: Step, position: Array, velocity: Array, visible: float
 ) -> Hypotheses:  # fmt: skip
     """Draw hypotheses around a position, all of one velocity."""
-    count, motion = step.parameters.num_particles, step.parameters.motion
+    count = step.parameters.num_particles
+    motion = step.parameters.motion
     spread = step.rng.normal(size=(count, 2)) * motion.position_sigma * state.extent
     velocities = np.repeat(velocity[np.newaxis], count, axis=0)
     return Hypotheses.around(step.inside(position + spread), velocities, np.zeros(count), visible)

@@ -146,14 +146,18 @@ class Sightings(NamedTuple):
         last there: of 22 sequences .6 of it is right for 10 frames, and a fifth for 20
         (laboratory/notes/fusion_tried.md).
         """
-        ages, responses = self.rows[:, 0], self.rows[:, 5]
-        positions, sizes = self.rows[:, 1:3], self.rows[:, 3:5]
+        ages = self.rows[:, 0]
+        responses = self.rows[:, 5]
+        positions = self.rows[:, 1:3]
+        sizes = self.rows[:, 3:5]
         clear = responses >= CLEAR_RESPONSE
         if not clear.any():
             return None
         whole = restored_sightings(ages, positions, sizes, responses)
         positions, sizes = whole or (positions, sizes)
-        positions, sizes, ages = positions[clear], sizes[clear], ages[clear]
+        positions = positions[clear]
+        sizes = sizes[clear]
+        ages = ages[clear]
         last = Sighting(float(ages[-1]), positions[-1], sizes[-1], whole is not None)
         times = last.age - ages
         believed = responses[clear] >= _SIZE_RESPONSE
@@ -189,7 +193,8 @@ def fit_motion(
     total = weights.sum()
     divisors = np.maximum(1.0 - rates[:, np.newaxis] * times, _LEAST_DIVISOR)
     shares = times / divisors
-    centres, middle = shares @ weights / total, weights @ positions / total
+    centres = shares @ weights / total
+    middle = weights @ positions / total
     off = shares - centres[:, np.newaxis]
     # The small summand keeps simultaneous sightings solvable, with a velocity of zero.
     spread = off**2 @ weights + 1e-9

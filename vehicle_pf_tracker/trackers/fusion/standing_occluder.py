@@ -51,7 +51,10 @@ def restored_sightings(
     judged = np.flatnonzero(responses >= SIZE_RESPONSE)[-PROOF_FRAMES:]
     if len(judged) < PROOF_FRAMES or len(ages) < 2 * PROOF_FRAMES:
         return None
-    seen, positions, sizes, restored = sizes, positions.copy(), sizes.copy(), False
+    seen = sizes
+    positions = positions.copy()
+    sizes = sizes.copy()
+    restored = False
     for axis in (0, 1):
         ratio = seen[:, axis] / seen[:, 1 - axis]
         whole = float(np.quantile(ratio, _WHOLE_QUANTILE))

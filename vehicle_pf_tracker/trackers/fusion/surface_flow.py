@@ -139,7 +139,8 @@ def _moving_share(
     patch's px: a point p is mapped to p * map[0] + map[1] where a map has two rows, and the
     background's to p @ map[:2] + map[2], since the camera may roll.
     """
-    before, half = kept.patch, _SIDE / 2
+    before = kept.patch
+    half = _SIDE / 2
     to_frame = 1 / patch.zoom, patch.centre - half / patch.zoom
     to_box = np.array([to_frame[0] / size, (to_frame[1] - position) / size])  # (2, 2)
     grown = kept.size * before.zoom
@@ -174,7 +175,8 @@ def _flow(present: Patch, before: Patch) -> Flow:
 
 def _cells(patch: Patch, position: Array, size: Array) -> CellBlock:
     """Cells of the patch that lie in the box, at least one."""
-    middle, half = patch.to_patch(position), BOX_REACH * size * patch.zoom
+    middle = patch.to_patch(position)
+    half = BOX_REACH * size * patch.zoom
     last = patch.side // CELL - 1
     low = np.minimum(np.maximum(np.ceil((middle - half) / CELL - 0.5), 0), last)
     high = np.minimum(np.maximum(np.floor((middle + half) / CELL - 0.5), low), last)

@@ -129,7 +129,8 @@ class SurfacePoints(NamedTuple):
         end, found = _flow(previous, patch, start, guess, _FLOW)
         after = patch.to_frame(end.astype(np.float64) + 0.5)
         stretch = box_motion.shared_stretch(before[found], after[found], size)
-        positions, living = positions.copy(), alive.copy()
+        positions = positions.copy()
+        living = alive.copy()
         positions[alive], living[alive] = after, found
         living = box_motion.staying(places, (positions - position) / size, living, _STRAYED)
         return SurfacePoints(self.previous, _Points(places, positions, living, age + 1), stretch)

@@ -78,8 +78,11 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     def _scatter(self, centre: Position) -> Array:
         """Draw the first hypotheses; nothing else is known."""
-        box, motion, count = self.target.box, self.parameters.motion, self.parameters.num_particles
-        position, size = np.array(centre, float), np.array([box.width, box.height], float)
+        box = self.target.box
+        motion = self.parameters.motion
+        count = self.parameters.num_particles
+        position = np.array(centre, float)
+        size = np.array([box.width, box.height], float)
         spread = self._rng.normal(size=(2, count, 2)) * float(np.sqrt(size.prod()))
         velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
         positions = np.asarray(position + spread[0] * motion.position_sigma)
@@ -91,7 +94,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     def _learn(self) -> None:
         """Train a filter on the first frame's target."""
-        target, window = self.target, self.parameters.window
+        target = self.target
+        window = self.parameters.window
         size = np.array([target.box.width, target.box.height])
         learnt = np.array([window.width or size[0], window.height or size[1]])
         appearance = Appearance(self.kernels, size, learnt, self.parameters.filter.penalty)

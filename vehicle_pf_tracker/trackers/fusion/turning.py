@@ -108,7 +108,8 @@ class Branch(NamedTuple):
 
         Whether it has left the path is judged in each frame, also before the doubt.
         """
-        before, velocity = self.outline, self.velocity
+        before = self.outline
+        velocity = self.velocity
         after = foreground.outline(before.centre + velocity * elapsed, before.size, ago)
         if after is None or np.abs(np.log(after.size / before.size)).max() > _LARGEST_LOG_CHANGE:
             return None
@@ -191,7 +192,9 @@ class Outlines(NamedTuple):
         found = emergence and emergence.proven(elapsed)
         if emergence is None or found is None:
             return emergence, None
-        outline, velocity, margins = Outline(*found[0]), found[1], (np.zeros(2), np.zeros(2))
+        outline = Outline(*found[0])
+        velocity = found[1]
+        margins = (np.zeros(2), np.zeros(2))
         paint = difference(outline.size, outline.centre)
         emergence = emergence._replace(paint=(*emergence.paint, paint))
         if not emergence.has_paint:

@@ -59,7 +59,8 @@ def _departure(state: State, step: Step, *, left_image: bool) -> Departure | Non
     """Decide whether a hidden vehicle has left, by a border or by becoming too small."""
     if not isinstance(state.verdict, Hidden):
         return None
-    position, strangers = step.inside(state.particles.mean), state.strangers
+    position = step.inside(state.particles.mean)
+    strangers = state.strangers
     if left_image:
         return Departure.by_border(step.frame, position, state.size, strangers)
     if is_too_far(state.size, step.memory.appearance.first_size):

@@ -180,7 +180,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
 
     def reconfigure(self, parameters: ApfParameters) -> None:
         """Take new parameters; a new velocity window applies to the same history."""
-        before, settings = self._settings, parameters.effective()
+        before = self._settings
+        settings = parameters.effective()
         self._velocity = self._velocity.resized(settings.velocity.window, settings.drift_delay)
         if before.occlusion.raw_histogram != settings.occlusion.raw_histogram:
             # Blended histograms are the more similar ones: no raw one would reach their level.
@@ -205,7 +206,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self._settings
-        bits, window = settings.histogram_bits, self.window
+        bits = settings.histogram_bits
+        window = self.window
         regular = self._is_clear(settings)  # step 4
         if regular:
             ancestors = self._draw(self._cloud.weights, settings.resampling)
@@ -246,7 +248,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         return min(self._pi, self._pi_up) >= settings.occlusion.tau
 
     def _drift(self, settings: ApfParameters, count: int, elapsed: float) -> Array:
-        motion, velocity = settings.motion, self._velocity.settled
+        motion = settings.motion
+        velocity = self._velocity.settled
         if motion.drift_from_velocity:
             sigma_r = float(np.hypot(*velocity)) / RAYLEIGH_MEAN
         else:
@@ -267,7 +270,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         alpha = self._follow_rate(settings, to_first)
         blended = alpha * histogram + (1 - alpha) * self.reference.histogram
         if settings.occlusion.raw_histogram:
-            self._pi, self._pi_up = to_first, to_last
+            self._pi = to_first
+            self._pi_up = to_last
         else:
             self._pi = hellinger_similarity(blended, self._first)
             self._pi_up = hellinger_similarity(blended, self.reference.histogram)

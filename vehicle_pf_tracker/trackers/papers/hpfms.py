@@ -80,7 +80,8 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
 
     def spread(self) -> float:
         """Adaptive transition model: the Normal's sigma in px per nominal frame."""
-        settings, transition = self.parameters, self.parameters.transition
+        settings = self.parameters
+        transition = self.parameters.transition
         speed = float(np.hypot(*self._velocity.value))
         # After the start there is no clear level yet: the speed is unknown, and the spread wide.
         confidence = self._judge.confidence(self._evidence)

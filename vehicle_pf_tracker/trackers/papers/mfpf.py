@@ -160,7 +160,8 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         -------
         particles (N, 2), their weights before this frame's measurement (N,), and as `_move` does
         """
-        settings, cloud = self._settings, self._cloud
+        settings = self._settings
+        cloud = self._cloud
         dispersion = settings.dispersion
         # The first step is a search anyway.
         is_starting = 0 < self._age < dispersion.start
@@ -198,7 +199,8 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
 
     def _compare(self, frame: Frame, particles: Array) -> Array:
         """Bhattacharyya coefficients (F, N) of the particles with the references (eq. 8)."""
-        window, references = self.window, self.references
+        window = self.window
+        references = self.references
         return np.stack(
             [
                 self.kernels.similarity(feature, frame, particles, window, reference)

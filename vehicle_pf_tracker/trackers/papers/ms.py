@@ -64,7 +64,8 @@ class MsTracker(BaseTracker[MsParameters]):
         measured_by = self.window, self._reference, settings.histogram_bits
         # Steps 2 to 4; the bound ends the rare walks between two places of one weight.
         for _ in range(settings.iterations):
-            last, place = place, self.kernels.mean_shift(frame, place, *measured_by)
+            last = place
+            place = self.kernels.mean_shift(frame, place, *measured_by)
             if np.hypot(*(place - last)[0]) < settings.shortest_step:
                 break
         cloud = Cloud.uniform(place)

@@ -86,6 +86,7 @@ class PfclTracker(ColourTracker[PfclParameters]):
         return bhattacharyya_coefficient(histograms, self.line_reference)
 
     def _line_histograms(self, frame: Frame, positions: Array) -> Array:
-        settings, windows = self.parameters.lines, bounds(frame, positions, self.window)
+        settings = self.parameters.lines
+        windows = bounds(frame, positions, self.window)
         segments = find_lines(frame, windows, settings.edge_threshold, settings.shortest)
         return line_histograms(segments, windows, settings.bins)

@@ -265,13 +265,16 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
         self, particles: WeighedParticles
     ) -> tuple[npt.NDArray[np.bool_], Array, float, str]:
         """Replace low weights, or all but the best, by copies of the rest (steps 17, 20 and 22)."""
-        settings, weights = self._settings, particles.cloud.weights
+        settings = self._settings
+        weights = particles.cloud.weights
         if self._is_occluded(particles):  # step 15
             kept = np.arange(len(weights)) == weights.argmax()  # step 16
-            jitter, regime = settings.occlusion.jitter, "occlusion"
+            jitter = settings.occlusion.jitter
+            regime = "occlusion"
         else:
             kept = weights >= min(settings.low_weight / len(weights), weights.max())  # step 19
-            jitter, regime = settings.jitter, "regular"
+            jitter = settings.jitter
+            regime = "regular"
         return ~kept, np.where(kept, weights, 0.0), jitter, regime
 
     def _is_occluded(self, particles: WeighedParticles) -> bool:

@@ -140,7 +140,9 @@ def _sum(moves: Iterable[_Move]) -> _Move:
     # Summed again each time, since a running sum would gather rounding over months.
     x = y = elapsed = 0.0
     for move in moves:
-        x, y, elapsed = x + move[0], y + move[1], elapsed + move[2]
+        x = x + move[0]
+        y = y + move[1]
+        elapsed = elapsed + move[2]
     return x, y, elapsed
 
 

@@ -115,7 +115,8 @@ def assigned(rows: Integers, columns: Integers, costs: Array, odds: Array) -> Pa
     bounded = np.minimum(costs, GATE)
     first, second = linear_sum_assignment(bounded)
     good = bounded[first, second] < GATE
-    first, second = first[good], second[good]
+    first = first[good]
+    second = second[good]
     return Pairs(rows[first], columns[second], odds[first, second])
 
 
@@ -150,7 +151,8 @@ def pair_costs(
     """Cost of each pair of a vehicle and one of the detections at `columns`, and its log odds."""
     gaussians = tracks.drives.gaussians
     spread = np.sqrt(gaussians.edge_variances + deviations(gaussians.edges, noise) ** 2)
-    predicted, detected = clipped(gaussians.edges, size), candidates.edges[columns]
+    predicted = clipped(gaussians.edges, size)
+    detected = candidates.edges[columns]
     costs = edge_costs(predicted, spread, detected)
     peaks = -np.log(spread * math.sqrt(2 * math.pi)).sum(axis=1)
     odds = peaks[:, np.newaxis] - costs / 2 - candidates.false[columns]
@@ -189,8 +191,10 @@ def birth_odds(
         Standard deviation of an edge, fraction of the size.
     """
     gaussians = tracks.drives.gaussians
-    predicted, detected = gaussians.edges, candidates.edges[columns]
-    spread, reach = deviations(detected, noise), np.sqrt(gaussians.edge_variances)
+    predicted = gaussians.edges
+    detected = candidates.edges[columns]
+    spread = deviations(detected, noise)
+    reach = np.sqrt(gaussians.edge_variances)
     cut, also_cut = (cut_edges(edges, size, noise) for edges in (predicted, detected))
     # Edge by edge, as most pairs are far apart by the first one: only the others cost something.
     reachable = math.sqrt(GATE)
@@ -202,7 +206,8 @@ def birth_odds(
         far = np.abs(detected[pairs, edge] - predicted[rows, edge])
         near = far < reachable * (reach[rows, edge] + spread[pairs, edge])
         near |= cut[rows, edge] & also_cut[pairs, edge]
-        rows, pairs = rows[near], pairs[near]
+        rows = rows[near]
+        pairs = pairs[near]
     sides = np.tile(sides_of(detected), 2)
     unknown = (SIZES * sides[pairs]) ** 2 / (2 * np.pi)
     both_cut = cut[rows] & also_cut[pairs]

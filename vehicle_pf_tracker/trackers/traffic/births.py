@@ -81,7 +81,9 @@ def first_gaussians(
     size : (int, int)
         Width and height of the image.
     """
-    cut, spread, whole = cut_edges(edges, size, noise), deviations(edges, noise), edges.copy()
+    cut = cut_edges(edges, size, noise)
+    spread = deviations(edges, noise)
+    whole = edges.copy()
     width, height = (edges[:, 2:] - edges[:, :2]).T
     _complete(whole, spread, cut, (Edge.TOP, Edge.BOTTOM), height, USUAL_ASPECT * width)
     _complete(whole, spread, cut, (Edge.LEFT, Edge.RIGHT), width, height / USUAL_ASPECT)

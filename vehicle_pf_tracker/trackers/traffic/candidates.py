@@ -73,7 +73,8 @@ class Candidates:
 
     def samples(self, indices: Integers) -> list[Sample]:
         """Scores and places of those at `indices`, for learning what becomes of them."""
-        scores, places = self.scores[indices].tolist(), self.places[indices].tolist()
+        scores = self.scores[indices].tolist()
+        places = self.places[indices].tolist()
         return [Sample(*each) for each in zip(scores, places, strict=True)]
 
 
@@ -91,7 +92,8 @@ def weighed(
     size : (int, int)
         Width and height of the image.
     """
-    boxes, scores = detections.boxes, detections.scores
+    boxes = detections.boxes
+    scores = detections.scores
     edges = np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
     places = places_of(edges, size)
     clutter = evidence.clutter(places)

@@ -111,7 +111,8 @@ def note_short(
 
     The border of the image cuts the edges (N, 4) that are `unknown`.
     """
-    predicted, extents = tracks.edges, tracks.drives.extents
+    predicted = tracks.edges
+    extents = tracks.drives.extents
     # What the border cuts is smaller by that, and no part of it will come back.
     asked = ~unknown.any(axis=1)
     is_short = (sides_of(edges) < _WHOLE * _latest(tracks.drives, edges)).any(axis=1)
@@ -147,7 +148,8 @@ def which_edges(
     The border of the image cuts those (N, 4) that are `unknown`.
     """
     drives = tracks.drives
-    predicted, own = drives.gaussians.edges, sides_of(drives.gaussians.edges)
+    predicted = drives.gaussians.edges
+    own = sides_of(drives.gaussians.edges)
     spread = deviations(predicted, noise)
     normal = (edges - predicted) * INWARD / np.sqrt(drives.gaussians.edge_variances + spread**2)
     opposite = normal[:, OPPOSITE]
@@ -190,7 +192,8 @@ def _recede(tracks: Tracks, edges: Array, noise: float) -> Bools:
 
 def corrected(drives: Drives, edges: Array, verdict: Verdict, noise: float) -> Drives:
     """Apply a verdict: measure the edges (N, 4) in px that tell where the vehicles end."""
-    predicted, latest = drives.gaussians.edges, _latest(drives, edges)
+    predicted = drives.gaussians.edges
+    latest = _latest(drives, edges)
     spread = deviations(predicted, noise)
     residuals = np.where(verdict.left_out, 0.0, (predicted - edges) * INWARD)
     drives = _doubted(drives, residuals, spread, verdict.recede)
@@ -226,7 +229,8 @@ def _doubted(drives: Drives, residuals: Array, spread: Array, recede: Bools) -> 
     recede : (N,) array
         True where the vehicle drives away.
     """
-    edges, variances = drives.gaussians.edges, drives.gaussians.edge_variances
+    edges = drives.gaussians.edges
+    variances = drives.gaussians.edge_variances
     alone = (intersections(edges[:, np.newaxis], edges) > 0).sum(axis=1) == 1
     normal = residuals / np.sqrt(variances + spread**2)
     drift = drives.drift + _FOLLOWED * (normal - drives.drift)

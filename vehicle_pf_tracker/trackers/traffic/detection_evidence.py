@@ -126,7 +126,8 @@ class DetectionEvidence:
 
     def gains(self, scores: Array, claims: Array) -> Array:
         """Logarithm of how much more often vehicles have scores (N,) than false alarms have."""
-        genuine, total = self._sums[-1], len(self._sorted)
+        genuine = self._sums[-1]
+        total = len(self._sorted)
         usual = np.log((genuine + _PRIOR) / (total - genuine + _PRIOR))
         return np.asarray(self._by_score(scores, claims) - usual)
 
@@ -151,5 +152,6 @@ class DetectionEvidence:
         low = np.maximum(middle - _NEIGHBOURS // 2, 0)
         high = np.minimum(middle + _NEIGHBOURS // 2, len(self._sorted))
         genuine = self._sums[high] - self._sums[low]
-        yes, no = 2 * _PRIOR * claims, 2 * _PRIOR * (1 - claims)
+        yes = 2 * _PRIOR * claims
+        no = 2 * _PRIOR * (1 - claims)
         return np.asarray(np.log((genuine + yes) / (high - low - genuine + no)))

@@ -105,7 +105,8 @@ def believed(
     """
     edges = candidates.edges[columns]
     tracks = _seen(note_found(tracks, experience), edges)
-    beliefs, log_odds = tracks.beliefs, candidates.log_odds[columns]
+    beliefs = tracks.beliefs
+    log_odds = candidates.log_odds[columns]
     gains = np.where(tracks.confirmed, log_odds, candidates.gains[columns])
     gains = np.clip(gains, -_SCORE_DOUBT, _MOST)
     ways = beliefs.ways.added(edges)
@@ -148,7 +149,8 @@ def _seen(tracks: Tracks, edges: Array) -> Tracks:
 
 def note_found(tracks: Tracks, experience: Experience) -> Tracks:
     """Learn which of tracks that are detected now had vanished in plain sight."""
-    vanished, extents = tracks.sights.absences.vanished, tracks.drives.extents
+    vanished = tracks.sights.absences.vanished
+    extents = tracks.drives.extents
     rows = np.flatnonzero(vanished != NOWHERE)
     if not len(rows):
         return tracks
@@ -172,7 +174,8 @@ def drives(tracks: Tracks, displacement: float) -> Bools:
     displacement : float
         Way that is asked for, in widths.
     """
-    ways, doubt = tracks.beliefs.ways, tracks.beliefs.doubt
+    ways = tracks.beliefs.ways
+    doubt = tracks.beliefs.doubt
     evidence = ways.evidence()
     # False alarms side by side look like a short drive.
     doubt = np.where(evidence < _SURELY_DRIVES, doubt, 0.0)
@@ -189,7 +192,8 @@ def _taught(
     experience: Experience,
 ) -> Tracks:
     """Learn from the detections of what has driven, or stands for long."""
-    beliefs, evidence = tracks.beliefs, experience.detections
+    beliefs = tracks.beliefs
+    evidence = experience.detections
     settled = beliefs.has_driven | tracks.names.given
     moves = tracks.names.given | (tracks.drives.gaussians.speed_ratio > _MOVES)
     stands = ~tracks.confirmed & (lengths < _STANDS)
@@ -212,9 +216,13 @@ def _taught(
 
 def doubt(state: State, step: Step) -> State:
     """Take off evidence from tracks that a detector has missed in plain sight."""
-    tracks, elapsed = state.tracks, step.elapsed
-    sights, absences = tracks.sights, tracks.sights.absences
-    confirmed, detected, in_sight = tracks.confirmed, tracks.detected, tracks.in_sight
+    tracks = state.tracks
+    elapsed = step.elapsed
+    sights = tracks.sights
+    absences = tracks.sights.absences
+    confirmed = tracks.confirmed
+    detected = tracks.detected
+    in_sight = tracks.in_sight
     is_seen = absences.unseen < _SEEN_WITHIN
     watched = confirmed & is_seen & (absences.undetected <= _BLIND_FOR) & in_sight
     if not (confirmed & detected).any() and watched.sum() >= _BLIND_FROM:
@@ -238,7 +246,8 @@ def doubt(state: State, step: Step) -> State:
 
 def end(state: State, step: Step) -> State:
     """End tracks that are no vehicles, or have left; the horizon is learnt from the others."""
-    tracks, experience = state.tracks, state.experience
+    tracks = state.tracks
+    experience = state.experience
     inside = inside_image(tracks.edges, step.size)
     goes_on = _goes_on(tracks, inside, experience, step)
     gone = _gone(tracks, inside, goes_on, experience)
@@ -257,7 +266,8 @@ def end(state: State, step: Step) -> State:
 
 def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) -> Bools:
     """Find tracks that go on, by the shares (N,) of their boxes in the image."""
-    absences, log_odds = tracks.sights.absences, tracks.beliefs.log_odds
+    absences = tracks.sights.absences
+    log_odds = tracks.beliefs.log_odds
     parameters = step.parameters
     waits = absences.undetected <= _FEW / experience.rate.share
     tentative = waits & (log_odds >= -CERTAIN) & (inside > 0)
@@ -269,7 +279,8 @@ def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) 
 
 def _gone(tracks: Tracks, inside: Array, goes_on: Bools, experience: Experience) -> Bools:
     """Find vehicles that vanished where most do not come back; learn from those that end."""
-    vanished, shortened = tracks.sights.absences.vanished, tracks.drives.extents.shortened
+    vanished = tracks.sights.absences.vanished
+    shortened = tracks.drives.extents.shortened
     ends = tracks.confirmed & ~goes_on & (inside > _LEFT)
     gone = np.zeros(len(tracks), np.bool_)
     for row in np.flatnonzero((vanished != NOWHERE) | ends).tolist():
@@ -289,7 +300,8 @@ def _note_end(returns: Returns, place: int) -> None:
 
 def _with_lost(tracks: Tracks, gone: Bools, step: Step) -> Tracks:
     """Say of which vehicles nothing is predicted any more."""
-    sights, absences = tracks.sights, tracks.sights.absences
+    sights = tracks.sights
+    absences = tracks.sights.absences
     is_old = absences.unseen * step.period > step.parameters.lost_after
     has_left = (sights.inside < _LEAVES) & (absences.unseen >= _SEEN_WITHIN)
     lost = is_old | has_left | gone | (tracks.beliefs.log_odds < 0)

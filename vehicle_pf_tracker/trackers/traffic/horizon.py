@@ -60,7 +60,8 @@ class Growths(Rows):
 
     def added(self, edges: Array) -> Growths:
         """Add a detection of each (N, 4) that shows the whole vehicle."""
-        width, bottom = edges[:, 2] - edges[:, 0], edges[:, 3]
+        width = edges[:, 2] - edges[:, 0]
+        bottom = edges[:, 3]
         once = np.ones(len(edges))
         terms = columns(once, bottom, bottom * bottom, width, bottom * width)
         return Growths(self.sums + terms)

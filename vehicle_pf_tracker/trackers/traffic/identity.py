@@ -46,7 +46,8 @@ def named(state: State, proven: Bools, *, returning: bool) -> State:
 
     One that was hidden before keeps its number; a second box of another vehicle gets none.
     """
-    tracks, kept = state.tracks, np.ones(len(proven), np.bool_)
+    tracks = state.tracks
+    kept = np.ones(len(proven), np.bool_)
     identity = state.last_identity
     rows = np.flatnonzero(proven)
     # Of those that are proven in the same image the one that was seen first gets the lower number.
@@ -64,9 +65,11 @@ def named(state: State, proven: Bools, *, returning: bool) -> State:
 
 def given(state: State) -> State:
     """Give the last track its number by hand, without a doubt."""
-    row, identity = len(state.tracks) - 1, state.last_identity + 1
+    row = len(state.tracks) - 1
+    identity = state.last_identity + 1
     tracks = _numbered(state.tracks, row, identity)
-    names, log_odds = tracks.names, tracks.beliefs.log_odds.copy()
+    names = tracks.names
+    log_odds = tracks.beliefs.log_odds.copy()
     by_hand = names.given.copy()
     log_odds[row], by_hand[row] = CERTAIN, True
     names = replace(names, given=by_hand)
@@ -83,7 +86,8 @@ def _numbered(tracks: Tracks, row: int, identity: int) -> Tracks:
 def merged(state: State) -> State:
     """Merge vehicles that were born a second time with the ones that they are."""
     tracks = state.tracks
-    age, undetected = tracks.beliefs.ways.age, tracks.sights.absences.undetected
+    age = tracks.beliefs.ways.age
+    undetected = tracks.sights.absences.undetected
     missed = tracks.confirmed & ~tracks.detected
     if not missed.any():
         return state
@@ -104,7 +108,8 @@ def is_double(tracks: Tracks, row: int) -> bool:
     and without its shadow. Two vehicles side by side soon show more of each.
     """
     detections = tracks.sights.looks.detection
-    boxes, own = detections[tracks.confirmed & tracks.detected], detections[row]
+    boxes = detections[tracks.confirmed & tracks.detected]
+    own = detections[row]
     smaller = np.minimum(areas(boxes), areas(own))
     return bool((intersections(own, boxes) > _SHARED * smaller).any())
 
@@ -143,7 +148,8 @@ def _apart(new: Array, old: Array) -> tuple[Array, Array]:
 
 def resumed(tracks: Tracks, hidden: int, row: int, experience: Experience) -> Tracks:
     """Let the vehicle at `hidden` go on as the new track at `row` that it turned out to be."""
-    at, new = np.array([hidden]), tracks.take(np.array([row]))
+    at = np.array([hidden])
+    new = tracks.take(np.array([row]))
     old = note_found(tracks.take(at), experience)
     votes = added_votes(old.names.votes[0], new.names.votes[0])
     names = replace(old.names, joined=new.names.serial, votes=objects([votes]))
@@ -153,7 +159,8 @@ def resumed(tracks: Tracks, hidden: int, row: int, experience: Experience) -> Tr
         partial=new.drives.extents.partial,
         short=new.drives.extents.short,
     )
-    gaussians, before = new.drives.gaussians, new.drives.before
+    gaussians = new.drives.gaussians
+    before = new.drives.before
     drives = replace(old.drives, gaussians=gaussians, before=before, extents=extents)
     beliefs = replace(
         old.beliefs,

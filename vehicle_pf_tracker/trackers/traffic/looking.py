@@ -114,7 +114,8 @@ def _take(look: Look, pairs: Pairs) -> Look:
         return look
     free = free.copy()
     free[columns] = False
-    tracks, edges = state.tracks.take(rows), candidates.edges[columns]
+    tracks = state.tracks.take(rows)
+    edges = candidates.edges[columns]
     tracks = replace(tracks, drives=divided(tracks.drives, edges, candidates.edges))
     uncoverings = state.experience.uncoverings
     tracks, whole = correct(tracks, edges, step.size, step.edge_noise, uncoverings)
@@ -153,7 +154,8 @@ def _shown(
 def _without_parts(look: Look, *, either: bool = False) -> Look:
     """Drop free detections inside vehicles, bonnets or second boxes, or `either` in the other."""
     state, free, candidates, _ = look
-    tracks, columns = state.tracks, np.flatnonzero(free)
+    tracks = state.tracks
+    columns = np.flatnonzero(free)
     boxes = tracks.edges[tracks.confirmed & (either | tracks.detected)]
     if not (len(columns) and len(boxes)):
         return look

@@ -34,7 +34,8 @@ def hide(state: State, step: Step) -> State:
     order = nearest_first(state.tracks, step.road)
     is_sorted = (order == np.arange(len(order))).all()
     tracks = state.tracks if is_sorted else state.tracks.take(order)
-    edges, sights = tracks.edges, tracks.sights
+    edges = tracks.edges
+    sights = tracks.sights
     hiding = np.flatnonzero(_hides(tracks) & step.parameters.occlusions)
     common = intersections(edges[:, np.newaxis], edges[hiding]) / areas(edges)[:, np.newaxis]
     common[np.arange(len(tracks))[:, np.newaxis] <= hiding] = 0.0

@@ -55,7 +55,8 @@ def divided(drives: Drives, edges: Array, others: Array) -> Drives:
         Edges of all detections.
     """
     predicted = drives.gaussians.edges
-    each, own = predicted[:, np.newaxis], edges[:, np.newaxis]
+    each = predicted[:, np.newaxis]
+    own = edges[:, np.newaxis]
     beside = (
         (intersections(each, others) > _TOUCHES * areas(each))
         & (intersections(own, others) < _TOUCHES * areas(others))
@@ -71,7 +72,8 @@ def divided(drives: Drives, edges: Array, others: Array) -> Drives:
 def _filled(drives: Drives, rows: Integers, edges: Array) -> Drives:
     """Be as large as boxes (K, 4), and there, of those at `rows` (K,)."""
     extents = drives.extents
-    crowded, shown = extents.crowded.copy(), extents.shown.copy()
+    crowded = extents.crowded.copy()
+    shown = extents.shown.copy()
     crowded[rows], shown[rows] = 0, 1.0
     resized = drives.gaussians.take(rows).resized(edges)
     return replace(
@@ -108,7 +110,8 @@ def outgrown(tracks: Tracks, edges: Array) -> tuple[Tracks, Integers]:
     alone = (common > 0).sum(axis=1, keepdims=True) == 1
     around = alone & (common > _INSIDE * areas(boxes))
     waits = (~tracks.detected & tracks.in_sight)[confirmed]
-    drives, matches = tracks.drives, tracks.beliefs.ways.matches
+    drives = tracks.drives
+    matches = tracks.beliefs.ways.matches
     rows: list[int] = []
     for index, column in np.argwhere(around & waits).tolist():
         row = int(confirmed[column])

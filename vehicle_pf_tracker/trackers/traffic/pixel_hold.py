@@ -53,7 +53,8 @@ _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 
 def hold(state: State, step: Step) -> State:
     """Measure vehicles that were not detected by their pixels; and keep the frame for the next."""
-    tracks, absences = state.tracks, state.tracks.sights.absences
+    tracks = state.tracks
+    absences = state.tracks.sights.absences
     part = np.minimum(tracks.sights.visible, tracks.sights.inside)
     held = tracks.confirmed & ~tracks.detected & (absences.unseen < _HELD_FOR)
     held &= part > _HELD_SHARE
@@ -96,7 +97,8 @@ def measure(tracks: Tracks, before: Grey, step: Step) -> tuple[Integers, Array, 
     """
     if before.shape != step.grey.shape:
         return np.zeros(0, np.intp), NOTHING, NOTHING
-    old, new = tracks.drives.before, tracks.edges
+    old = tracks.drives.before
+    new = tracks.edges
     covers = tracks.sights.covers
     starts = [_uncovered(_points(edges), cover) for edges, cover in zip(old, covers, strict=True)]
     guesses = [_carried(*each) for each in zip(starts, old, new, strict=True)]
@@ -104,14 +106,17 @@ def measure(tracks: Tracks, before: Grey, step: Step) -> tuple[Integers, Array, 
     ends = np.split(moved, np.cumsum([len(one) for one in starts])[:-1])
     gaussians = tracks.drives.gaussians
     places = np.sqrt(gaussians.covariance[:, [X, V], [X, V]]) + PIXEL_NOISE
-    rows, edges, spreads = [], [], []
+    rows = []
+    edges = []
+    spreads = []
     for row, (start, end) in enumerate(zip(starts, ends, strict=True)):
         shown = _shown(start, end, old[row], new[row], places[row], step.normals)
         if shown is not None:
             rows.append(row)
             edges.append(shown[0])
             spreads.append(shown[1])
-    kept, boxes = np.array(rows, np.intp), np.array(edges).reshape(-1, 4)
+    kept = np.array(rows, np.intp)
+    boxes = np.array(edges).reshape(-1, 4)
     alike = _alike(tracks.sights.take(kept), boxes, step)
     return kept[alike], boxes[alike], np.array(spreads).reshape(-1, 4)[alike]
 
@@ -143,7 +148,8 @@ def _shown(
     alive = found & ~_standing(old, new, before, predicted)
     if alive.sum() < max(_GRID, _MOST_ALIVE * found.sum()):
         return None
-    centre, size = (predicted[:2] + predicted[2:]) / 2, predicted[2:] - predicted[:2]
+    centre = (predicted[:2] + predicted[2:]) / 2
+    size = predicted[2:] - predicted[:2]
     relative = (old[alive] - (before[:2] + before[2:]) / 2) * _growth(before, predicted)
     observed = new[alive] - centre
     particles = _particles(place, observed - relative, normals)
@@ -190,7 +196,8 @@ def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
     if not len(old):
         return np.empty((0, 2))
     # Pixel 0 is centred at 0.5 here and at 0 in OpenCV.
-    start, first = (old - 0.5).astype(np.float32), (guess - 0.5).astype(np.float32)
+    start = (old - 0.5).astype(np.float32)
+    first = (guess - 0.5).astype(np.float32)
     new, found, error = _FLOW.follow_and_return(before, present, start, first)
     moved = new.astype(np.float64) + 0.5
     moved[~found | (np.abs(error).max(axis=1) > PIXEL_NOISE)] = np.nan
@@ -200,7 +207,8 @@ def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
 def _points(edges: Array) -> Array:
     places = ((np.arange(_GRID) + 0.5) / _GRID - 0.5) * (1 - 2 * RIM)
     x, y = np.meshgrid(places, places)
-    middle, size = (edges[:2] + edges[2:]) / 2, edges[2:] - edges[:2]
+    middle = (edges[:2] + edges[2:]) / 2
+    size = edges[2:] - edges[:2]
     return np.asarray(np.column_stack([x.ravel(), y.ravel()]) * size + middle)
 
 

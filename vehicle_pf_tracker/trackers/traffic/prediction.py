@@ -34,7 +34,9 @@ def drive_on(state: State, step: Step) -> State:
 
 def driven(tracks: Tracks, horizon: float, step: Step) -> Tracks:
     """Predict tracks below a horizon (row in px), and let time pass for them."""
-    elapsed, drives, sights = step.elapsed, tracks.drives, tracks.sights
+    elapsed = step.elapsed
+    drives = tracks.drives
+    sights = tracks.sights
     drives = replace(
         drives,
         gaussians=drives.gaussians.under(horizon).driven(elapsed, step.motion),

@@ -45,7 +45,8 @@ def learn_colours(
 
 def learn_similarity(state: State, step: Step) -> State:
     """Learn the usual similarity of each detected vehicle's colours to those learnt."""
-    tracks, sights = state.tracks, state.tracks.sights
+    tracks = state.tracks
+    sights = state.tracks.sights
     rows = np.flatnonzero(tracks.confirmed & tracks.detected)
     now = step.colours.histograms(tracks.edges[rows], sights.covers[rows].tolist())
     usual = sights.looks.usual_similarity.copy()

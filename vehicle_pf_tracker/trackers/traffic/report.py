@@ -29,7 +29,8 @@ _PLACED = {
 def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
     """Estimates of all tracks, by identity, tentative ones last."""
     names = tracks.names
-    drives, sights = tracks.drives, tracks.sights
+    drives = tracks.drives
+    sights = tracks.sights
     low, high = np.split(drives.gaussians.edges + drives.lag, 2, axis=1)
     modes = _modes(tracks)
     rows = zip(

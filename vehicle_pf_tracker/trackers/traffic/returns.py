@@ -54,14 +54,16 @@ class DetectionRate:
     """Share of the vehicles in plain sight that the detector finds."""
 
     def __init__(self) -> None:
-        self._detected, self._asked = _FIRST_ASKED, 2 * _FIRST_ASKED
+        self._detected = _FIRST_ASKED
+        self._asked = 2 * _FIRST_ASKED
 
     def learn(self, asked: Bools, detected: Bools) -> Array:
         """Add the vehicles (N,) that it was asked for, one by one; the share (N,) after each."""
         found = self._detected + np.cumsum(asked & detected)
         total = self._asked + np.cumsum(asked)
         if len(asked):
-            self._detected, self._asked = float(found[-1]), float(total[-1])
+            self._detected = float(found[-1])
+            self._asked = float(total[-1])
         return np.asarray(found / total)
 
     @property

@@ -39,7 +39,8 @@ class Rows:
         """All, of which those at `rows` are others."""
         replaced = []
         for name in self.__dataclass_fields__:
-            value, new = getattr(self, name), getattr(others, name)
+            value = getattr(self, name)
+            new = getattr(others, name)
             if type(value) is np.ndarray:
                 changed = value.copy()
                 changed[rows] = new
@@ -52,7 +53,8 @@ class Rows:
         """All, and others after them."""
         joined = []
         for name in self.__dataclass_fields__:
-            value, new = getattr(self, name), getattr(others, name)
+            value = getattr(self, name)
+            new = getattr(others, name)
             is_array = type(value) is np.ndarray
             joined.append(np.concatenate([value, new]) if is_array else value.extended(new))
         return type(self)(*joined)

@@ -196,14 +196,17 @@ class TrafficSession(StreamSession[TrafficTracker]):
 
     def _restart(self) -> None:
         self.tracker.reset()
-        self.estimates, self.successors, self._given = (), {}, {}
+        self.estimates = ()
+        self.successors = {}
+        self._given = {}
         self.restarts += 1
         if self._make_detector is not None:
             self.detector = self._make_detector()
 
     def _start_anew(self) -> None:
         """Start anew with the vehicles given by hand, where each was in the last estimates."""
-        given, successors = self._given, {}
+        given = self._given
+        successors = {}
         self._restart()
         for identity, (box, label) in given.items():
             with suppress(InputError):  # of a box that has left the image

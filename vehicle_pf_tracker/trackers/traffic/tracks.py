@@ -237,8 +237,11 @@ class Tracks(Rows):
     def begun(cls, gaussians: Gaussians, serial: Integers, detections: Array) -> Tracks:
         """Begin tracks of which nothing is known but where they are."""
         count = len(gaussians)
-        numbers, none = np.zeros(count, np.intp), np.full(count, NOWHERE)
-        zero, no, edges = np.zeros(count), np.zeros(count, np.bool_), np.zeros((count, 4))
+        numbers = np.zeros(count, np.intp)
+        none = np.full(count, NOWHERE)
+        zero = np.zeros(count)
+        no = np.zeros(count, np.bool_)
+        edges = np.zeros((count, 4))
         extents = Extents(np.zeros((count, 2)), numbers, numbers, none, numbers)
         looks = Looks(np.zeros((count, BINS)), np.ones(count), detections, np.full(count, np.nan))
         absences = Absences(zero, zero, numbers, none, no)

@@ -110,7 +110,8 @@ class Gaussians(Rows):
     @classmethod
     def of(cls, mean: Array, covariance: Array, horizon: Array) -> Gaussians:
         """Make them, and derive the edges."""
-        half, bottom = mean[:, W] / 2, mean[:, V] + horizon
+        half = mean[:, W] / 2
+        bottom = mean[:, V] + horizon
         edges = columns(mean[:, X] - half, bottom - mean[:, H], mean[:, X] + half, bottom)
         return cls(mean, covariance, horizon, edges)
 
@@ -150,7 +151,8 @@ class Gaussians(Rows):
     def edge_variances(self) -> Array:
         """Variances of the edges, (N, 4) in px²."""
         c = self.covariance
-        by_width, half = 0.5 * c[:, W, X], 0.5 * c[:, W, W]
+        by_width = 0.5 * c[:, W, X]
+        half = 0.5 * c[:, W, W]
         left = c[:, X, X] - by_width - 0.5 * (c[:, X, W] - half)
         right = c[:, X, X] + by_width + 0.5 * (c[:, X, W] + half)
         top = c[:, V, V] - c[:, H, V] - (c[:, V, H] - c[:, H, H])
@@ -179,8 +181,10 @@ class Gaussians(Rows):
     @property
     def speed_ratio(self) -> Array:
         """Distance (N,) of the velocity on the road from zero, in standard deviations."""
-        across, along = self.mean[:, ACROSS], self.mean[:, ALONG]
-        first, second = self.covariance[:, ACROSS, ACROSS], self.covariance[:, ALONG, ALONG]
+        across = self.mean[:, ACROSS]
+        along = self.mean[:, ALONG]
+        first = self.covariance[:, ACROSS, ACROSS]
+        second = self.covariance[:, ALONG, ALONG]
         both = self.covariance[:, ACROSS, ALONG]
         squared = across**2 * second - 2 * across * along * both + along**2 * first
         determinant = np.maximum(first * second - both**2, _TINY)
@@ -192,7 +196,8 @@ class Gaussians(Rows):
         divisor = 1 + v * along * elapsed
         bounded = np.clip(divisor, 1 / _MOST_GROWTH, _MOST_GROWTH)
         growth, free = 1 / bounded, bounded == divisor  # else the growth depends on nothing
-        by_v, by_along = free * -along * elapsed * growth**2, free * -v * elapsed * growth**2
+        by_v = free * -along * elapsed * growth**2
+        by_along = free * -v * elapsed * growth**2
         moved = x + v * across * elapsed
         step = np.zeros_like(self.covariance)
         step[:, ACROSS, ACROSS] = step[:, ALONG, ALONG] = 1.0
@@ -239,7 +244,8 @@ class Gaussians(Rows):
 
     def measured(self, edges: Array, deviations: Array) -> Gaussians:
         """Take measured edges (N, 4) in px of these standard deviations; infinite: not seen."""
-        mean, covariance = self.mean, self.covariance
+        mean = self.mean
+        covariance = self.covariance
         for edge in Edge:
             # Edge by edge, as noises of edges are independent: no matrix has to be inverted.
             spread = _along(covariance, edge)

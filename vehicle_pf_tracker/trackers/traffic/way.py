@@ -58,7 +58,8 @@ class Ways(Rows):
     @classmethod
     def unknown(cls, count: int) -> Ways:
         """Ways before the first detection."""
-        number, place = np.zeros(count, np.intp), np.zeros((count, 2))
+        number = np.zeros(count, np.intp)
+        place = np.zeros((count, 2))
         return cls(np.zeros(count), place, np.zeros((count, 8)), number, place, number)
 
     @property
@@ -73,9 +74,11 @@ class Ways(Rows):
     def added(self, edges: Array) -> Ways:
         """Add a detection of each now, by its edges (N, 4) in px."""
         x, y = ((edges[:, :2] + edges[:, 2:]) / 2).T
-        time, once = self.age, np.ones(len(self))
+        time = self.age
+        once = np.ones(len(self))
         terms = columns(once, time, time * time, x, y, time * x, time * y, x * x + y * y)
-        here, is_first = columns(x, y), self.matches == 0
+        here = columns(x, y)
+        is_first = self.matches == 0
         first = np.where(is_first[:, np.newaxis], here, self.first)
         away = np.hypot(*(here - self.halt).T)
         stays = (away < _STANDS_WITHIN * (edges[:, 2] - edges[:, 0])) & ~is_first
@@ -100,7 +103,8 @@ class Ways(Rows):
         known = np.maximum(count, 1.0)
         scatter = places - (x * x + y * y) / known
         duration = squared - time * time / known
-        along_x, along_y = time_x - time * x / known, time_y - time * y / known
+        along_x = time_x - time * x / known
+        along_y = time_y - time * y / known
         is_told = (scatter > 0) & (duration > 0)
         # Share of their scatter that the drive explains.
         explained = (along_x**2 + along_y**2) / np.where(is_told, duration, 1.0)
