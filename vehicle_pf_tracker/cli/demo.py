@@ -51,9 +51,17 @@ def run(request: Request) -> int:
     else:
         with _node():
             _verb(
-                "replay", recording, "--lockstep", "--node", "fusion_tracker",
-                "--timeout", _PATIENCE, "-o", ros, *replaced,
-            )  # fmt: skip
+                "replay",
+                recording,
+                "--lockstep",
+                "--node",
+                "fusion_tracker",
+                "--timeout",
+                _PATIENCE,
+                "-o",
+                ros,
+                *replaced,
+            )
         same = _numbers(Path(ros)) == _numbers(Path(offline))
         print(f"the node's numbers are {'' if same else 'NOT '}those of `run`")
     if all(importlib.util.find_spec(name) for name in EVALUATION_MODULES):

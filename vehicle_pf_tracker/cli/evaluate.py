@@ -170,8 +170,11 @@ def _judge(written: Report, limit: float | None) -> int:
     if failed:
         console.tell_error("not every run succeeded; the report says why")
     means = {label: found["rmse_px"] for label, found in aggregates.overall.items()}
-    beyond = [f"{label} {found.mean:.1f} px" for label, found in means.items()
-              if limit is not None and found is not None and found.mean > limit]  # fmt: skip
+    beyond = [
+        f"{label} {found.mean:.1f} px"
+        for label, found in means.items()
+        if limit is not None and found is not None and found.mean > limit
+    ]
     if beyond:
         console.tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {', '.join(beyond)}")
     return int(bool(failed or beyond or written.failures))

@@ -175,11 +175,15 @@ def _trackers(
             )
     return {
         name: OfflineTracker(
-            variant, configuration.tracker, configuration.session,
-            first_truth=truth, targets=boxes, max_diff=request.max_diff,
+            variant,
+            configuration.tracker,
+            configuration.session,
+            first_truth=truth,
+            targets=boxes,
+            max_diff=request.max_diff,
         )
         for name, boxes in targets.items()
-    }  # fmt: skip
+    }
 
 
 def _score(
@@ -195,5 +199,8 @@ def _score(
 def run_rows(metrics: Metrics) -> list[list[str]]:
     """Return a row for each metric that the run has: its title, and its value."""
     values = [(column, column.value(metrics)) for column in COLUMNS]
-    return [[column.title, number_text(value, column.decimals)]
-            for column, value in values if value is not None]  # fmt: skip
+    return [
+        [column.title, number_text(value, column.decimals)]
+        for column, value in values
+        if value is not None
+    ]

@@ -186,9 +186,17 @@ def _track_row(frame: int, stamp_ns: int, one: TrackEstimate) -> list[Any]:
     numbers = *one.box.centre, one.box.width, one.box.height, *one.velocity
     hidden_by = "" if one.hidden_by is None else str(one.hidden_by)
     return [
-        frame, stamp_ns, one.identity, *map(_exact, numbers), one.mode.value,
-        _exact(one.confidence), one.label, _exact(one.score), _exact(one.age), hidden_by,
-    ]  # fmt: skip
+        frame,
+        stamp_ns,
+        one.identity,
+        *map(_exact, numbers),
+        one.mode.value,
+        _exact(one.confidence),
+        one.label,
+        _exact(one.score),
+        _exact(one.age),
+        hidden_by,
+    ]
 
 
 def mot_numbers(frame: int, one: TrackEstimate) -> list[float]:
@@ -201,10 +209,16 @@ def _count_row(frame: int, crossing: Crossing) -> list[Any]:
     """Return the row of a crossing, in the order of `COUNT_COLUMNS`."""
     speeds = [crossing.speed_px, crossing.speed_kmh]
     return [
-        frame, crossing.stamp_ns, crossing.place, crossing.direction, crossing.identity,
-        crossing.label, crossing.mode.value,
-        *("" if speed is None else f"{speed:.2f}" for speed in speeds), crossing.doubt,
-    ]  # fmt: skip
+        frame,
+        crossing.stamp_ns,
+        crossing.place,
+        crossing.direction,
+        crossing.identity,
+        crossing.label,
+        crossing.mode.value,
+        *("" if speed is None else f"{speed:.2f}" for speed in speeds),
+        crossing.doubt,
+    ]
 
 
 def _exact(value: float) -> str:

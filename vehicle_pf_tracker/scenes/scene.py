@@ -40,17 +40,22 @@ Look: TypeAlias = Callable[[float], Sprite]
 def noise_parameter(default: float) -> Any:
     """Make the parameter of a camera's noise."""
     return parameter(
-        default, "more makes histograms differ from frame to frame", bounds=(0.0, 60.0),
+        default,
+        "more makes histograms differ from frame to frame",
+        bounds=(0.0, 60.0),
         unit="levels of 255",
-    )  # fmt: skip
+    )
 
 
 def stamps_parameter(default: float, stays: str, source: str = "") -> Any:
     """Make the parameter of a frame rate that moves nothing; `stays` says what does not change."""
     return parameter(
-        default, f"changes the stamps only: {stays} per frame", bounds=(1.0, 240.0),
-        unit="frames/s", source=source,
-    )  # fmt: skip
+        default,
+        f"changes the stamps only: {stays} per frame",
+        bounds=(1.0, 240.0),
+        unit="frames/s",
+        source=source,
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,10 +272,10 @@ class OutdoorCamera:
         phases = stream(self.seed, "mast").uniform(0, 2 * math.pi, (2, 2))
         tremble = stream(self.seed, "tremble", index).uniform(-0.2, 0.2, 2)
         x, y = (
-            MARGIN + shake * (0.55 * math.sin(index / 3.1 + slow) + 0.25 * math.sin(index + fast)
-                              + jump)
+            MARGIN
+            + shake * (0.55 * math.sin(index / 3.1 + slow) + 0.25 * math.sin(index + fast) + jump)
             for (slow, fast), jump in zip(phases.tolist(), tremble.tolist(), strict=True)
-        )  # fmt: skip
+        )
         return x, y
 
     def capture(self, picture: Image, index: int) -> Frame:

@@ -161,9 +161,11 @@ def tree(
     bark = Sprite.plain(BARK)
     return [
         *(Actor(bark, part.path) for part in trunk),
-        Actor(Sprite(colour.clip(0, 255), leaves.astype(float)),
-              standing(Box(middle - width / 2, top, width, bottom - top))),
-    ]  # fmt: skip
+        Actor(
+            Sprite(colour.clip(0, 255), leaves.astype(float)),
+            standing(Box(middle - width / 2, top, width, bottom - top)),
+        ),
+    ]
 
 
 def bridge(left: float, width: float, height: int, rng: np.random.Generator) -> tuple[Actor, Actor]:

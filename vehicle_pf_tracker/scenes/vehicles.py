@@ -100,14 +100,16 @@ def suv(paint: Colour) -> list[Face]:
     return [
         *strips(body, 0, 1.88, paint),
         *_cabin(cabin, 1.88, paint),
-        *(side_panel([(0.4, 1.82), (0.4, 1.88), (2.3, 1.88), (2.3, 1.82)], y, RIM)
-          for y in (1.6, 0.28)),
+        *(
+            side_panel([(0.4, 1.82), (0.4, 1.88), (2.3, 1.88), (2.3, 1.82)], y, RIM)
+            for y in (1.6, 0.28)
+        ),
         *(_side_window(window) for window in windows),
         *_flank(body, paint, door=1.85),
         _panel((0.05, 4.45), (0.4, 0.62), SILL),
         *lamps(body, front=4.5, rear=0.0),
         *wheels((0.9, 3.6), 0.38),
-    ]  # fmt: skip
+    ]
 
 
 def tinted(paint: Colour, light: float) -> Colour:
@@ -125,7 +127,7 @@ def _flank(body: Contour, paint: Colour, door: float) -> list[Face]:
         _panel((rear, front), (0.3, 0.55), tinted(paint, 0.8)),
         _panel((rear + 0.3, front - 0.3), (0.22, 0.36), SILL),
         _panel((door, door + 0.05), (0.4, 0.95), SILL),
-    ]  # fmt: skip
+    ]
 
 
 def _cabin(cabin: Contour, width: float, paint: Colour) -> list[Face]:
@@ -150,11 +152,20 @@ def lamps(body: Contour, front: float, rear: float) -> list[Face]:
     """Head lamp, amber side lamp and tail lamp, on the near side."""
     top = body[-2][1]
     return [
-        side_panel([(front - 0.42, top - 0.14), (front - 0.42, top), (front - 0.02, top),
-                    (front, top - 0.14)], 0, HEAD_LAMP, glow=True),
+        side_panel(
+            [
+                (front - 0.42, top - 0.14),
+                (front - 0.42, top),
+                (front - 0.02, top),
+                (front, top - 0.14),
+            ],
+            0,
+            HEAD_LAMP,
+            glow=True,
+        ),
         _panel((front - 0.55, front - 0.42), (top - 0.14, top), AMBER_LAMP, glow=True),
         _panel((rear, rear + 0.22), (0.6, 0.85), TAIL_LAMP, glow=True),
-    ]  # fmt: skip
+    ]
 
 
 def wheels(axles: Sequence[float], radius: float) -> list[Face]:
@@ -188,13 +199,12 @@ def lorry(cab: Colour, box: Colour, stripe: Colour) -> list[Face]:
         *strips(load[1:3], 0, width, box),
         side_panel(load, 0, box),
         _panel((0.0, 8.3), (2.0, 2.5), stripe),
-        *(_panel((x, x + 0.06), (1.15, 3.95), SILL)
-          for x in (0.02, 8.2)),
+        *(_panel((x, x + 0.06), (1.15, 3.95), SILL) for x in (0.02, 8.2)),
         _panel((2.9, 6.0), (0.5, 1.05), (120, 122, 124)),
         side_panel([(10.3, 0.8), (10.3, 1.1), (10.58, 1.1), (10.6, 0.8)], 0, HEAD_LAMP, glow=True),
         _panel((0.0, 0.3), (0.8, 1.05), TAIL_LAMP, glow=True),
         *wheels((1.0, 2.2, 7.1, 9.4), 0.5),
-    ]  # fmt: skip
+    ]
 
 
 def truck(cab: Colour, box: Colour) -> list[Face]:
@@ -230,11 +240,12 @@ def coach(paint: Colour, stripe: Colour, length: float = 12.0) -> list[Face]:
         *strips([(length - 0.04, top - 0.4), (length - 0.01, 1.3)], 0.15, width - 0.15, SCREEN),
         side_panel(body, 0, paint),
         _panel((0.0, length), (1.3, 1.7), stripe),
-        *(_panel((x, x + pane - 0.12), (2.0, 3.25), SIDE_GLASS)
-          for x in (0.45 + pane * number for number in range(count))),
-        *(_panel((x, x + 0.95), (0.5, 3.2), SCREEN)
-          for x in (length - 1.5, length * 0.52)),
+        *(
+            _panel((x, x + pane - 0.12), (2.0, 3.25), SIDE_GLASS)
+            for x in (0.45 + pane * number for number in range(count))
+        ),
+        *(_panel((x, x + 0.95), (0.5, 3.2), SCREEN) for x in (length - 1.5, length * 0.52)),
         *strips([(length * 0.3, top + 0.1), (length * 0.45, top + 0.1)], 0.6, 1.9, ROOF_UNIT),
         *lamps([*body[:-2], (length - 0.05, 1.0), (length, 0.4)], front=length, rear=0.0),
         *wheels((2.2, length - 2.7), 0.48),
-    ]  # fmt: skip
+    ]

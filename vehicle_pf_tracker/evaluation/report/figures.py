@@ -176,9 +176,13 @@ def _curves(evaluation: ScoredEvaluation, aggregates: Aggregates, name: str) -> 
     axes.set_axisbelow(True)
     handles, labels = axes.get_legend_handles_labels()  # drawn last to first
     figure.legend(
-        handles[::-1], labels[::-1], loc="outside lower center", ncols=2, frameon=False,
+        handles[::-1],
+        labels[::-1],
+        loc="outside lower center",
+        ncols=2,
+        frameon=False,
         handlelength=2.8,
-    )  # fmt: skip
+    )
     areas = ", ".join(f"{label} {line.auc:.3f}" for label, line in lines.items())
     return Drawn(figure, title, f"{title}; areas: {areas}")
 

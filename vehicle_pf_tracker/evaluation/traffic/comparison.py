@@ -239,12 +239,15 @@ def means(results: Sequence[TrafficResult]) -> list[TrafficResult]:
         replace(
             runs[0],
             seed=None,
-            values={name: statistics.fmean(run.values[name] for run in runs)
-                    for name in COLUMNS if name in runs[0].values},
+            values={
+                name: statistics.fmean(run.values[name] for run in runs)
+                for name in COLUMNS
+                if name in runs[0].values
+            },
             runs=len(runs),
         )
         for runs in groups.values()
-    ]  # fmt: skip
+    ]
 
 
 def write_traffic_report(
@@ -274,10 +277,17 @@ def write_traffic_report(
     shown = {title: _table(group) for title, group in cases.items()}
     parts = [f"## {title}\n\n{markdown(*table)}" for title, table in shown.items()]
     rows = [
-        [line.scene, line.source, line.system, line.runs,
-         *(line.values.get(name) for name in COLUMNS), line.occlusions, line.true]
+        [
+            line.scene,
+            line.source,
+            line.system,
+            line.runs,
+            *(line.values.get(name) for name in COLUMNS),
+            line.occlusions,
+            line.true,
+        ]
         for line in lines
-    ]  # fmt: skip
+    ]
     header = ["scene", "detections", "system", "runs", *COLUMNS, "occlusions", "true"]
     write_text(folder / f"{NAME}.md", "\n".join(["# Many vehicles\n", RULES, *parts]))
     write_csv(folder / f"{NAME}.csv", header, rows)

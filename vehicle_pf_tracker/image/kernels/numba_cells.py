@@ -22,7 +22,8 @@ from vehicle_pf_tracker.image.gradient_cells import (
 )
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
 
-_HALF = DIRECTIONS // 2
+_UNSIGNED = DIRECTIONS // 2
+"""Directions of gradients whose sign does not count."""
 _IMAGE = numba.types.Array(numba.uint8, 2, "C")
 _BYTES = numba.types.Array(numba.uint8, 1, "C", readonly=True)
 _CELLS = numba.types.Array(numba.float32, 3, "C")
@@ -45,9 +46,11 @@ def _gradients(
 
 @inlined
 def _share_row(
-    sums: npt.NDArray[np.float32], low: float, above: npt.NDArray[np.float32],
+    sums: npt.NDArray[np.float32],
+    low: float,
+    above: npt.NDArray[np.float32],
     below: npt.NDArray[np.float32],
-) -> None:  # fmt: skip
+) -> None:
     """Share a row's sums between the cells above and below, and clear them."""
     for i in range(len(sums)):
         lower = low * sums[i]
@@ -104,9 +107,9 @@ def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     rows, columns = cells.shape[1] - 2, cells.shape[2] - 2
     energy = np.zeros((rows + 2, columns + 2), np.float32)
     for y in range(1, rows + 1):
-        for o in range(_HALF):
+        for o in range(_UNSIGNED):
             for x in range(1, columns + 1):
-                value = cells[o, y, x] + cells[o + _HALF, y, x]
+                value = cells[o, y, x] + cells[o + _UNSIGNED, y, x]
                 energy[y, x] += value * value
     # Beyond the border the outermost cell is repeated.
     energy[1:-1, 0], energy[1:-1, -1] = energy[1:-1, 1], energy[1:-1, -2]
@@ -143,22 +146,24 @@ def _normalise(
                 texture[1, x] += b
                 texture[2, x] += c
                 texture[3, x] += d
-        for o in range(_HALF):
+        for o in range(_UNSIGNED):
             for x in range(columns):
-                value = cells[o, y + 1, x + 1] + cells[o + _HALF, y + 1, x + 1]
+                value = cells[o, y + 1, x + 1] + cells[o + _UNSIGNED, y + 1, x + 1]
                 a, b = min(value * scales[0, y, x], limit), min(value * scales[1, y, x], limit)
                 c, d = min(value * scales[2, y, x], limit), min(value * scales[3, y, x], limit)
                 features[y, DIRECTIONS + o, x] = half * (((a + b) + c) + d)
         for k in range(4):
             for x in range(columns):
-                features[y, DIRECTIONS + _HALF + k, x] = np.float32(TEXTURE_GAIN) * texture[k, x]
+                features[y, DIRECTIONS + _UNSIGNED + k, x] = (
+                    np.float32(TEXTURE_GAIN) * texture[k, x]
+                )
 
 
 @compiled(_CELLS(_IMAGE, _BYTES, numba.intp))
 def _features(grey: Grey, direction_of: npt.NDArray[np.uint8], channels: int) -> CellFeatures:
     if len(direction_of) < 511 * 511:
         raise IndexError("the table of directions is too short")
-    if channels < DIRECTIONS + _HALF + 4:
+    if channels < DIRECTIONS + _UNSIGNED + 4:
         raise IndexError("there are fewer channels than features")
     # In this order of memory rows are transformed without a copy.
     features = np.empty((grey.shape[0] // CELL, channels, grey.shape[1] // CELL), np.float32)

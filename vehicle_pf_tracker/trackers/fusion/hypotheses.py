@@ -191,9 +191,13 @@ def along_heading(noise: Array, heading: Array, across: float) -> Array:
 
 
 def hidden_hypotheses(
-    rng: np.random.Generator, motion: PerspectiveMotion, age: float, count: int, extent: float,
+    rng: np.random.Generator,
+    motion: PerspectiveMotion,
+    age: float,
+    count: int,
+    extent: float,
     velocity_sigma: float,
-) -> Hypotheses:  # fmt: skip
+) -> Hypotheses:
     """Draw hypotheses about a vehicle that has just been hidden.
 
     Parameters

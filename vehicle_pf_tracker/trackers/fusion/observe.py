@@ -210,7 +210,7 @@ def _observe_return(state: State, departure: Departure, step: Step) -> tuple[Sta
 
 def gathered(
     state: State, step: Step, position: Array, velocity: Array, visible: float
-) -> Hypotheses:  # fmt: skip
+) -> Hypotheses:
     """Draw hypotheses around a position, all of one velocity."""
     count = step.parameters.num_particles
     motion = step.parameters.motion

@@ -88,7 +88,7 @@ class Branch(NamedTuple):
     @classmethod
     def begun(
         cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting
-    ) -> Branch | None:  # fmt: skip
+    ) -> Branch | None:
         """Begin `last.age` frames ago, and follow the outline to the frame before this one."""
         ago = round(last.age)
         first = foreground.outline(last.position, last.size, ago)
@@ -161,7 +161,7 @@ class Outlines(NamedTuple):
 
     def followed(
         self, foreground: Foreground, elapsed: float, view: View, difference: PaintDifference
-    ) -> Outlines:  # fmt: skip
+    ) -> Outlines:
         """Follow the outline into the present frame.
 
         Parameters

@@ -228,5 +228,8 @@ class MfpfParameters(FeatureFilterParameters):
         """Return the parameters as printed; see `CommonParameters.printed`."""
         return replace(
             FeatureFilterParameters.printed(self),
-            edges=PRINTED_EDGES, texture="glcm", update_unused=True, joint_resampling=False,
-        )  # fmt: skip
+            edges=PRINTED_EDGES,
+            texture="glcm",
+            update_unused=True,
+            joint_resampling=False,
+        )

@@ -64,9 +64,11 @@ _LEFT = 0.1
 """Share in the image below which a vehicle is forgotten: none of it will be seen."""
 _RETURNS = 0.5
 """Share of what vanished in a place that was seen again, below which a vehicle is rather gone."""
-_FEW = 4
-"""Detections by which a track may tell of a drive; and detections that it may expect to have missed
-in a row before it is given up: fewer come by chance."""
+_DRIVE_MATCHES = 4
+"""Detections of a track below which its way tells of no drive: fewer lie on a line by chance."""
+_PATIENCE = 4
+"""Detections that a tentative track may expect to have missed in a row before it is given up: at
+the detector's own rate fewer are missed by chance."""
 
 
 def fits_of_known(tracks: Tracks, fits: Array) -> Array:
@@ -255,7 +257,7 @@ def end(state: State, step: Step) -> State:
     if goes_on.all():
         return state._replace(tracks=tracks)
     # What drove may have been a vehicle, and tells nothing about its detections.
-    never_drove = tracks.beliefs.ways.matches < _FEW
+    never_drove = tracks.beliefs.ways.matches < _DRIVE_MATCHES
     never_drove |= ~drives(tracks, step.parameters.birth.displacement)
     for row in np.flatnonzero(~goes_on & ~tracks.confirmed & never_drove).tolist():
         experience.detections.learn(tracks.beliefs.samples[row], False)
@@ -269,7 +271,7 @@ def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) 
     absences = tracks.sights.absences
     log_odds = tracks.beliefs.log_odds
     parameters = step.parameters
-    waits = absences.undetected <= _FEW / experience.rate.share
+    waits = absences.undetected <= _PATIENCE / experience.rate.share
     tentative = waits & (log_odds >= -CERTAIN) & (inside > 0)
     longest = parameters.lost_after + parameters.forgotten_after
     known = (inside >= _LEFT) & (log_odds >= -_MOST)

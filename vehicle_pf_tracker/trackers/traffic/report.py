@@ -63,9 +63,21 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
             joined=joined,
             foot_covariance=(foot[0], foot[1], foot[2]),
         )
-        for identity, serial, joined, votes, box, velocity, foot, log_odds, age, score, mode, hider
-        in rows
-    ]  # fmt: skip
+        for (
+            identity,
+            serial,
+            joined,
+            votes,
+            box,
+            velocity,
+            foot,
+            log_odds,
+            age,
+            score,
+            mode,
+            hider,
+        ) in rows
+    ]
     order = np.lexsort((names.serial, names.identity, ~tracks.confirmed))
     return tuple(estimates[row] for row in order.tolist())
 

@@ -1,0 +1,132 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The rules of form, read from the source: where numbers stand, how large classes are."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).resolve().parents[1] / "vehicle_pf_tracker"
+FILES = sorted(SOURCE.rglob("*.py"))
+MOST_FIELDS = 12
+"""Fields of a class that a reader keeps in mind."""
+TABLES = re.compile(r"Parameters$|Request$|Options?$|^Metrics$|^Estimate$|^Health$")
+"""Classes that are tables: of parameters, of options of a command, of results by name."""
+ROWS = {"parameter", "option", "positional", "switch", "group"}
+"""Calls that are a row of a table of parameters, laid out by hand."""
+VAGUE = {"HALF", "FEW", "FAR", "LITTLE", "SETTLED_AFTER"}
+"""Words that name no decision."""
+
+
+def is_number(node: ast.expr | None) -> bool:
+    return isinstance(node, ast.Constant) and type(node.value) in (int, float)
+
+
+def late_numbers(tree: ast.Module) -> list[str]:
+    """Name the numeric constants that stand below a definition."""
+    names, seen = [], False
+    for node in tree.body:
+        seen |= isinstance(node, ast.FunctionDef | ast.ClassDef)
+        if isinstance(node, ast.Assign | ast.AnnAssign) and seen and is_number(node.value):
+            target = node.targets[0] if isinstance(node, ast.Assign) else node.target
+            names += [target.id] if isinstance(target, ast.Name) else []
+    return names
+
+
+def fields_of(node: ast.ClassDef) -> set[str]:
+    """Name what a class declares, and what its methods bind on `self`."""
+    declared = {
+        statement.target.id
+        for statement in node.body
+        if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name)
+    }
+    bound = {
+        part.attr
+        for part in ast.walk(node)
+        if isinstance(part, ast.Attribute)
+        and isinstance(part.ctx, ast.Store)
+        and isinstance(part.value, ast.Name)
+        and part.value.id == "self"
+    }
+    return declared | bound
+
+
+def large_classes(tree: ast.Module) -> list[str]:
+    return [
+        f"{node.name}: {len(fields_of(node))}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ClassDef)
+        and not TABLES.search(node.name)
+        and len(fields_of(node)) > MOST_FIELDS
+    ]
+
+
+def skips_outside_tables(text: str) -> list[int]:
+    """Give the lines at which the formatter is told to keep off what is no table."""
+    rows = set()
+    for node in ast.walk(ast.parse(text)):
+        value = getattr(node, "value", None)
+        if not isinstance(node, ast.Assign | ast.AnnAssign) or node.end_lineno is None:
+            continue
+        called = value.func if isinstance(value, ast.Call) else None
+        is_row = isinstance(called, ast.Name) and called.id in ROWS
+        if is_row or isinstance(value, ast.Tuple | ast.List | ast.Dict | ast.Set | ast.Call):
+            rows.add(node.end_lineno)
+    lines = text.splitlines()
+    return [at for at, line in enumerate(lines, 1) if "fmt: skip" in line and at not in rows]
+
+
+@pytest.fixture(scope="module")
+def trees():
+    return {path: ast.parse(path.read_text(encoding="utf-8")) for path in FILES}
+
+
+def test_no_number_stands_below_a_definition(trees):
+    found = {path.name: names for path, tree in trees.items() if (names := late_numbers(tree))}
+    assert not found
+
+
+LARGER = ["Drive: 14", "Player: 13", "VideoSourceNode: 13"]
+"""Classes that are still larger; the list may only become shorter."""
+
+
+def test_classes_have_twelve_fields_at_most(trees):
+    assert sorted(name for tree in trees.values() for name in large_classes(tree)) == LARGER
+
+
+def test_only_tables_keep_the_formatter_off():
+    found = {
+        path.name: lines
+        for path in FILES
+        if (lines := skips_outside_tables(path.read_text(encoding="utf-8")))
+    }
+    assert not found
+
+
+def test_no_constant_is_named_by_a_word_that_names_no_decision(trees):
+    found = {
+        f"{path.name}: {target.id}"
+        for path, tree in trees.items()
+        for node in tree.body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name) and target.id.lstrip("_") in VAGUE
+    }
+    assert not found
+
+
+def test_what_breaks_a_rule_is_found():
+    tree = ast.parse("def f(): pass\nEARLY: int = 3\n_LATE = 0.5\nNAMES = ()\n")
+    assert late_numbers(tree) == ["EARLY", "_LATE"]
+    assert late_numbers(ast.parse("A = 1\nclass B: pass\n")) == []
+    fields = "\n".join(f"    a{number}: int" for number in range(12))
+    assert large_classes(ast.parse(f"class A:\n{fields}\n")) == []
+    method = "    def f(self):\n        self.b = 1\n"
+    assert large_classes(ast.parse(f"class A:\n{fields}\n{method}")) == ["A: 13"]
+    assert large_classes(ast.parse(f"class AParameters:\n{fields}\n{method}")) == []
+    row = "class P:\n    a: int = parameter(\n        1,\n    )  # fmt: skip\n"
+    assert skips_outside_tables(row) == []
+    assert skips_outside_tables("def f(\n    a,\n):  # fmt: skip\n    pass\n") == [3]
