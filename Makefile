@@ -63,7 +63,7 @@ test-all: .venv/installed .venv/colcon kernels  ## every test of the package, wi
 
 # Compiled once, before the parts would each do it.
 kernels: .venv/installed
-	$(BIN)/python -c "from vehicle_pf_tracker.image.kernels.interface import load_kernels; load_kernels('auto')"
+	$(BIN)/python -c "from vehicle_pf_tracker.image.kernels.interface import compile_all; compile_all('auto')"
 
 test-rest: .venv/installed
 	$(RUN) test $(addprefix --ignore test/,$(test-ros) $(test-footage) $(test-programs))
