@@ -224,7 +224,7 @@ def test_a_disk_that_fills_costs_the_video_and_nothing_else(
     assert main([verb, "clip.mp4", *options, "-o", "whole"]) == 0
     assert main([verb, "clip.mp4", *options, "-o", "out", "--video", "full/v.mp4"]) == 1
     told = capsys.readouterr()
-    assert "cannot write full/v.mp4: No space left on device; all else is written" in told.err
+    assert "full/v.mp4: No space left on device; all else is written" in told.err
     assert "the video is" not in told.out
     assert not (here / "full").exists()
     kept, whole = ((here / name / table).read_text().splitlines() for name in ("out", "whole"))
