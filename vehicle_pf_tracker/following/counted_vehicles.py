@@ -108,7 +108,20 @@ class CountedVehicles:
         """Return a copy of the last image with vehicles and counts, without words about all."""
         return annotated(frame, "", self.estimates, self.counter, self.trails)
 
-    def facts(self, when: str = "") -> dict[str, object]:
+    def facts(self) -> dict[str, object]:
+        """Return the number of vehicles, and what was counted, by name."""
+        counter = self.counter
+        return {
+            "vehicles": sum(estimate.mode in CONFIRMED for estimate in self.estimates),
+            **{f"{zone}: inside": there for zone, there in counter.occupancy.items()},
+            **{
+                f"{place}: {to}": counter.count(place, to)
+                for place, both in counter.directions.items()
+                for to in both
+            },
+        }
+
+    def page_facts(self, when: str = "") -> dict[str, object]:
         """Return the numbers for a page; `when` is the time of the last image in words."""
         learning = _LEARNING if self.is_learning else ""
         words = ", ".join(filter(None, (when, learning)))

@@ -131,7 +131,7 @@ class TrafficRun(CountedVehicles):
                 if page is not None and not pictures.side.failed(PAGE):
                     with pictures.side.attempt(PAGE):
                         when = f"{elapsed}, frame {number}"
-                        page.show(partial(self.shown, found.frame), partial(self.facts, when))
+                        page.show(partial(self.shown, found.frame), partial(self.page_facts, when))
 
     def sentences(self, detector: str) -> list[str]:
         """Return the summary, a line for each fact, or why there is no vehicle.

@@ -116,7 +116,9 @@ class TrafficOutputs(Outputs):
                 self._publish_overlay(answer)
         if self.page is not None:
             with self._journal.drawing("the live page"):
-                self.page.show(partial(self._vehicles.shown, answer.frame), self._vehicles.facts)
+                self.page.show(
+                    partial(self._vehicles.shown, answer.frame), self._vehicles.page_facts
+                )
 
     def _publish_overlay(self, answer: TrafficAnswer) -> None:
         """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
