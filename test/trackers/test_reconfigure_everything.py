@@ -33,6 +33,7 @@ WITHOUT_EFFECT = {
     ("fusion", "evidence.occluded_below"): "visibility is nearly certain in these images",
     ("fusion", "evidence.clear_above"): "visibility is nearly certain in these images",
     ("apf", "velocity.from_origin"): "says how a track begins, so it is obeyed by the next one",
+    ("sfpf_edge", "weight_recursion"): "no weight is left over where every frame resamples",
 }
 
 KERNELS = "kernels"
