@@ -16,7 +16,7 @@ from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.showing.page_server import LOCAL, Content, PageHandler, PageServer
 
 PAGE = "the live page"
-"""What a message calls it."""
+"""Name of the page in messages."""
 _SECONDS = 2.0
 """Longest wait for the next image, after which the one before is shown: cameras of less than one
 image per s are shown late."""

@@ -29,7 +29,7 @@ _HIDDEN = 0.4
 
 
 _LANES_FROM = 12
-"""Vehicles from which on lanes are drawn: of more, lines of their own are a skein."""
+"""Number of vehicles above which lanes are drawn: more lines of their own are a skein."""
 _STEP = 2.0
 """Longest step that is drawn, in diagonals of the box: over a longer one, as of a vehicle that was
 found again elsewhere, nobody knows the way."""

@@ -71,7 +71,7 @@ class SideProducts:
 
     @property
     def notices(self) -> list[str]:
-        """What failed, a sentence each."""
+        """Failures so far, a sentence each."""
         return [f"{problem}; all else is written" for problem in self._problems.values()]
 
 
