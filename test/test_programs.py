@@ -3,7 +3,7 @@
 
 """Every program outside of the package runs on a toy input, and writes what it is there for.
 
-The one that .ci/run starts itself is left out: `make bench BENCH_ARGS=--toy`.
+Those that .ci/run starts itself are left out: `make bench BENCH_ARGS=--toy`, `benchmarks.versus`.
 """
 
 import json
@@ -84,6 +84,11 @@ PROGRAMS = {
         printed="per further vehicle",
         needs=("baselines",),
     ),
+    "laboratory.traffic_fit": Program(
+        "toy={toy}/traffic --boxes good --only detection.blobs:_PIECE -o {out}",
+        ("leave_one_camera_out.md", "runs.jsonl"),
+        needs=("baselines",),
+    ),
     "laboratory.traffic_occluders": Program("{toy}/traffic", printed="traffic: "),
     "laboratory.traffic_perturbed": Program(
         "{toy}/traffic -o {out}", ("traffic.md",), "the report is", ("baselines",)
@@ -98,8 +103,9 @@ PROGRAMS = {
 LIBRARIES = {
     "laboratory.__init__", "laboratory.__main__", "laboratory.covariance_coverage",
     "laboratory.coverage_picture", "laboratory.figure_files", "laboratory.result_store",
+    "benchmarks.versus", "benchmarks.versus_worker",
 }  # fmt: skip
-"""Modules beside the programs that these import."""
+"""Modules that the programs import, and what .ci/run starts."""
 
 
 def write_sequence(folder, shots):

@@ -59,8 +59,13 @@ def asked(python, cwd, **variables):
 def source(tmp_path_factory):
     """A copy of the checkout with one more parameter file, which no other install can have."""
     copy = tmp_path_factory.mktemp("source") / "vehicle_pf_tracker"
-    unwanted = (".*", "build", "install", "log", "results", "*.egg-info", "__pycache__", "test")
-    shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(*unwanted))
+    written = {"build", "install", "log", "results", "test"}  # at the top: a room has such a name
+    unwanted = shutil.ignore_patterns(".*", "*.egg-info", "__pycache__")
+
+    def left_out(folder, names):
+        return unwanted(folder, names) | (written if Path(folder) == ROOT else set())
+
+    shutil.copytree(ROOT, copy, ignore=left_out)
     (copy / "config").mkdir(exist_ok=True)
     (copy / "config" / "trial.yaml").write_text("/**:\n  ros__parameters: {}\n")
     return copy
@@ -178,8 +183,9 @@ WRITTEN = {
 
 
 def readme_commands(extra):
-    """The commands after `pip install '.[EXTRA]'` in the README."""
-    blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    """The commands after `pip install '.[EXTRA]'` in the README's part on the ways in."""
+    ways = (ROOT / "README.md").read_text().split("## Three ways in")[1]
+    blocks = re.findall(r"```sh\n(.*?)```", ways, re.DOTALL)
     first = f"pip install '.[{extra}]'\n"
     (commands,) = [block.removeprefix(first) for block in blocks if block.startswith(first)]
     return commands
