@@ -135,6 +135,13 @@ def test_runs_repeat_bit_by_bit():
     assert repr(first) == repr(second)
 
 
+def test_estimates_of_two_runs_are_equal_without_a_score_too():
+    first = drive(TrafficTracker(FLAT), 40, seen=lambda index: index < 35)
+    second = drive(TrafficTracker(FLAT), 40, seen=lambda index: index < 35)
+    assert first[-1][0].score != first[-1][0].score  # NaN: nobody has seen it
+    assert first == second
+
+
 def test_a_vehicle_given_by_hand_that_a_detector_sees_ends_like_others():
     tracker = TrafficTracker(FLAT)
     tracker.step(scene((20, 100, 40, 30)))

@@ -56,7 +56,8 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
             mode=mode,
             confidence=_PLACED[mode] / (1 + math.exp(-log_odds)),
             label=max(votes, key=votes.__getitem__, default=""),
-            score=score,
+            # One object for all: estimates of two runs are equal only if their NaN is the same.
+            score=math.nan if math.isnan(score) else score,
             age=age,
             hidden_by=hider,
             serial=serial,
