@@ -15,7 +15,7 @@ MOST_FIELDS = 12
 """Fields of a class that a reader keeps in mind."""
 TABLES = re.compile(r"Parameters$|Request$|Options?$|^Metrics$|^Estimate$|^Health$")
 """Classes that are tables: of parameters, of options of a command, of results by name."""
-ROWS = {"parameter", "option", "positional", "switch", "group"}
+ROW = re.compile(r"^(share|parameter|\w+_parameter|option|positional|switch|group)$")
 """Calls that are a row of a table of parameters, laid out by hand."""
 VAGUE = {"HALF", "FEW", "FAR", "LITTLE", "SETTLED_AFTER"}
 """Words that name no decision."""
@@ -64,19 +64,42 @@ def large_classes(tree: ast.Module) -> list[str]:
     ]
 
 
+def is_row(value: ast.expr | None) -> bool:
+    """Return whether a value declares a parameter or an option, or a kind of them."""
+    if not isinstance(value, ast.Call):
+        return False
+    if ast.unparse(value.func) == "functools.partial":
+        value = ast.Call(value.args[0], [], [])
+    return bool(ROW.match(ast.unparse(value.func)))
+
+
+def is_table(value: ast.expr | None) -> bool:
+    """Return whether every entry of a value is a row: a call of one class, or a tuple by name."""
+    if isinstance(value, ast.Call) and ast.unparse(value.func) == "MappingProxyType":
+        value = value.args[0]
+    if isinstance(value, ast.Dict):
+        rows = value.values
+        if all(isinstance(row, ast.Tuple) for row in rows):
+            return None not in value.keys
+    elif isinstance(value, ast.Tuple):
+        rows = value.elts
+    else:
+        return False
+    called = {ast.unparse(row.func) if isinstance(row, ast.Call) else None for row in rows}
+    return len(called) == 1 and None not in called
+
+
 def skips_outside_tables(text: str) -> list[int]:
     """Give the lines at which the formatter is told to keep off what is no table."""
-    rows = set()
-    for node in ast.walk(ast.parse(text)):
-        value = getattr(node, "value", None)
-        if not isinstance(node, ast.Assign | ast.AnnAssign) or node.end_lineno is None:
-            continue
-        called = value.func if isinstance(value, ast.Call) else None
-        is_row = isinstance(called, ast.Name) and called.id in ROWS
-        if is_row or isinstance(value, ast.Tuple | ast.List | ast.Dict | ast.Set | ast.Call):
-            rows.add(node.end_lineno)
+    tree = ast.parse(text)
+    kept = {
+        node.end_lineno
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Assign | ast.AnnAssign)
+        and (is_row(node.value) or (node in tree.body and is_table(node.value)))
+    }
     lines = text.splitlines()
-    return [at for at, line in enumerate(lines, 1) if "fmt: skip" in line and at not in rows]
+    return [at for at, line in enumerate(lines, 1) if "fmt: skip" in line and at not in kept]
 
 
 @pytest.fixture(scope="module")
@@ -129,4 +152,12 @@ def test_what_breaks_a_rule_is_found():
     assert large_classes(ast.parse(f"class AParameters:\n{fields}\n{method}")) == []
     row = "class P:\n    a: int = parameter(\n        1,\n    )  # fmt: skip\n"
     assert skips_outside_tables(row) == []
+    kind = "low = functools.partial(\n    parameter, 1,\n)  # fmt: skip\n"
+    assert skips_outside_tables(kind) == []
+    table = "TABLE = (\n    Row(1),\n    Row(2),\n)  # fmt: skip\n"
+    assert skips_outside_tables(table) == []
+    assert skips_outside_tables("TABLE = {\n    'a': (1, 2),\n}  # fmt: skip\n") == []
+    assert skips_outside_tables("NAMES = (\n    'a', 'b',\n)  # fmt: skip\n") == [3]
+    assert skips_outside_tables("POINTS = [\n    (1, 2),\n]  # fmt: skip\n") == [3]
+    assert skips_outside_tables("def f():\n    a = (\n    Row(1),\n    )  # fmt: skip\n") == [4]
     assert skips_outside_tables("def f(\n    a,\n):  # fmt: skip\n    pass\n") == [3]

@@ -41,8 +41,15 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.report.writing import Report
 
 _GRID_ONLY = (
-    "params", "baseline_model", "max_rmse", "topic", "id", "figures", "part", "scheduler",
-)  # fmt: skip
+    "params",
+    "baseline_model",
+    "max_rmse",
+    "topic",
+    "id",
+    "figures",
+    "part",
+    "scheduler",
+)
 """Options of the grid that do not apply."""
 
 

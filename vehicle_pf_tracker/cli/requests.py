@@ -71,8 +71,10 @@ def positional(**settings: Any) -> Any:
 
 
 _KINDS: Mapping[str, Mapping[str, Any]] = {
-    "Path": {"type": Path, "metavar": "FILE"}, "int": {"type": int}, "float": {"type": float},
-}  # fmt: skip
+    "Path": {"type": Path, "metavar": "FILE"},
+    "int": {"type": int},
+    "float": {"type": float},
+}
 """Settings that follow from a field's type, where it does not say others."""
 
 

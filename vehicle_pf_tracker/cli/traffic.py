@@ -176,9 +176,11 @@ def _configuration(request: Request) -> Configuration:
     kind = NONE if request.detections else MODEL if request.model else request.detector
     given = {
         "lines": str(request.lines) if request.lines else None,
-        "detector.kind": kind, "detector.model": request.model,
-        "detector.classes": request.classes, "detector.min_score": request.conf,
-    }  # fmt: skip
+        "detector.kind": kind,
+        "detector.model": request.model,
+        "detector.classes": request.classes,
+        "detector.min_score": request.conf,
+    }
     changes = {name: value for name, value in given.items() if value is not None}
     configuration = configuration.updated(changes)
     has_network = configuration.tracker.detector.kind == MODEL

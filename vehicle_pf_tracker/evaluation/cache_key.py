@@ -33,9 +33,20 @@ def variant_modules(variant: Variant) -> set[str]:
 
 _PACKAGE = Path(__file__).parents[1]
 _SHARED = (
-    "core", "road", "parameters", "filtering", "image", "image/kernels", "trackers", "recordings",
-    "scenes", "following", "results", "evaluation", "evaluation/grid",
-)  # fmt: skip
+    "core",
+    "road",
+    "parameters",
+    "filtering",
+    "image",
+    "image/kernels",
+    "trackers",
+    "recordings",
+    "scenes",
+    "following",
+    "results",
+    "evaluation",
+    "evaluation/grid",
+)
 """Folders whose code counts for every result."""
 
 

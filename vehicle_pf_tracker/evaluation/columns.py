@@ -57,9 +57,12 @@ class Column:
         return sum(known) / len(known) if known else None
 
 
-OVERLAP, ERRORS, HIDDEN, CLAIMS, RUN = (
-    "Overlap and precision", "Error of the centre", "Total occlusions", "Claims", "Run"
-)  # fmt: skip
+# Headings of the report, in the order in which it shows them.
+OVERLAP = "Overlap and precision"
+ERRORS = "Error of the centre"
+HIDDEN = "Total occlusions"
+CLAIMS = "Claims"
+RUN = "Run"
 
 COLUMNS = (
     Column("success_auc", OVERLAP, "success AUC", "", 3, True,

@@ -98,9 +98,12 @@ def cut_image(frame: Frame, centre: Array, zoom: Array, size: tuple[int, int]) -
     (across, down), (x, y) = step.tolist(), first.tolist()
     matrix = np.array([[across, 0.0, x], [0.0, down, y]])
     image = cv2.warpAffine(
-        frame, matrix, size, flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+        frame,
+        matrix,
+        size,
+        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
         borderMode=cv2.BORDER_REPLICATE,
-    )  # fmt: skip
+    )
     return np.asarray(image, np.uint8)
 
 

@@ -159,9 +159,18 @@ def parameter(  # noqa: PLR0913 - one keyword per column of the table
 ) -> Any:
     """Make the dataclass field of one parameter; see `ParameterSpec` for the meaning of each."""
     spec = ParameterSpec(
-        "", type(default), default, doc, bounds, unit, source, tuple(choices), effect, read_only,
+        "",
+        type(default),
+        default,
+        doc,
+        bounds,
+        unit,
+        source,
+        tuple(choices),
+        effect,
+        read_only,
         tuned,
-    )  # fmt: skip
+    )
     return dataclasses.field(default=default, metadata={_KEY: spec})
 
 

@@ -42,8 +42,11 @@ def _is_mot(cells: Sequence[str]) -> bool:
 MARKS: Mapping[str, Reader] = {"<": cvat, "[": label_studio, "{": label_studio}
 """The readers of documents, by the first letter."""
 FORMATS: Mapping[Reader, Test] = {
-    kitti: _is_kitti, own: _is_own, in_order: _is_in_order, mot: _is_mot,
-}  # fmt: skip
+    kitti: _is_kitti,
+    own: _is_own,
+    in_order: _is_in_order,
+    mot: _is_mot,
+}
 """The readers of tables, the first whose test the first line passes."""
 
 

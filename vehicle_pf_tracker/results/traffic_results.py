@@ -25,15 +25,36 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMod
 TRACKS, MOT_TRACKS, COUNTS = "tracks.csv", "tracks.txt", "counts.csv"
 
 TRACK_COLUMNS = (
-    "frame", "stamp_ns", "id", "x", "y", "width", "height", "vx", "vy", "mode", "confidence",
-    "label", "score", "age", "hidden_by",
-)  # fmt: skip
+    "frame",
+    "stamp_ns",
+    "id",
+    "x",
+    "y",
+    "width",
+    "height",
+    "vx",
+    "vy",
+    "mode",
+    "confidence",
+    "label",
+    "score",
+    "age",
+    "hidden_by",
+)
 """Columns of `tracks.csv`: x and y are the centre of the box in px, vx and vy its velocity in px
 per nominal frame period, which is also the unit of age."""
 COUNT_COLUMNS = (
-    "frame", "stamp_ns", "place", "direction", "id", "label", "mode", "speed_px_s", "speed_kmh",
+    "frame",
+    "stamp_ns",
+    "place",
+    "direction",
+    "id",
+    "label",
+    "mode",
+    "speed_px_s",
+    "speed_kmh",
     "doubt",
-)  # fmt: skip
+)
 """Columns of `counts.csv`: the stamp is that of the crossing, the frame the one it counted in."""
 
 _HIDDEN_CONFIDENCE = 0.5

@@ -61,9 +61,17 @@ LANE = 1
 """The target's lane, counted from the far side; there is one farther and one nearer."""
 
 PAINTS: tuple[Colour, ...] = (
-    (176, 180, 184), (58, 62, 68), (214, 212, 204), (44, 78, 134), (148, 40, 40), (62, 96, 70),
-    (178, 162, 124), (104, 50, 58), (120, 136, 150), (196, 150, 52),
-)  # fmt: skip
+    (176, 180, 184),
+    (58, 62, 68),
+    (214, 212, 204),
+    (44, 78, 134),
+    (148, 40, 40),
+    (62, 96, 70),
+    (178, 162, 124),
+    (104, 50, 58),
+    (120, 136, 150),
+    (196, 150, 52),
+)
 """Colours of the target, by chance: most as muted as those of real traffic."""
 
 

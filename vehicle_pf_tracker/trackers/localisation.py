@@ -64,8 +64,13 @@ class RoadEstimate:
 
 
 ROAD_COLUMNS = (
-    "road_x", "road_y", "road_velocity_x", "road_velocity_y", "speed_kmh", "speed_sd_kmh",
-)  # fmt: skip
+    "road_x",
+    "road_y",
+    "road_velocity_x",
+    "road_velocity_y",
+    "speed_kmh",
+    "speed_sd_kmh",
+)
 """Names of `RoadEstimate.scalars`."""
 
 

@@ -214,10 +214,17 @@ NAME = "traffic"
 """Name of the files without their suffix."""
 
 COLUMNS: Mapping[str, tuple[str, int]] = {
-    **{name: (name, 1) for name in ("HOTA", "DetA", "AssA", "IDF1", "MOTA")},
-    "IDSW": ("switches", 1), "Frag": ("fragm.", 1), "kept": ("identity kept", 0),
-    "count_error": ("count error", 1), "step_ms": ("ms", 1),
-}  # fmt: skip
+    "HOTA": ("HOTA", 1),
+    "DetA": ("DetA", 1),
+    "AssA": ("AssA", 1),
+    "IDF1": ("IDF1", 1),
+    "MOTA": ("MOTA", 1),
+    "IDSW": ("switches", 1),
+    "Frag": ("fragm.", 1),
+    "kept": ("identity kept", 0),
+    "count_error": ("count error", 1),
+    "step_ms": ("ms", 1),
+}
 """Measures, with their headings and decimals."""
 
 RULES = """\
