@@ -58,8 +58,8 @@ _LEAST_LEVEL, _TURNING_LEVEL_RATE = 0.3, 0.3
 road; and its rate per frame: a new level in 3 frames."""
 _TURNING_SHARE, _TURNING_RESPONSE = 0.85, 0.7
 """Share of the surface above which, and response below which, a visible vehicle turns. The filter
-then learns faster the lower the response. While .6 of the points survive instead of .85, 57 of 81
-occlusions are recovered instead of 60; from a response of .85 down, turns gain nothing
+then learns faster the lower the response. With the survival of points in place of the share, 57 of
+81 occlusions are recovered instead of 62; from a response of .85 down, turns gain nothing
 (laboratory/notes/fusion_tried.md)."""
 _LEAST_STIFFNESS = 0.2
 """Least stiffness in such a turn, of the usual one, however low the response."""

@@ -143,7 +143,7 @@ class Sightings(NamedTuple):
         """Fit the motion to clear sightings; also give the last of them, which is at time 0.
 
         Before a camera that moves the vehicle keeps its size from then on. A fitted rate does not
-        last there: of 22 sequences .6 of it is right for 10 frames, and a fifth for 20
+        last there: over 22 sequences .6 of it is right for 10 frames, .15 for 20
         (laboratory/notes/fusion_tried.md).
         """
         ages = self.rows[:, 0]
