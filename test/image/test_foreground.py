@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.camera_motion import SmallGrey
 from vehicle_pf_tracker.image.foreground import Foreground, median
+from vehicle_pf_tracker.image.small_grey import SmallGrey
 
 SIZE = np.array([24.0, 14.0])
 

@@ -6,7 +6,7 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.camera_motion import small_grey
+from vehicle_pf_tracker.image.small_grey import small_grey
 
 
 def test_small_frames_keep_their_size():

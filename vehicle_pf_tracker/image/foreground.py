@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.camera_motion import SmallGrey
+from vehicle_pf_tracker.image.small_grey import SmallGrey
 
 _KEPT_EVERY = 4
 """Frames between two that are kept for the background."""

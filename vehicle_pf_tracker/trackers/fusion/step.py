@@ -13,7 +13,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.camera_motion import CameraFlow
+from vehicle_pf_tracker.image.camera_flow import CameraFlow
 from vehicle_pf_tracker.image.foreground import Foreground
 from vehicle_pf_tracker.image.window import keep_inside
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View

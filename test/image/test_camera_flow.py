@@ -8,12 +8,8 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.image.camera_motion import (
-    CameraFlow,
-    SmallGrey,
-    fit_camera_motion,
-    small_grey,
-)
+from vehicle_pf_tracker.image.camera_flow import CameraFlow, fit_camera_motion
+from vehicle_pf_tracker.image.small_grey import SmallGrey, small_grey
 
 RNG = np.random.default_rng(5)
 TEXTURE = cv2.GaussianBlur(RNG.integers(0, 255, (400, 500, 3)).astype(np.uint8), (0, 0), 2)
