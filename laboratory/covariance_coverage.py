@@ -16,7 +16,7 @@ from scipy.optimize import minimize
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
+from vehicle_pf_tracker.evaluation.tables import NO_SCORE, markdown
 from vehicle_pf_tracker.trackers.uncertainty import Calibration, Spread
 from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 
@@ -220,8 +220,8 @@ def _coverage_row(
 
 
 def _percent(inside: npt.NDArray[np.bool_]) -> str:
-    return f"{100 * inside.mean():.1f} %" if len(inside) else NOTHING
+    return f"{100 * inside.mean():.1f} %" if len(inside) else NO_SCORE
 
 
 def _median(values: Array) -> str:
-    return f"{np.median(values):.2g}" if len(values) else NOTHING
+    return f"{np.median(values):.2g}" if len(values) else NO_SCORE

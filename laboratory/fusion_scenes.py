@@ -21,7 +21,7 @@ import cv2
 from laboratory.scenes import make_scene
 from laboratory.stress.scoring import Score, score_estimates
 from vehicle_pf_tracker.cli.main import exit_status
-from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
+from vehicle_pf_tracker.evaluation.tables import NO_SCORE, markdown
 from vehicle_pf_tracker.following.driver import OfflineTracker
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.results.estimates import EstimateRow
@@ -101,13 +101,13 @@ def _spread(
     """Middle of the values, with the least and the largest where these differ when rounded."""
     known = [value for value in values if value is not None]
     if not known:
-        return NOTHING
+        return NO_SCORE
     text, low, high = (f"{one:.2f}" for one in (middle(known), min(known), max(known)))
     return text if low == high else f"{text} ({low}-{high})"
 
 
 def _ratio(part: int, whole: int) -> str:
-    return f"{part} of {whole}" if whole else NOTHING
+    return f"{part} of {whole}" if whole else NO_SCORE
 
 
 def _summary(score: Score) -> str:

@@ -28,7 +28,7 @@ from laboratory.scenes.perspective import RoadCamera
 from laboratory.scenes.road import RoadSceneParameters, camera_of, road
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
+from vehicle_pf_tracker.evaluation.tables import NO_SCORE, markdown
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters, format_pairs
 from vehicle_pf_tracker.parameters.table import from_mapping
@@ -180,7 +180,7 @@ def quaternion(rotation: np.ndarray) -> tuple[float, float, float, float]:
 
 def _row(speed: str, source: str, judged: Sequence[Judged]) -> list[str]:
     if not judged:
-        return [speed, source, "0", *[NOTHING] * 4]
+        return [speed, source, "0", *[NO_SCORE] * 4]
     errors = [one.error for one in judged]
     sizes = [abs(error) for error in errors]
     within = [abs(one.speed - one.true) <= 2 * one.deviation for one in judged]

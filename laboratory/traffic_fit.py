@@ -28,7 +28,7 @@ from typing import NamedTuple
 from laboratory.result_store import ResultStore
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
+from vehicle_pf_tracker.evaluation.tables import NO_SCORE, markdown
 from vehicle_pf_tracker.evaluation.traffic.comparison import follow
 from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
@@ -184,7 +184,7 @@ def row(decision: Decision, scores: Mapping[float, Mapping[str, float]]) -> list
     chosen = {camera: best_for_others(scores, candidates, camera) for camera in cameras}
     seen = statistics.fmean(scores[shipped].values())
     left_out = statistics.fmean(scores[value][camera] for camera, value in chosen.items())
-    worth = NOTHING
+    worth = NO_SCORE
     if decision.without is not None:
         worth = f"{seen - statistics.fmean(scores[decision.without].values()):+.1f}"
     values = ", ".join(f"{value:g}" for value in chosen.values())

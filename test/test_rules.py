@@ -19,6 +19,13 @@ ROW = re.compile(r"^(share|parameter|\w+_parameter|option|positional|switch|grou
 """Calls that are a row of a table of parameters, laid out by hand."""
 VAGUE = {"HALF", "FEW", "FAR", "LITTLE", "SETTLED_AFTER"}
 """Words that name no decision."""
+VAGUE_ELSEWHERE = {
+    *VAGUE, "CELL", "CELLS", "DOUBT", "ENTRY", "EVEN", "EXIT", "FRAME", "MAX_DIFF", "MAX_SIDE",
+    "MODELS", "NOTHING", "START", "TABLE",
+}  # fmt: skip
+"""Words that name a decision in its own module only, not where it is imported."""
+MOST_TUPLES = 190
+"""Tuples assigned to as many names without need; the number may only become smaller."""
 
 
 def is_number(node: ast.expr | None) -> bool:
@@ -89,6 +96,21 @@ def is_table(value: ast.expr | None) -> bool:
     return len(called) == 1 and None not in called
 
 
+def needless_tuples(tree: ast.Module) -> int:
+    """Count the assignments of a tuple to names none of which it reads: two statements in one."""
+    return sum(
+        isinstance(node, ast.Assign)
+        and isinstance(node.targets[0], ast.Tuple)
+        and isinstance(node.value, ast.Tuple)
+        and not names_in(node.targets[0]) & names_in(node.value)
+        for node in ast.walk(tree)
+    )
+
+
+def names_in(node: ast.expr) -> set[str]:
+    return {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+
+
 def skips_outside_tables(text: str) -> list[int]:
     """Give the lines at which the formatter is told to keep off what is no table."""
     tree = ast.parse(text)
@@ -141,6 +163,22 @@ def test_no_constant_is_named_by_a_word_that_names_no_decision(trees):
     assert not found
 
 
+def test_no_constant_is_imported_by_a_word_that_tells_nothing_elsewhere(trees):
+    found = {
+        f"{path.name}: {alias.name}"
+        for path, tree in trees.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+        if alias.name in VAGUE_ELSEWHERE
+    }
+    assert not found
+
+
+def test_no_more_tuples_are_assigned_than_were(trees):
+    assert sum(map(needless_tuples, trees.values())) <= MOST_TUPLES
+
+
 def test_what_breaks_a_rule_is_found():
     tree = ast.parse("def f(): pass\nEARLY: int = 3\n_LATE = 0.5\nNAMES = ()\n")
     assert late_numbers(tree) == ["EARLY", "_LATE"]
@@ -150,6 +188,8 @@ def test_what_breaks_a_rule_is_found():
     method = "    def f(self):\n        self.b = 1\n"
     assert large_classes(ast.parse(f"class A:\n{fields}\n{method}")) == ["A: 13"]
     assert large_classes(ast.parse(f"class AParameters:\n{fields}\n{method}")) == []
+    assert needless_tuples(ast.parse("a, b = 1, 2\nc.d, e = 3, f\n")) == 2
+    assert needless_tuples(ast.parse("a, b = b, a\nc, d = f(1)\ne = 1, 2\n")) == 0
     row = "class P:\n    a: int = parameter(\n        1,\n    )  # fmt: skip\n"
     assert skips_outside_tables(row) == []
     kind = "low = functools.partial(\n    parameter, 1,\n)  # fmt: skip\n"

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle_pf_tracker.core.association import MAX_DIFF, associate
+from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S, associate
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
@@ -150,7 +150,7 @@ def _open_recording(source: Source, path: Path) -> StressFootage:
     images = [image for image in recording.frames() if image.frame is not None]
     stamps = [image.stamp_ns for image in images]
     truths = recording.truth()
-    pairs = associate(stamps, [truth.stamp_ns for truth in truths], MAX_DIFF)
+    pairs = associate(stamps, [truth.stamp_ns for truth in truths], PAIRED_WITHIN_S)
     frames = [image.frame for image in images]
 
     def frame(index: int) -> Frame:

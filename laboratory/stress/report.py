@@ -15,7 +15,7 @@ from typing import Any
 from laboratory.stress.running import Result
 from laboratory.stress.summary import ALL, MEASURES, Group, faults, groups
 from vehicle_pf_tracker.evaluation.statistics import Summary
-from vehicle_pf_tracker.evaluation.tables import NOTHING, markdown
+from vehicle_pf_tracker.evaluation.tables import NO_SCORE, markdown
 from vehicle_pf_tracker.results.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.results.run_folder import versions
 
@@ -95,7 +95,7 @@ def table_rows(
 def _cell(group: Group, measure: str, intervals: bool) -> str:
     summary = group.summary(measure)
     if summary is None:
-        return NOTHING
+        return NO_SCORE
     decimals = 1 if MEASURES[measure].unit else 3
     text = _number(summary.mean, decimals)
     if intervals and summary.low is not None and summary.high is not None:
@@ -107,7 +107,7 @@ def _cell(group: Group, measure: str, intervals: bool) -> str:
 
 
 def _number(value: float | None, decimals: int = 3) -> str:
-    return NOTHING if value is None else f"{value:.{decimals}f}"
+    return NO_SCORE if value is None else f"{value:.{decimals}f}"
 
 
 def _csv(found: Sequence[Group]) -> str:

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image import compressed_image
 from vehicle_pf_tracker.image.compressed_image import MAX_PIXELS, decode_compressed
-from vehicle_pf_tracker.image.encodings import MAX_SIDE
+from vehicle_pf_tracker.image.encodings import LARGEST_SIDE_PX
 
 RED, GREEN, BLUE = (200, 10, 30), (20, 220, 40), (5, 15, 250)
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -114,7 +114,7 @@ def test_a_cut_image_is_refused_rather_than_filled_with_grey(extension, share):
     ("bomb", "size"),
     [
         (png(30_000, 30_000), "30000x30000"),
-        (png(MAX_SIDE + 1, 1), "32768x1"),
+        (png(LARGEST_SIDE_PX + 1, 1), "32768x1"),
         (png(6_000, 5_001), "6000x5001"),
         (png(2**32 - 1, 2**32 - 1), "4294967295x4294967295"),
         (jpeg(30_000, 30_000), "30000x30000"),
@@ -149,7 +149,7 @@ def test_a_chunk_that_claims_too_much_does_not_come_to_the_decoder(length):
 def test_the_largest_that_is_allowed_comes_to_the_decoder(monkeypatch):
     shown = []
     monkeypatch.setattr(cv2, "imdecode", lambda data, _: shown.append(len(data)))
-    for size in ((6_000, 5_000), (MAX_SIDE, 1)):
+    for size in ((6_000, 5_000), (LARGEST_SIDE_PX, 1)):
         with pytest.raises(InputError, match="damaged"):
             decode_compressed("jpeg", jpeg(*size))
     assert len(shown) == 2

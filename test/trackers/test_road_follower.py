@@ -11,7 +11,7 @@ from vehicle_pf_tracker.road.homography import Homography
 from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.road.poses import Pose
-from vehicle_pf_tracker.trackers.estimate import START, Mode
+from vehicle_pf_tracker.trackers.estimate import START_REGIME, Mode
 from vehicle_pf_tracker.trackers.localisation import (
     ROAD_COLUMNS,
     Contact,
@@ -43,7 +43,7 @@ def drive(follower, points, covariance=None, first=0, **options):
     """Follow estimates at pixels; the first one starts a track."""
     results = []
     for index, point in enumerate(points, first):
-        regime = START if index == 0 else "clear"
+        regime = START_REGIME if index == 0 else "clear"
         one = estimate(tuple(map(float, point)), regime=regime, **options)
         covariance_px = np.eye(2) * 0.01 if covariance is None else covariance
         results.append(follower.follow(one, covariance_px, index * PERIOD))
@@ -140,7 +140,7 @@ PAIRS = "0,0=0,0; 1000,0=100,0; 1000,1000=100,100; 0,1000=0,100"
 def test_localisation_of_pairs():
     local = Localisation("pf", RoadParameters(pairs=PAIRS))
     for index in range(30):
-        regime = START if index == 0 else "clear"
+        regime = START_REGIME if index == 0 else "clear"
         local.follow(estimate((50.0 + 4 * index, 80.0), regime=regime), index * PERIOD, 0.04)
     assert local.road.speed == pytest.approx(36, abs=2)
     assert local.objection == ""
@@ -176,7 +176,7 @@ def test_localisation_waits_for_lens_and_pose():
 def test_a_new_start_begins_the_speed_anew():
     follower = RoadFollower(TENTH, 1.0)
     drive(follower, [(50 + 4 * index, 80) for index in range(40)])
-    one = estimate((400.0, 80.0), regime=START)
+    one = estimate((400.0, 80.0), regime=START_REGIME)
     assert follower.follow(one, np.eye(2), 40 * PERIOD).speed == 0
 
 
@@ -184,5 +184,5 @@ def test_parameters_that_ask_for_nothing_from_outside_take_nothing():
     local = Localisation("pf", RoadParameters(pairs=PAIRS))
     local.set_lens(Lens((1.0, 1.0), (0.0, 0.0)))
     local.set_pose(Pose(np.eye(3), np.zeros(3)))
-    local.follow(estimate(regime=START), 0, 0.04)
+    local.follow(estimate(regime=START_REGIME), 0, 0.04)
     assert local.road.position == pytest.approx([10.0, 8.5])

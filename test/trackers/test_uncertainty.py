@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from estimate_samples import estimate
 
-from vehicle_pf_tracker.trackers.estimate import START, Mode
+from vehicle_pf_tracker.trackers.estimate import START_REGIME, Mode
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.uncertainty import (
     Calibration,
@@ -62,10 +62,10 @@ def test_it_grows_while_hidden_and_no_longer_when_seen_again():
 def test_a_new_start_forgets_size_and_time():
     track = Uncertainty(Calibration(Spread(0.0, 0.0, 0.0, 1.0), NOTHING))
     large = estimate(size=(40.0, 20.0))
-    for index, one in enumerate([estimate(regime=START), large]):
+    for index, one in enumerate([estimate(regime=START_REGIME), large]):
         track.follow(one, index)
     assert track.covariance(large, 1.0)[0, 0] == pytest.approx(800 * np.log(2) ** 2)
-    again = estimate(size=(40.0, 20.0), regime=START)
+    again = estimate(size=(40.0, 20.0), regime=START_REGIME)
     track.follow(again, 2)
     assert track.covariance(again, 1.0)[0, 0] == 0
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from vehicle_pf_tracker.core.association import MAX_DIFF
+from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 if TYPE_CHECKING:
@@ -166,8 +166,8 @@ class MaxDiffOption(VerbRequest):
     """Request that associates estimates and truth."""
 
     max_diff: float = option(
-        default=MAX_DIFF, metavar="S",
-        help=f"largest time between an image and its truth (default: {MAX_DIFF:g} s)",
+        default=PAIRED_WITHIN_S, metavar="S",
+        help=f"largest time between an image and its truth (default: {PAIRED_WITHIN_S:g} s)",
     )  # fmt: skip
 
 

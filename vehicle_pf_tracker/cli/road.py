@@ -31,7 +31,7 @@ from vehicle_pf_tracker.parameters.table import from_mapping, specs, to_mapping
 from vehicle_pf_tracker.recordings.source import ImageSource, frame_at
 from vehicle_pf_tracker.results.output_files import write_picture, write_text
 from vehicle_pf_tracker.road.homography import LEAST_PAIRS
-from vehicle_pf_tracker.road.lens import MODELS
+from vehicle_pf_tracker.road.lens import LENS_MODELS
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
 from vehicle_pf_tracker.road.suspects import disagreement
 from vehicle_pf_tracker.showing.drawing import draw_road_grid
@@ -62,7 +62,9 @@ class Request(SourceOptions, OverwriteOption, _Action):
         help="focal lengths and principal point of the camera, px, as in CameraInfo",
     )  # fmt: skip
     distortion_model: str = option(
-        default="none", choices=MODELS, help="how the lens bends straight lines (default: none)"
+        default="none",
+        choices=LENS_MODELS,
+        help="how the lens bends straight lines (default: none)",
     )
     distortion: str = option(default="", metavar="K1,K2,…", help="numbers of that model")
     frame_id: str = option(

@@ -21,7 +21,7 @@ from vehicle_pf_tracker.cli.requests import (
 )
 from vehicle_pf_tracker.cli.tracking_options import configure
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.baselines import MODELS, Baseline, unknown_baseline
+from vehicle_pf_tracker.evaluation.baselines import BASELINE_MODELS, Baseline, unknown_baseline
 from vehicle_pf_tracker.evaluation.systems import BASELINE, System
 from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
 from vehicle_pf_tracker.parameters.table import (
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 SEEDS, FEW_SEEDS = 5, 1
 """Runs of each system; few where the cases vary more than the seeds of one case do."""
 ALL, ALL_BASELINES = "all", "baselines"
-_BASELINES_WITHOUT_MODELS = tuple(name for name, models in MODELS.items() if not models)
+_BASELINES_WITHOUT_MODELS = tuple(name for name, models in BASELINE_MODELS.items() if not models)
 
 
 Set: TypeAlias = tuple[list[Path], list[str]]
@@ -104,7 +104,7 @@ class EvaluationRequest(WorkersOption):
     variants: str = option(
         default=ALL, metavar="NAME,…",
         help=f"what to compare: {', '.join(VARIANTS)}, or a plug-in; {BASELINE}NAME of OpenCV's "
-        f"{', '.join(MODELS)}; {ALL} (default) for all variants, {ALL_BASELINES} for "
+        f"{', '.join(BASELINE_MODELS)}; {ALL} (default) for all variants, {ALL_BASELINES} for "
         f"{', '.join(_BASELINES_WITHOUT_MODELS)}",
     )  # fmt: skip
     params: Sequence[str] = option(
@@ -240,7 +240,7 @@ def _models(words: Iterable[str]) -> dict[str, dict[str, str]]:
 def _baseline_system(
     name: str, python: Path | None, models: dict[str, dict[str, str]], notes: list[str]
 ) -> System:
-    if name not in MODELS:
+    if name not in BASELINE_MODELS:
         raise unknown_baseline(name)
     own = models.get(name, {})
     build = ""

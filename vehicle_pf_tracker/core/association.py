@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from vehicle_pf_tracker.core.errors import InputError
 
-MAX_DIFF = 0.01
+PAIRED_WITHIN_S = 0.01
 """Largest difference of associated stamps, s: well below a frame period at 30 Hz, 0.033 s."""
 
 

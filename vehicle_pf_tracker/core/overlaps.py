@@ -10,7 +10,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 
-NOTHING = np.empty((0, 4))
+NO_BOXES = np.empty((0, 4))
 """Edges (0, 4) of no boxes."""
 
 

@@ -15,7 +15,7 @@ from vehicle_pf_tracker.counting.foot_point import FootPoint
 from vehicle_pf_tracker.counting.line_watch import LineEdge, LineWatch
 from vehicle_pf_tracker.counting.plausibility import Life, Plausibility
 from vehicle_pf_tracker.counting.recent_path import RecentPath
-from vehicle_pf_tracker.counting.zone_watch import ENTRY, EXIT, ZoneEdge, ZoneWatch
+from vehicle_pf_tracker.counting.zone_watch import ZONE_ENTRY, ZONE_EXIT, ZoneEdge, ZoneWatch
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -119,7 +119,7 @@ class Counter:
     def directions(self) -> Mapping[str, tuple[str, str]]:
         """Names of the two directions of each line and zone, by its name."""
         lines = {line.name: line.directions for line in self.plan.lines}
-        return lines | {zone.name: (ENTRY, EXIT) for zone in self.plan.zones}
+        return lines | {zone.name: (ZONE_ENTRY, ZONE_EXIT) for zone in self.plan.zones}
 
     @property
     def occupancy(self) -> Mapping[str, int]:

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.counting.recent_path import RecentPath
 from vehicle_pf_tracker.counting.side_watch import Passage, SideWatch
 from vehicle_pf_tracker.parameters.counting_plan import CountingZone
 
-ENTRY, EXIT = "entry", "exit"
+ZONE_ENTRY, ZONE_EXIT = "entry", "exit"
 """Directions of a zone."""
 _GRID = 32
 """Points across a zone among which its middle is looked for: it is then known to a few percent."""
@@ -121,4 +121,4 @@ class ZoneWatch:
         if self._watch.side:
             self.is_inside = self._watch.side > 0
         done = [passage for passage in passages if passage is not None]
-        return [(ENTRY if passage.side > 0 else EXIT, passage.at) for passage in done]
+        return [(ZONE_ENTRY if passage.side > 0 else ZONE_EXIT, passage.at) for passage in done]

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from vehicle_pf_tracker.core.association import MAX_DIFF, max_diff_ns
+from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S, max_diff_ns
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame, frame_size
@@ -165,7 +165,7 @@ class Worker:
         )
 
 
-MODELS: Mapping[str, tuple[str, ...]] = {
+BASELINE_MODELS: Mapping[str, tuple[str, ...]] = {
     "csrt": (),
     "kcf": (),
     "mil": (),
@@ -202,11 +202,11 @@ class Baseline(Worker):
     Parameters
     ----------
     name : str
-        A key of `MODELS`.
+        A key of `BASELINE_MODELS`.
     python : Path or None
         Interpreter with OpenCV's contrib package; None looks where `baseline_python` says.
     models : mapping of str to Path
-        Model files by the names that `MODELS` gives for this baseline.
+        Model files by the names that `BASELINE_MODELS` gives for this baseline.
 
     Raises
     ------
@@ -258,16 +258,16 @@ class Baseline(Worker):
 
 def unknown_baseline(name: str) -> InputError:
     """Make the error about a baseline that there is not."""
-    did_you_mean = suggestion(name, MODELS)
+    did_you_mean = suggestion(name, BASELINE_MODELS)
     return InputError(
-        f"unknown baseline {name!r}{did_you_mean}; the baselines are {', '.join(MODELS)}"
+        f"unknown baseline {name!r}{did_you_mean}; the baselines are {', '.join(BASELINE_MODELS)}"
     )
 
 
 def _checked_models(name: str, models: Mapping[str, Path]) -> dict[str, Path]:
-    if name not in MODELS:
+    if name not in BASELINE_MODELS:
         raise unknown_baseline(name)
-    required = MODELS[name]
+    required = BASELINE_MODELS[name]
     if set(models) != set(required):
         words = f"these model files: {', '.join(required)}" if required else "no model files"
         given = f"got {', '.join(sorted(models))}" if models else "got none"
@@ -292,7 +292,7 @@ def baseline_rows(
     InputError
         If no image belongs to the first truth, or the baseline cannot go on.
     """
-    limit = max_diff_ns(MAX_DIFF)
+    limit = max_diff_ns(PAIRED_WITHIN_S)
     started = False
     for number, (stamp, frame) in enumerate(frames, start=1):
         if frame is None:
@@ -306,7 +306,7 @@ def baseline_rows(
             yield EstimateRow.without(number, stamp, WAITING)
     if not started:
         raise InputError(
-            f"no image is within {MAX_DIFF:g} s of the first truth, "
+            f"no image is within {PAIRED_WITHIN_S:g} s of the first truth, "
             f"at {first_truth.stamp_ns / 1e9:.3f} s; the baseline {baseline.name} cannot start"
         )
 

@@ -63,7 +63,7 @@ class Source:
 
 
 PLAN, FAILED = "evaluation.json", "failed.json"
-CELLS, RECORDINGS = "cells", "recordings"
+CELLS_FOLDER, RECORDINGS_FOLDER = "cells", "recordings"
 TRUTH = "truth.csv"
 
 COLUMNS = ("frame", "stamp_ns", "x", "y", "width", "height", "occlusion")
@@ -147,7 +147,7 @@ class EvaluationFolder:
 
     def truth(self, recording: str) -> dict[int, Truth]:
         """Return the truths of a recording by the number of their frame; empty without any."""
-        path = self.path / RECORDINGS / recording / TRUTH
+        path = self.path / RECORDINGS_FOLDER / recording / TRUTH
         return read_truth(path) if path.is_file() else {}
 
     def cell(
@@ -170,7 +170,7 @@ class EvaluationFolder:
 
 def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:
     """Return the folder of one cell of the evaluation in `folder`."""
-    return folder / CELLS / recording / safe_name(system) / f"seed-{seed}"
+    return folder / CELLS_FOLDER / recording / safe_name(system) / f"seed-{seed}"
 
 
 def safe_name(label: str) -> str:

@@ -21,7 +21,7 @@ import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.core.association import MAX_DIFF, associate
+from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S, associate
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.results.estimates import WAITING, EstimateRow
@@ -122,7 +122,7 @@ class Scores:
 
 
 def score_frames(
-    rows: Sequence[EstimateRow], truths: Sequence[Truth], max_diff: float = MAX_DIFF
+    rows: Sequence[EstimateRow], truths: Sequence[Truth], max_diff: float = PAIRED_WITHIN_S
 ) -> Scores:
     """Score estimates against truth, associated by stamp.
 

@@ -24,7 +24,7 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
 from vehicle_pf_tracker.evaluation.scores import OcclusionScore
 from vehicle_pf_tracker.evaluation.statistics import Summary
 
-NOTHING = "-"
+NO_SCORE = "-"
 Rows: TypeAlias = list[list[str]]
 
 

@@ -13,7 +13,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any, TypeVar
 
-from vehicle_pf_tracker.core.association import MAX_DIFF, is_nearest, max_diff_ns
+from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S, is_nearest, max_diff_ns
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
@@ -33,7 +33,7 @@ from vehicle_pf_tracker.showing.drawing import Annotator, annotated
 from vehicle_pf_tracker.showing.estimates_recording import OnFrame
 from vehicle_pf_tracker.showing.live_page import PAGE, LivePage
 from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
-from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.image_stream import StrayImageError
 from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS, Localisation
 from vehicle_pf_tracker.trackers.registry import Variant
@@ -80,7 +80,7 @@ class OfflineTracker:
         *,
         first_truth: Truth | None = None,
         targets: Mapping[int, Box] = MappingProxyType({}),
-        max_diff: float = MAX_DIFF,
+        max_diff: float = PAIRED_WITHIN_S,
     ) -> None:
         self.session = Session(variant, parameters, settings)
         self.start_frame: int | None = None
@@ -179,7 +179,7 @@ class OfflineTracker:
             return EstimateRow.without(number, stamp_ns, WAITING)
         if self.start_frame is None:
             self.start_frame = number
-        if estimate.regime == START:
+        if estimate.begins:
             self._stillness.begin(estimate.box, stamp_ns)
         if estimate.mode is Mode.TRACKING:
             warnings = self._stillness.look(frame, estimate.box, stamp_ns)

@@ -18,7 +18,7 @@ Alive: TypeAlias = npt.NDArray[np.bool_]
 Flow: TypeAlias = npt.NDArray[np.float32]
 """Displacement by [y, x], as x and y, to where the pixel was in an earlier image, px."""
 CellBlock: TypeAlias = npt.NDArray[np.intp]
-"""First column and row, and number of columns and rows, (2, 2); a cell has `CELL` px."""
+"""First column and row, and number of columns and rows, (2, 2); a cell has `FLOW_CELL_PX` px."""
 
 TURN_FITS = 2
 """Fits of the turn: one for all, and one in which those that strayed from it count less."""
@@ -35,7 +35,7 @@ change by 0.12."""
 LEAST_RATIO = 0.2
 """Bound of the ratio of two distances, whose logarithm is taken."""
 
-CELL = 4
+FLOW_CELL_PX = 4
 """Px between points of a surface: dense flow is no finer."""
 STRAYED_PX = 3.0
 """Distance in px from where its vehicle would have taken it, from which a point has moved on its
@@ -126,7 +126,8 @@ def carried_share(
     (left, top), (columns, rows) = cells.tolist()
     block = slice(top, top + rows), slice(left, left + columns)
     points = _middles(*flow.shape[:2])[block].reshape(-1, 2)
-    source = points + flow[CELL // 2 :: CELL, CELL // 2 :: CELL][block].reshape(-1, 2)
+    middles = slice(FLOW_CELL_PX // 2, None, FLOW_CELL_PX)
+    source = points + flow[middles, middles][block].reshape(-1, 2)
     place = points * places[0] + places[1]
     off = source - (points * vehicle[0] + vehicle[1])
     limits = np.full(len(points), STRAYED_PX)
@@ -143,5 +144,5 @@ def carried_share(
 @functools.cache
 def _middles(height: int, width: int) -> Array:
     """Middles of all cells, by [row, column]."""
-    x, y = (np.arange(CELL // 2, side, CELL) + 0.5 for side in (width, height))
+    x, y = (np.arange(FLOW_CELL_PX // 2, side, FLOW_CELL_PX) + 0.5 for side in (width, height))
     return np.stack(np.meshgrid(x, y), axis=-1)

@@ -18,7 +18,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.encodings import MAX_SIDE, Buffer, flat_bytes
+from vehicle_pf_tracker.image.encodings import LARGEST_SIDE_PX, Buffer, flat_bytes
 
 MAX_PIXELS = 30_000_000
 """Three and a half times those of 4K video; decoding so many takes some 200 MB."""
@@ -91,7 +91,7 @@ def read_compressed(format: str, data: Buffer) -> CodedImage:  # noqa: A002
     ------
     InputError
         If the data are empty, cut off, neither JPEG nor PNG, or if they claim a side above
-        `MAX_SIDE` or more than `MAX_PIXELS` pixels.
+        `LARGEST_SIDE_PX` or more than `MAX_PIXELS` pixels.
     """
     name = f"a compressed image (format {format!r})"
     coded = flat_bytes(data).tobytes()
@@ -107,10 +107,10 @@ def read_compressed(format: str, data: Buffer) -> CodedImage:  # noqa: A002
         raise InputError(f"{name} is cut off before its end")
     if not width:
         raise InputError(f"{name} cannot be decoded: it does not state its size")
-    if max(width, height) > MAX_SIDE or width * height > MAX_PIXELS:
+    if max(width, height) > LARGEST_SIDE_PX or width * height > MAX_PIXELS:
         raise InputError(
             f"{name} claims {width}x{height} px, above the {MAX_PIXELS // 10**6} megapixels and "
-            f"{MAX_SIDE} px a side that are read; is it broken?"
+            f"{LARGEST_SIDE_PX} px a side that are read; is it broken?"
         )
     return CodedImage(name, (width, height), coded[:end])
 

@@ -24,7 +24,7 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 Bytes: TypeAlias = npt.NDArray[np.uint8]
 Buffer: TypeAlias = "bytes | bytearray | memoryview | array.array[int] | Bytes"
 
-MAX_SIDE = 32767
+LARGEST_SIDE_PX = 32767
 """Longest side in px: the limit of OpenCV's 16-bit coordinates."""
 
 
@@ -71,7 +71,7 @@ def frame_of_message(message: Any) -> Frame:
     ------
     InputError
         If the encoding is unknown, the size is zero, odd where pixels share their colour, or above
-        `MAX_SIDE`, `step` is shorter than a row, or the data are shorter than the image.
+        `LARGEST_SIDE_PX`, `step` is shorter than a row, or the data are shorter than the image.
     """
     layout = ENCODINGS.get(message.encoding)
     if layout is None:
@@ -105,8 +105,10 @@ def _check_layout(layout: _Encoding, message: Any) -> None:
     size = f"{width}x{height} px in {message.encoding}"
     if height <= 0 or width <= 0:
         raise InputError(f"an image of {size} has no pixels")
-    if max(height, width) > MAX_SIDE:
-        raise InputError(f"an image of {size} is larger than {MAX_SIDE} px; is the message broken?")
+    if max(height, width) > LARGEST_SIDE_PX:
+        raise InputError(
+            f"an image of {size} is larger than {LARGEST_SIDE_PX} px; is the message broken?"
+        )
     if layout.even and (width % 2 or (layout.rows > 1 and height % 2)):
         raise InputError(f"an image of {size} is odd, but pixels share their colour in pairs")
     if step < width * layout.pixel_bytes:

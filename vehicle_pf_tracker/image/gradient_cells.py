@@ -20,7 +20,7 @@ Grey: TypeAlias = npt.NDArray[np.uint8]
 CellFeatures: TypeAlias = npt.NDArray[np.float32]
 """Feature channels of cells, shape (channels, rows, columns)."""
 
-CELL = 4
+GRADIENT_CELL_PX = 4
 """Side of a cell in px; the smallest of the paper's, since a target has only some 10 cells."""
 DIRECTIONS = 18
 """Signed directions; the paper's number."""
@@ -65,7 +65,7 @@ def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
 
 def _direction_histograms(grey: Grey) -> npt.NDArray[np.float32]:
     """Sum magnitudes by cell and direction, shared bilinearly between cells, (r, c, 18)."""
-    rows, columns = grey.shape[0] // CELL, grey.shape[1] // CELL
+    rows, columns = grey.shape[0] // GRADIENT_CELL_PX, grey.shape[1] // GRADIENT_CELL_PX
     wide = grey.astype(np.intp)
     dx = (wide[1:-1, 2:] - wide[1:-1, :-2] + 255).ravel()
     dy = (wide[2:, 1:-1] - wide[:-2, 1:-1] + 255).ravel()
@@ -89,7 +89,7 @@ def _direction_histograms(grey: Grey) -> npt.NDArray[np.float32]:
 
 def _cell_shares(length: int) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.float64]]:
     """First of the two cells that each inner pixel belongs to, and its share of the second."""
-    place = (np.arange(1, length - 1) + 0.5) / CELL + 0.5
+    place = (np.arange(1, length - 1) + 0.5) / GRADIENT_CELL_PX + 0.5
     first = np.floor(place).astype(np.intp)
     return first, place - first
 

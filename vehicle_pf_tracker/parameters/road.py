@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.road.lens import MODELS, Lens
+from vehicle_pf_tracker.road.lens import LENS_MODELS, Lens
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.road.poses import Pose
 
@@ -34,7 +34,7 @@ class RoadParameters:
         "needed to remove distortion, and for the road from the camera's pose.", unit="px",
     )  # fmt: skip
     distortion_model: str = parameter(
-        "none", "Model of the lens's distortion, by its name in CameraInfo.", choices=MODELS
+        "none", "Model of the lens's distortion, by its name in CameraInfo.", choices=LENS_MODELS
     )
     distortion: str = parameter(
         "", "Coefficients of the distortion, in the order of CameraInfo, apart by commas."

@@ -13,7 +13,7 @@ from typing import Any
 
 from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
-from vehicle_pf_tracker.counting.zone_watch import ENTRY, EXIT
+from vehicle_pf_tracker.counting.zone_watch import ZONE_ENTRY, ZONE_EXIT
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.parameters.counting_plan import Region
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate, TrackMode
@@ -123,8 +123,8 @@ class TrafficSummary:
             for line in counter.plan.lines
         ]
         zones = [
-            f"zone {zone.name}: {counter.count(zone.name, ENTRY)} entered, "
-            f"{counter.count(zone.name, EXIT)} left"
+            f"zone {zone.name}: {counter.count(zone.name, ZONE_ENTRY)} entered, "
+            f"{counter.count(zone.name, ZONE_EXIT)} left"
             for zone in counter.plan.zones
         ]
         return [*found, *lines, *zones]

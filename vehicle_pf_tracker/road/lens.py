@@ -23,7 +23,7 @@ _MODELS: Mapping[str, tuple[int, ...]] = {
     "equidistant": (4,),
 }
 """Numbers of coefficients that each model may have."""
-MODELS = tuple(_MODELS)
+LENS_MODELS = tuple(_MODELS)
 _ROUNDS = 30
 """Newton steps of the removal; four to eight settle it where the model can be inverted."""
 _TOLERANCE = 1e-9
@@ -46,7 +46,7 @@ class Lens:
     centre : (float, float)
         Principal point cx, cy in px, as in CameraInfo.
     model : str
-        One of `MODELS`, the names of CameraInfo.
+        One of `LENS_MODELS`, the names of CameraInfo.
     coefficients : tuple of float
         Coefficients of the distortion, in the order of CameraInfo.
     """
@@ -62,7 +62,8 @@ class Lens:
             raise InputError("the camera's focal lengths must be above 0, and all numbers finite")
         if self.model not in _MODELS:
             raise InputError(
-                f"the distortion model {self.model!r} is not known; use one of {', '.join(MODELS)}"
+                f"the distortion model {self.model!r} is not known; "
+                f"use one of {', '.join(LENS_MODELS)}"
             )
         counts = _MODELS[self.model]
         if len(self.coefficients) not in counts:

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
 from vehicle_pf_tracker.counting.foot_point import foot_of
-from vehicle_pf_tracker.counting.zone_watch import ENTRY, EXIT
+from vehicle_pf_tracker.counting.zone_watch import ZONE_ENTRY, ZONE_EXIT
 from vehicle_pf_tracker.showing import drawing
 from vehicle_pf_tracker.showing.drawing import Labels
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -96,7 +96,7 @@ def draw_counts(picture: Frame, labels: Labels, counter: Counter, scale: float =
     for zone in counter.plan.zones:
         corners = np.array(zone.corners) * scale
         drawing.draw_path(picture, corners, _PLAN, closed=True)
-        entries, exits = (counter.count(zone.name, to) for to in (ENTRY, EXIT))
+        entries, exits = (counter.count(zone.name, to) for to in (ZONE_ENTRY, ZONE_EXIT))
         there = counter.occupancy[zone.name]
         words = f"{zone.name}: {there} ({entries} entered, {exits} left)"
         highest = corners[corners[:, 1].argmin()].tolist()

@@ -29,7 +29,7 @@ from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Window, is_outside, keep_inside
 from vehicle_pf_tracker.parameters.table import specs, to_mapping
-from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode, read_only
+from vehicle_pf_tracker.trackers.estimate import START_REGIME, Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
 from vehicle_pf_tracker.trackers.parameters import ParametersT, ParticleParameters, WindowParameters
 
@@ -215,7 +215,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         self._cloud = Cloud.uniform(keep_inside(frame, self._scatter(box.centre)))
         self._learn()
         x, y = keep_inside(frame, np.asarray(box.centre))
-        outcome = Outcome(self._cloud, (float(x), float(y)), (0.0, 0.0), START, 1.0, {})
+        outcome = Outcome(self._cloud, (float(x), float(y)), (0.0, 0.0), START_REGIME, 1.0, {})
         return self._estimate(outcome, Mode.TRACKING, 1.0, began)
 
     def step(self, frame: Frame, elapsed: float = 1.0) -> Estimate:

@@ -13,8 +13,8 @@ from types import MappingProxyType
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 
-START = "start"
-"""Regime of an estimate that begins a track."""
+START_REGIME = "start"
+"""Regime of an estimate that begins a track, by the name that tables and messages use."""
 
 
 class Mode(str, Enum):
@@ -71,6 +71,11 @@ class Estimate:
     particles: Array = field(repr=False)
     weights: Array = field(repr=False)
     duration: float = 0.0
+
+    @property
+    def begins(self) -> bool:
+        """True of the first estimate of a target."""
+        return self.regime == START_REGIME
 
     def scalars(self) -> Mapping[str, float | int | str]:
         """Return every scalar by the name that `~/mode` and the tables use."""

@@ -21,7 +21,7 @@ from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.motion import KMH, RoadMotion
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.road.poses import Pose
-from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.uncertainty import Uncertainty
 from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 
@@ -155,7 +155,7 @@ class RoadFollower:
 
     def follow(self, estimate: Estimate, covariance: Array, stamp_ns: int) -> RoadEstimate | None:
         """Take the next estimate with its covariance (2, 2; px²); None where it has no road."""
-        if self._contact is None or estimate.regime == START:
+        if self._contact is None or estimate.begins:
             self._contact = Contact.of(self._plane, estimate.box)
             self._motion = None
         centre = np.asarray(estimate.position, np.float64)

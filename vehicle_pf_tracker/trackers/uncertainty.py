@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +104,7 @@ class Uncertainty:
 
     def follow(self, estimate: Estimate, stamp_ns: int) -> None:
         """Take the next estimate: note for how long the vehicle has not been visible."""
-        if estimate.regime == START or not self._first_area:
+        if estimate.begins or not self._first_area:
             self._first_area = estimate.box.area
         if estimate.mode is Mode.TRACKING or self._seen_ns is None or stamp_ns < self._seen_ns:
             self._seen_ns = stamp_ns

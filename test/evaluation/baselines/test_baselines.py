@@ -19,8 +19,8 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation import baseline_worker as worker
 from vehicle_pf_tracker.evaluation import baselines as client
 from vehicle_pf_tracker.evaluation.baselines import (
+    BASELINE_MODELS,
     DEFAULT,
-    MODELS,
     VARIABLE,
     Baseline,
     BaselineAnswer,
@@ -109,7 +109,7 @@ def test_wrong_baselines_and_models_are_told_in_a_sentence(name, models, words):
 
 
 def test_every_baseline_of_the_client_is_known_to_the_worker():
-    assert list(MODELS) == list(worker.OPENCV)
+    assert list(BASELINE_MODELS) == list(worker.OPENCV)
 
 
 def test_an_opencv_without_the_tracker_is_named(monkeypatch):

@@ -11,14 +11,14 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from vehicle_pf_tracker.core.association import MAX_DIFF
+from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.cache_key import result_key, variant_modules
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     FORMAT,
     PLAN,
-    RECORDINGS,
+    RECORDINGS_FOLDER,
     TRUTH,
     Source,
     cell_folder,
@@ -122,7 +122,7 @@ class Plan:
     systems: Sequence[System]
     seeds: Sequence[int]
     command: list[str]
-    max_diff: float = MAX_DIFF
+    max_diff: float = PAIRED_WITHIN_S
     part: Part = ALL_CELLS
 
     def __post_init__(self) -> None:
@@ -148,7 +148,7 @@ class Plan:
     def write(self, folder: Path) -> None:
         """Write `evaluation.json` and the truth of every recording."""
         for source, truths in self.recordings.items():
-            write_truth(make_folder(folder / RECORDINGS / source.name) / TRUTH, truths)
+            write_truth(make_folder(folder / RECORDINGS_FOLDER / source.name) / TRUTH, truths)
         plan = {
             "format": FORMAT,
             "command": self.command,

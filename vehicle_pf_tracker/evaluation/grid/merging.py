@@ -12,7 +12,12 @@ from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
-from vehicle_pf_tracker.evaluation.evaluation_folder import CELLS, PLAN, RECORDINGS, read_document
+from vehicle_pf_tracker.evaluation.evaluation_folder import (
+    CELLS_FOLDER,
+    PLAN,
+    RECORDINGS_FOLDER,
+    read_document,
+)
 from vehicle_pf_tracker.results.output_files import make_folder, write_json
 from vehicle_pf_tracker.results.run_folder import METRICS
 
@@ -39,10 +44,10 @@ def merge(parts: Sequence[Path], output: Path) -> int:
     write_json(output / PLAN, plans[first])
     with output_errors(output):
         for part in parts:
-            _copy(part / RECORDINGS, output / RECORDINGS)
-            for cell in sorted((part / CELLS).glob("*/*/seed-*")):
+            _copy(part / RECORDINGS_FOLDER, output / RECORDINGS_FOLDER)
+            for cell in sorted((part / CELLS_FOLDER).glob("*/*/seed-*")):
                 _copy_cell(cell, output / cell.relative_to(part))
-    return len(list((output / CELLS).glob("*/*/seed-*")))
+    return len(list((output / CELLS_FOLDER).glob("*/*/seed-*")))
 
 
 def _check_alike(first: Path, one: Mapping[str, Any], part: Path, other: Mapping[str, Any]) -> None:

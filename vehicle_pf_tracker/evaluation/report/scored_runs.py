@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vehicle_pf_tracker.core.association import MAX_DIFF
+from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
@@ -133,7 +133,7 @@ def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
 def _result(
     folder: EvaluationFolder, key: tuple[str, str, int], truth: Mapping[int, Truth]
 ) -> ScoredRun | FailedCell:
-    max_diff = float(folder.plan.get("options", {}).get("max_diff", MAX_DIFF))
+    max_diff = float(folder.plan.get("options", {}).get("max_diff", PAIRED_WITHIN_S))
     try:
         rows, run = folder.cell(*key)
         scores = score_frames(rows, list(truth.values()), max_diff)

@@ -22,7 +22,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import FollowedVehicle
 from vehicle_pf_tracker.detection.motion_detector import MotionDetector
-from vehicle_pf_tracker.evaluation.tables import NOTHING, Rows, markdown
+from vehicle_pf_tracker.evaluation.tables import NO_SCORE, Rows, markdown
 from vehicle_pf_tracker.evaluation.traffic.scoring import (
     TRAFFIC_BASELINES,
     TrafficWorker,
@@ -318,7 +318,7 @@ def _text(line: TrafficResult, name: str) -> str:
     value = line.values.get(name)
     decimals = COLUMNS[name][1]
     if value is None:
-        return NOTHING
+        return NO_SCORE
     if name == "kept":
         return f"{value:.{decimals}f} % of {line.occlusions}"
     if name == "count_error":

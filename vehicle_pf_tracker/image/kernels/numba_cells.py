@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.image.gradient_cells import (
-    CELL,
     DIRECTION_OF,
     DIRECTIONS,
+    GRADIENT_CELL_PX,
     GRADIENT_CHANNELS,
     NOISE_ENERGY,
     TEXTURE_GAIN,
@@ -69,14 +69,14 @@ def _direction_histograms(
     tested for being negative.
     """
     height, width = grey.shape
-    columns = width // CELL + 2
-    cells = np.zeros((DIRECTIONS, height // CELL + 2, columns), np.float32)
+    columns = width // GRADIENT_CELL_PX + 2
+    cells = np.zeros((DIRECTIONS, height // GRADIENT_CELL_PX + 2, columns), np.float32)
     sums = np.zeros(DIRECTIONS * columns, np.float32)
     above = np.zeros_like(sums)
     below = np.zeros_like(sums)
     magnitudes = np.empty(width, np.float32)
     places = np.empty(width, np.uint32)
-    place_x = (np.arange(width) + 0.5) / CELL + 0.5
+    place_x = (np.arange(width) + 0.5) / GRADIENT_CELL_PX + 0.5
     column = place_x.astype(np.uint64)
     share = (place_x - column).astype(np.float32)
     for y in range(1, height - 1):
@@ -88,10 +88,10 @@ def _direction_histograms(
             i = np.uint64(direction) * np.uint64(columns) + column[x]
             sums[i] += magnitudes[x] - right
             sums[i + np.uint64(1)] += right
-        place_y = (y + 0.5) / CELL + 0.5
+        place_y = (y + 0.5) / GRADIENT_CELL_PX + 0.5
         row = int(place_y)
         _share_row(sums, np.float32(place_y - row), above, below)
-        if int((y + 1.5) / CELL + 0.5) != row or y == height - 2:
+        if int((y + 1.5) / GRADIENT_CELL_PX + 0.5) != row or y == height - 2:
             for o in range(DIRECTIONS):
                 for x in range(columns):
                     cells[o, row, x] += above[o * columns + x]
@@ -166,7 +166,9 @@ def _features(grey: Grey, direction_of: npt.NDArray[np.uint8], channels: int) ->
     if channels < DIRECTIONS + _UNSIGNED + 4:
         raise IndexError("there are fewer channels than features")
     # In this order of memory rows are transformed without a copy.
-    features = np.empty((grey.shape[0] // CELL, channels, grey.shape[1] // CELL), np.float32)
+    features = np.empty(
+        (grey.shape[0] // GRADIENT_CELL_PX, channels, grey.shape[1] // GRADIENT_CELL_PX), np.float32
+    )
     cells = _direction_histograms(grey, direction_of)
     _normalise(cells, _scales(cells), features)
     return features

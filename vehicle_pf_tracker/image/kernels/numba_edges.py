@@ -15,8 +15,8 @@ from numba import types
 from vehicle_pf_tracker.image.gradients import DIRECTION_BINS
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
+    BIN_TABLE,
     RECTANGLES,
-    TABLE,
     Rectangles,
     Table,
 )
@@ -276,7 +276,7 @@ def _check(
         RECTANGLES,
         PAIR,
         types.UniTuple(types.float32, 2),
-        types.Tuple((TABLE, _TANGENTS, types.boolean)),
+        types.Tuple((BIN_TABLE, _TANGENTS, types.boolean)),
         types.int32[:, ::1],
     )
 )

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from numba import types
 
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
-from vehicle_pf_tracker.image.kernels.numba_pixel_cells import CELLS, RECTANGLES, Cells
+from vehicle_pf_tracker.image.kernels.numba_pixel_cells import CELL_PLANES, RECTANGLES, Cells
 from vehicle_pf_tracker.image.kernels.numba_windows import REALS, Pixels, Reals
 from vehicle_pf_tracker.image.mean_shift import epanechnikov
 from vehicle_pf_tracker.image.window import Window
@@ -22,7 +22,7 @@ from vehicle_pf_tracker.image.window import Window
 Offsets: TypeAlias = npt.NDArray[np.int64]
 
 _OFFSETS = types.Array(types.int64, 2, "C", readonly=True)
-_ARGUMENTS = CELLS, RECTANGLES, _OFFSETS, REALS, REALS
+_ARGUMENTS = CELL_PLANES, RECTANGLES, _OFFSETS, REALS, REALS
 
 
 @functools.lru_cache(maxsize=8)

@@ -25,14 +25,14 @@ Cells: TypeAlias = npt.NDArray[np.uint16]
 Table: TypeAlias = npt.NDArray[np.uint16]
 Rectangles: TypeAlias = npt.NDArray[np.int64]
 
-FRAME = types.Array(types.uint8, 3, "A", readonly=True)
-GREY = types.Array(types.uint8, 2, "A", readonly=True)
-TABLE = types.Array(types.uint16, 1, "C", readonly=True)
-CELLS = types.uint16[:, :, ::1]
+RGB_IMAGE = types.Array(types.uint8, 3, "A", readonly=True)
+GREY_IMAGE = types.Array(types.uint8, 2, "A", readonly=True)
+BIN_TABLE = types.Array(types.uint16, 1, "C", readonly=True)
+CELL_PLANES = types.uint16[:, :, ::1]
 RECTANGLES = types.int64[:, ::1]
 
 
-@compiled(CELLS(FRAME, types.int64, TABLE))
+@compiled(CELL_PLANES(RGB_IMAGE, types.int64, BIN_TABLE))
 def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
     """Cells of each channel's own bins, a plane each; channel `c` has bins from ``c * levels``."""
     height, width, channels = pixels.shape
@@ -47,7 +47,7 @@ def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
     return cells
 
 
-@compiled(CELLS(GREY, TABLE))
+@compiled(CELL_PLANES(GREY_IMAGE, BIN_TABLE))
 def pair_cells(grey: Grey, table: Table) -> Cells:
     """Cells of the 8 x 8 grey levels of each pixel and the next one in its row, one plane."""
     height, width = grey.shape[0], max(grey.shape[1] - 1, 0)

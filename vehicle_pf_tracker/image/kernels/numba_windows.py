@@ -21,10 +21,10 @@ from numba import types
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
-    CELLS,
-    FRAME,
+    BIN_TABLE,
+    CELL_PLANES,
     RECTANGLES,
-    TABLE,
+    RGB_IMAGE,
     Cells,
     Rectangles,
     Table,
@@ -106,7 +106,7 @@ def place_windows(
     return pixels, (left, top, right, bottom)
 
 
-@compiled(CELLS(FRAME, types.int64, TABLE))
+@compiled(CELL_PLANES(RGB_IMAGE, types.int64, BIN_TABLE))
 def joint_cells(pixels: Frame, bits: int, table: Table) -> Cells:
     """Cells of joint RGB bins, one plane."""
     height, width, channels = pixels.shape
@@ -246,7 +246,7 @@ def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
     return result
 
 
-@compiled(types.float64[::1](CELLS, RECTANGLES, _SCALE))
+@compiled(types.float64[::1](CELL_PLANES, RECTANGLES, _SCALE))
 def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale) -> Reals:
     """Compare windows one after the other; parameters as for `compare_windows`."""
     planes, height, width = cells.shape
@@ -281,7 +281,7 @@ def _is_sliding_worthwhile(
     return sliding <= count * (_PIXEL * len(cells) * across * (2 * reach[2] + 1) + bins)
 
 
-@compiled(types.float64[::1](CELLS, RECTANGLES, _REACH, _SCALE))
+@compiled(types.float64[::1](CELL_PLANES, RECTANGLES, _REACH, _SCALE))
 def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) -> Reals:
     """Compare windows with a reference.
 
@@ -319,7 +319,7 @@ def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) ->
     return compare_rectangles(cells, rectangles, scale)
 
 
-@compiled(types.float64[::1](FRAME, _POSITIONS, types.int64, PAIR, TABLE, _SCALE))
+@compiled(types.float64[::1](RGB_IMAGE, _POSITIONS, types.int64, PAIR, BIN_TABLE, _SCALE))
 def compare_joint(
     frame: Frame, positions: Positions, bits: int, half: tuple[int, int], table: Table, scale: Scale
 ) -> Reals:

@@ -10,7 +10,7 @@ import time
 
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.image.encodings import MAX_SIDE
+from vehicle_pf_tracker.image.encodings import LARGEST_SIDE_PX
 from vehicle_pf_tracker.ros.own_files import own_file, read_small, write_private
 
 _SAVE_EVERY = 1.0
@@ -69,4 +69,4 @@ class KeptTarget:
             box = Box(*map(float, json.loads(text)))
         except (ValueError, TypeError, ArithmeticError, RecursionError):
             raise InputError(f"{self._path} holds no box [x, y, width, height]") from None
-        return check_target(box, MAX_SIDE, MAX_SIDE)
+        return check_target(box, LARGEST_SIDE_PX, LARGEST_SIDE_PX)

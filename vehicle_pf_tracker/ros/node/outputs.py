@@ -30,7 +30,7 @@ from vehicle_pf_tracker.ros.node.answer import Answer, TrackerAnswer
 from vehicle_pf_tracker.ros.node.camera_inputs import StreamLocalisation
 from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.showing.drawing import Annotator, draw_target
-from vehicle_pf_tracker.trackers.estimate import START, Estimate
+from vehicle_pf_tracker.trackers.estimate import Estimate
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
@@ -188,7 +188,7 @@ class TrackerOutputs(Outputs):
         self, header: Header, estimate: Estimate, own: NodeParameters, period: float
     ) -> None:
         """Publish where the vehicle is; the frame `period` in s makes px/frame to px/s."""
-        if estimate.regime == START:
+        if estimate.begins:
             self._track += 1
             self._annotator.follow(None)  # a new path
         self._annotator.follow(estimate)

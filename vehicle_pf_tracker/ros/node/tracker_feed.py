@@ -16,7 +16,7 @@ from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
-from vehicle_pf_tracker.image.encodings import MAX_SIDE
+from vehicle_pf_tracker.image.encodings import LARGEST_SIDE_PX
 from vehicle_pf_tracker.image.stillness import Stillness
 from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import Configuration
@@ -25,7 +25,7 @@ from vehicle_pf_tracker.ros.node.answer import Answer, TrackerAnswer
 from vehicle_pf_tracker.ros.node.camera_inputs import StreamLocalisation
 from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
-from vehicle_pf_tracker.trackers.estimate import START, Estimate, Mode
+from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TargetError
 
@@ -160,7 +160,7 @@ class TrackerFeed:
         InputError
             If it is no box in any image.
         """
-        self.asked = check_target(box, MAX_SIDE, MAX_SIDE)
+        self.asked = check_target(box, LARGEST_SIDE_PX, LARGEST_SIDE_PX)
 
     def reset(self) -> str:
         """Go back to the configured target, or to waiting for one.
@@ -239,7 +239,7 @@ class TrackerFeed:
     def _doubts(self, header: Header, frame: Frame, estimate: Estimate) -> list[str]:
         """Log what speaks against the target, and return it, a sentence each."""
         sentences = []
-        if estimate.regime == START:
+        if estimate.begins:
             self._stillness.begin(estimate.box, stamp_ns(header))
             sentences += [f"the target is doubtful: {why}" for why in doubts(frame, estimate.box)]
         if estimate.mode is Mode.TRACKING:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from vehicle_pf_tracker.core.association import MAX_DIFF, is_nearest, max_diff_ns
+from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S, is_nearest, max_diff_ns
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.following.driver import with_next
@@ -41,7 +41,7 @@ def starting_target(recording: Recording, options: ReplayOptions) -> tuple[Box, 
     """
     if options.target is not None:
         return options.target, 1
-    earliest_ns = (first_image(recording, options).stamp_ns or 0) - max_diff_ns(MAX_DIFF)
+    earliest_ns = (first_image(recording, options).stamp_ns or 0) - max_diff_ns(PAIRED_WITHIN_S)
     truth = recording.first_truth()
     if truth is not None and truth.stamp_ns < earliest_ns:
         truth = next((item for item in recording.truth() if item.stamp_ns >= earliest_ns), None)
@@ -49,10 +49,10 @@ def starting_target(recording: Recording, options: ReplayOptions) -> tuple[Box, 
         return None
     images = played(recording, options, {recording.image_topic})
     stamps = (image.stamp_ns for image in images if image.stamp_ns is not None)
-    frame = nearest_frame(stamps, truth.stamp_ns, max_diff_ns(MAX_DIFF))
+    frame = nearest_frame(stamps, truth.stamp_ns, max_diff_ns(PAIRED_WITHIN_S))
     if frame is None:
         raise InputError(
-            f"no image that is played is within {MAX_DIFF:g} s of the first truth, "
+            f"no image that is played is within {PAIRED_WITHIN_S:g} s of the first truth, "
             f"at {truth.stamp_ns / 1e9:.3f} s; give a target with --target x,y,w,h"
         )
     return truth.box, frame

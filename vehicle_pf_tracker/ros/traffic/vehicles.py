@@ -19,7 +19,7 @@ from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.image.compressed_image import CodedImage
-from vehicle_pf_tracker.image.encodings import MAX_SIDE
+from vehicle_pf_tracker.image.encodings import LARGEST_SIDE_PX
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
@@ -167,7 +167,7 @@ class Vehicles(CountedVehicles):
             self._added += 1
             self.given.append(box)
             return identity
-        check_target(box, MAX_SIDE, MAX_SIDE)
+        check_target(box, LARGEST_SIDE_PX, LARGEST_SIDE_PX)
         self.waiting.append(box)
         return None
 

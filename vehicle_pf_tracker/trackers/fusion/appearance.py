@@ -20,7 +20,12 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.canonical_patch import Patch, cut_image, cut_patch
 from vehicle_pf_tracker.image.correlation_filter import UPSAMPLING, CorrelationFilter, Response
-from vehicle_pf_tracker.image.gradient_cells import CELL, GRADIENT_CHANNELS, CellFeatures, Grey
+from vehicle_pf_tracker.image.gradient_cells import (
+    GRADIENT_CELL_PX,
+    GRADIENT_CHANNELS,
+    CellFeatures,
+    Grey,
+)
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.spectra import Spectrum, shifted
 from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
@@ -35,7 +40,7 @@ _LARGEST_ZOOM = 8.0
 """Canonical px per px of the frame at most: below 5 px a vehicle has nothing more to magnify."""
 _LONGEST_IN_PATCH = 0.6
 """Longest side of the target in the patch: beyond, no background would be left to learn."""
-_STEP_PX = CELL / UPSAMPLING
+_STEP_PX = GRADIENT_CELL_PX / UPSAMPLING
 """Canonical px from one place of the response to the next."""
 _SHIFTABLE_PX = 6.0
 """Offset in canonical px up to which cells are moved circularly instead of measured again: what is
@@ -143,12 +148,12 @@ class Appearance:
 
     def __init__(self, kernels: Kernels, size: Array, learnt: Array, penalty: float) -> None:
         zoom = min(_TARGET_SIDE / math.sqrt(learnt.prod()), _LARGEST_ZOOM)
-        self._side = _CELLS * CELL
+        self._side = _CELLS * GRADIENT_CELL_PX
         target = np.minimum(learnt * zoom, _LONGEST_IN_PATCH * self._side)
         self._box = target * (size / learnt)
         self._kernels = kernels
         self.first_size = size
-        self._filter = CorrelationFilter(_CELLS, target / CELL, penalty)
+        self._filter = CorrelationFilter(_CELLS, target / GRADIENT_CELL_PX, penalty)
         self.usual_response = 0.0
         self._least_usual = 0.0
         self._paint = np.zeros(3)
@@ -159,7 +164,7 @@ class Appearance:
 
     def patch(self, frame: Frame, position: Array, size: Array, *, wide: bool = False) -> Patch:
         """Cut the surroundings of a box of this centre and size (px) out of a frame."""
-        side = _WIDE_CELLS * CELL if wide else self._side
+        side = _WIDE_CELLS * GRADIENT_CELL_PX if wide else self._side
         return cut_patch(frame, position, self._box / size, side)
 
     def usual_patch(self, patch: Patch) -> Patch:
@@ -188,7 +193,7 @@ class Appearance:
     def response_at(self, frame: Frame, position: Array, size: Array) -> float:
         """Response to a box of this centre and size (px), relative to the usual one."""
         columns, rows = self._filter.extent
-        piece = (columns + 2 * _RIM) * CELL, (rows + 2 * _RIM) * CELL
+        piece = (columns + 2 * _RIM) * GRADIENT_CELL_PX, (rows + 2 * _RIM) * GRADIENT_CELL_PX
         image = cut_image(frame, position, self._box / size, piece)
         grey = np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), np.uint8)
         return self._filter.respond_in_middle(self._features(image, grey)) / self.usual_response
@@ -204,7 +209,7 @@ class Appearance:
         """Train the filter on the target at `position` in the frame that `view` shows."""
         offset = (position - view.patch.centre) * view.patch.zoom
         if view.spectrum is not None and np.abs(offset).max() < _SHIFTABLE_PX:
-            x, y = (-offset / CELL).tolist()
+            x, y = (-offset / GRADIENT_CELL_PX).tolist()
             spectrum = shifted(view.spectrum, x, y)
         else:
             spectrum = self._spectrum(self.patch(frame, position, size))

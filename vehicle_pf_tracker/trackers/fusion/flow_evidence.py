@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, VisibilityParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import EVEN_SHARE, VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.state import State
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Step
 
@@ -34,4 +34,4 @@ def weigh_by_flow(state: State, seen: Observation, step: Step) -> State:
 
 def points_evidence(share: float, parameters: VisibilityParameters) -> float:
     """Log-likelihood ratio by the share of the surface's points that move with the vehicle."""
-    return parameters.points_slope * (min(share, 1.0) - EVEN)
+    return parameters.points_slope * (min(share, 1.0) - EVEN_SHARE)

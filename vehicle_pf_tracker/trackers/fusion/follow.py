@@ -14,9 +14,9 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.trackers.fusion.appearance import View, searched_size
-from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, hidden_hypotheses
+from vehicle_pf_tracker.trackers.fusion.hypotheses import PRIOR_DOUBT, hidden_hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
-from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, SIZE_RESPONSE, SizeParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import SIZE_RESPONSE, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.state import State, Wholeness
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Step
@@ -42,6 +42,10 @@ has .96 of a vehicle wholly visible, and .72 with a tenth to a third of it cover
 _POINTS_GAIN = 0.5
 """Weight of a stretch along one axis, as an occluder makes it too. A fitted weight was set to one
 half together with others, at no cost (laboratory/notes/fusion.md, twelve tuned numbers)."""
+_COMMON_SHARE = 0.5
+"""Share of the surface above which a stretch that both axes have in common is believed: from .8 on
+only, .926 instead of .964 of the frames are on vehicles that shrink fast
+(laboratory/notes/fusion_tried.md)."""
 _LEAST_BELIEVED = 20.0
 """Geometric mean of the sides, px, below which points are not believed wholly: they are magnified
 twofold and more, as are their errors. Without it white_van is claimed in .67 of its hidden frames
@@ -63,6 +67,9 @@ then learns faster the lower the response. With the survival of points in place 
 (laboratory/notes/fusion_tried.md)."""
 _LEAST_STIFFNESS = 0.2
 """Least stiffness in such a turn, of the usual one, however low the response."""
+_LEARNT_RESPONSE = 0.5
+"""Response, of the usual one, above which the filter learns: without it walls are learnt, and
+white_van is claimed in half of its hidden frames (laboratory/notes/fusion_tried.md)."""
 
 
 def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> State:
@@ -105,7 +112,7 @@ def _enter_occlusion(state: State, step: Step) -> State:
     fitted = state.sightings.fit()
     if fitted is None:
         whole = state.whole._replace(measured=state.size)
-        return state._replace(particles=state.particles.all_visible(DOUBT), whole=whole)
+        return state._replace(particles=state.particles.all_visible(PRIOR_DOUBT), whole=whole)
     path, last = fitted
     if not last.cut:
         foreground = step.memory.foreground
@@ -179,7 +186,7 @@ def believed_stretch(stretch: Array, share: float, size: Array, options: SizePar
         common = 0.0
     if share > _WHOLE_SHARE:
         return np.asarray(_POINTS_GAIN * (stretch + common))
-    return np.full(2, common if share > EVEN else 0.0)
+    return np.full(2, common if share > _COMMON_SHARE else 0.0)
 
 
 def _follow_outline(state: State, outlines: Outlines, step: Step) -> State:
@@ -190,7 +197,7 @@ def _follow_outline(state: State, outlines: Outlines, step: Step) -> State:
     size = step.bounded(outer)
     sightings = state.sightings.added(position, size, 1.0)
     state = state._replace(position=position, size=size, sightings=sightings)
-    particles = gathered(state, step, position, vehicle.velocity, 1 - DOUBT)
+    particles = gathered(state, step, position, vehicle.velocity, 1 - PRIOR_DOUBT)
     return state._replace(particles=particles)
 
 
@@ -257,7 +264,7 @@ def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
     appearance = memory.appearance
     turns = surface.is_reliable and surface.share > _TURNING_SHARE and response < _TURNING_RESPONSE
     turns &= not memory.foreground.is_known  # outlines tell more of a turn, size included
-    if not turns and (response <= EVEN or not state.whole.is_likely):
+    if not turns and (response <= _LEARNT_RESPONSE or not state.whole.is_likely):
         return
     visible = state.particles.probability_visible
     appearance.learn_usual(response, max(USUAL_RATE, 1 / (state.frames + 1)) * visible)

@@ -31,9 +31,10 @@ HIDDEN_SCALES = (1.0, 1.2, 1 / 1.2)
 fifth too low in the median when the vehicle comes out, as the wall has cut the last sightings."""
 _DEGENERATE = 0.5
 """Share of the particles below which the effective sample size asks for resampling (usual)."""
-DOUBT = 0.02
-"""Probability of being visible that an occlusion begins with, log odds -3.9. At the usual
-response, log ratio 6, a vehicle is visible again after one frame, at .8 of it (3.6) after two."""
+PRIOR_DOUBT = 0.02
+"""Probability of the other state, where a vehicle is declared visible or hidden: log odds -3.9 when
+an occlusion begins. At the usual response, log ratio 6, a vehicle is visible again after one
+frame, at .8 of it (3.6) after two."""
 _FRAMES_BEFORE = 2.0
 """Frames over which the velocity may have changed already when an occlusion begins: the vehicle is
 judged hidden a frame or two after the last clear sighting."""
@@ -224,4 +225,4 @@ def hidden_hypotheses(
         growths = motion.growth_at(age) + rng.normal(size=count) * _GROWTH_SIGMA
     growths = np.clip(growths, -FASTEST_GROWTH, FASTEST_GROWTH)
     velocities = velocity + along_heading(draws[1], velocity, ACROSS_LANES) * speed_sigma
-    return Hypotheses.around(positions, velocities, growths, DOUBT)
+    return Hypotheses.around(positions, velocities, growths, PRIOR_DOUBT)

@@ -19,12 +19,12 @@ from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.departure import Departure
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     ACROSS_LANES,
-    DOUBT,
     HIDDEN_SCALES,
     LARGEST_GROWTH,
+    PRIOR_DOUBT,
     Hypotheses,
 )
-from vehicle_pf_tracker.trackers.fusion.parameters import EVEN, VisibilityParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import EVEN_RESPONSE, VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
 from vehicle_pf_tracker.trackers.fusion.state import State
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Prediction, Step
@@ -202,7 +202,7 @@ def _observe_return(state: State, departure: Departure, step: Step) -> tuple[Sta
     response = 0.0
     if departure.returned is not None:
         position, velocity = departure.returned
-        particles = gathered(state, step, position, velocity, 1 - DOUBT)
+        particles = gathered(state, step, position, velocity, 1 - PRIOR_DOUBT)
         response = view.at(position)
     tasks = _next_tasks(state, response, step)
     state = state._replace(particles=particles)
@@ -247,7 +247,7 @@ def response_evidence(
         Log-likelihood ratio there, less what the move costs.
     """
     seen = np.minimum(np.maximum(view.response, 0), np.float32(_HIGHEST_RESPONSE))
-    ratios = parameters.response_slope * (seen.astype(np.float64) - EVEN)
+    ratios = parameters.response_slope * (seen.astype(np.float64) - EVEN_RESPONSE)
     moves, log_ratios = climbed(ratios, view.places(positions), _costs(*climb))
     bounded = np.minimum(np.maximum(log_ratios, -_LARGEST_LOG_RATIO), _LARGEST_LOG_RATIO)
     return positions + moves / view.steps, bounded

@@ -18,12 +18,15 @@ from vehicle_pf_tracker.trackers.parameters import (
     share,
 )
 
-EVEN = 0.5
-"""Response, and share of the surface, of the usual ones, that tell nothing of visibility: as much
-differs as agrees. Fits on ten of eleven cameras moved neither by more than 16 %."""
+EVEN_RESPONSE = 0.5
+"""Response, of the usual one, that tells nothing of visibility: as much differs as agrees. Fits on
+ten of eleven cameras moved it by 16 % at most."""
+EVEN_SHARE = 0.5
+"""Share of the surface, of the usual one, that tells nothing of visibility: half of the points
+move with the vehicle. Fits on ten of eleven cameras moved it by 16 % at most."""
 SIZE_RESPONSE = 0.6
 """Response, of the usual one, above which a size is measured: it is over the even odds of one half
-(`EVEN`) by a tenth, since a half-hidden vehicle is measured smaller."""
+(`EVEN_RESPONSE`) by a tenth, since a half-hidden vehicle is measured smaller."""
 PROOF_FRAMES = 8
 """Frames in a row that prove a motion or a recognition: a quarter of a second at 30 frames per
 second. At a hundredth of the size per frame, the least speed of a side that drives on, that is

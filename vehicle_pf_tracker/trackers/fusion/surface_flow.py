@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.box_motion import CELL, CellBlock, Flow, carried_share, solved
+from vehicle_pf_tracker.image.box_motion import FLOW_CELL_PX, CellBlock, Flow, carried_share, solved
 from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import Patch
 
@@ -177,7 +177,7 @@ def _cells(patch: Patch, position: Array, size: Array) -> CellBlock:
     """Cells of the patch that lie in the box, at least one."""
     middle = patch.to_patch(position)
     half = BOX_REACH * size * patch.zoom
-    last = patch.side // CELL - 1
-    low = np.minimum(np.maximum(np.ceil((middle - half) / CELL - 0.5), 0), last)
-    high = np.minimum(np.maximum(np.floor((middle + half) / CELL - 0.5), low), last)
+    last = patch.side // FLOW_CELL_PX - 1
+    low = np.minimum(np.maximum(np.ceil((middle - half) / FLOW_CELL_PX - 0.5), 0), last)
+    high = np.minimum(np.maximum(np.floor((middle + half) / FLOW_CELL_PX - 0.5), low), last)
     return np.array([low, high - low + 1], np.intp)

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion.flow_evidence import weigh_by_flow
 from vehicle_pf_tracker.trackers.fusion.follow import follow, learn
-from vehicle_pf_tracker.trackers.fusion.hypotheses import DOUBT, Hypotheses
+from vehicle_pf_tracker.trackers.fusion.hypotheses import PRIOR_DOUBT, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import observe, predict
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
@@ -86,7 +86,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         spread = self._rng.normal(size=(2, count, 2)) * float(np.sqrt(size.prod()))
         velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
         positions = np.asarray(position + spread[0] * motion.position_sigma)
-        particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - DOUBT)
+        particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - PRIOR_DOUBT)
         self._state = State(particles, position, size, Wholeness.at_start(size))
         self._memory = None
         self._tasks = Tasks()

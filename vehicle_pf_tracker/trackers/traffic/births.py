@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.overlaps import NOTHING
+from vehicle_pf_tracker.core.overlaps import NO_BOXES
 from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges, deviations
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates
 from vehicle_pf_tracker.trackers.traffic.existence import believed
@@ -43,7 +43,7 @@ def begun(state: State, candidates: Candidates, columns: Integers, step: Step) -
     rows = np.arange(count, len(state.tracks))
     tracks = state.tracks.take(rows)
     labels = [candidates.labels[column] for column in columns.tolist()]
-    colours = step.colours.histograms(candidates.edges[columns], [NOTHING] * len(columns))
+    colours = step.colours.histograms(candidates.edges[columns], [NO_BOXES] * len(columns))
     looks = replace(tracks.sights.looks, colours=colours, score=candidates.scores[columns])
     tracks = replace(
         tracks, names=tracks.names.voted(labels), sights=replace(tracks.sights, looks=looks)

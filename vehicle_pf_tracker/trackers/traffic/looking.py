@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vehicle_pf_tracker.core.overlaps import NOTHING
+from vehicle_pf_tracker.core.overlaps import NO_BOXES
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import Pairs, pairs_of_known, pairs_of_new
 from vehicle_pf_tracker.trackers.traffic.births import begun
@@ -138,7 +138,7 @@ def _shown(
     labels = [candidates.labels[column] for column in columns.tolist()]
     looks = replace(tracks.sights.looks, score=candidates.scores[columns])
     if whole.any():
-        colours = step.colours.histograms(edges[whole], [NOTHING] * int(whole.sum()))
+        colours = step.colours.histograms(edges[whole], [NO_BOXES] * int(whole.sum()))
         looks = coloured(looks, colours, whole)
     grows = whole & ~cut_edges(edges, step.size, step.edge_noise).any(axis=1)
     growths = tracks.drives.growths

@@ -14,7 +14,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
-from vehicle_pf_tracker.core.overlaps import NOTHING, areas, inside_image
+from vehicle_pf_tracker.core.overlaps import NO_BOXES, areas, inside_image
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, filled
 from vehicle_pf_tracker.trackers.traffic.state import State, Step
@@ -44,7 +44,7 @@ def hide(state: State, step: Step) -> State:
     if len(hiding):
         is_named = common.max(axis=1) > _GOOD_PART
         hidden_by[is_named] = tracks.names.identity[hiding[common.argmax(axis=1)]][is_named]
-    covers = filled(len(tracks), NOTHING)
+    covers = filled(len(tracks), NO_BOXES)
     for row in np.flatnonzero(visible < 1).tolist():
         covers[row] = edges[hiding][common[row] > 0]
     sights = replace(

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.overlaps import NOTHING, areas
+from vehicle_pf_tracker.core.overlaps import NO_BOXES, areas
 from vehicle_pf_tracker.image.point_flow import PointFlow
 from vehicle_pf_tracker.trackers.traffic.colours import RIM, similarities
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
@@ -96,7 +96,7 @@ def measure(tracks: Tracks, before: Grey, step: Step) -> tuple[Integers, Array, 
         Rows of those that their pixels show, edges and their standard deviations, px.
     """
     if before.shape != step.grey.shape:
-        return np.zeros(0, np.intp), NOTHING, NOTHING
+        return np.zeros(0, np.intp), NO_BOXES, NO_BOXES
     old = tracks.drives.before
     new = tracks.edges
     covers = tracks.sights.covers

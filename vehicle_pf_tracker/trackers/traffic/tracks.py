@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.overlaps import NOTHING
+from vehicle_pf_tracker.core.overlaps import NO_BOXES
 from vehicle_pf_tracker.trackers.traffic.colours import BINS
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE
 from vehicle_pf_tracker.trackers.traffic.horizon import Growths
@@ -250,7 +250,7 @@ class Tracks(Rows):
             Drives(gaussians, edges, edges, edges, extents, Growths.unknown(count)),
             Beliefs(zero, zero, zero, no, Ways.unknown(count), filled(count, ())),
             Sights(
-                np.ones(count), np.ones(count), filled(count, NOTHING), numbers, absences, looks
+                np.ones(count), np.ones(count), filled(count, NO_BOXES), numbers, absences, looks
             ),
         )
 
@@ -278,5 +278,5 @@ class Tracks(Rows):
 def no_tracks() -> Tracks:
     """Make the tracks of an empty road."""
     zero = np.zeros(0)
-    none = Gaussians(np.zeros((0, 6)), np.zeros((0, 6, 6)), zero, NOTHING)
-    return Tracks.begun(none, np.zeros(0, np.intp), NOTHING)
+    none = Gaussians(np.zeros((0, 6)), np.zeros((0, 6, 6)), zero, NO_BOXES)
+    return Tracks.begun(none, np.zeros(0, np.intp), NO_BOXES)
