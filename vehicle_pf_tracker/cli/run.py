@@ -5,15 +5,18 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, counting, print_rows, tell_notices
+from vehicle_pf_tracker.cli.many_sources import follow_each
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, Names, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.serving import served
+from vehicle_pf_tracker.cli.source_lists import SeveralSources
 from vehicle_pf_tracker.cli.stopping import Stop, cut_short, numbered_part, stopping
-from vehicle_pf_tracker.cli.tracking_options import TrackingRequest, by_name, chosen
+from vehicle_pf_tracker.cli.tracking_options import by_name, chosen
 from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.association import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -37,7 +40,7 @@ PRODUCTS = (ESTIMATES, METRICS, RUN, SHEET, TRACKS)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(TrackingRequest, MaxDiffOption, TruthOptions):
+class Request(SeveralSources, MaxDiffOption, TruthOptions):
     """Request of `run`."""
 
     variant: str = option(
@@ -63,7 +66,15 @@ class Request(TrackingRequest, MaxDiffOption, TruthOptions):
 
 
 def run(request: Request) -> int:
-    """Track, write the results, and print a summary of each target."""
+    """Track in the source, or in each of several, and print a summary."""
+    if not request.is_of_several:
+        return run_one(request)
+    variant = find_variant(request.variant)
+    return follow_each(request, variant, run_one, functools.partial(chosen, variant))
+
+
+def run_one(request: Request) -> int:
+    """Track in one source, write the results, and print a summary of each target."""
     variant = find_variant(request.variant)
     # What cannot be read of the truth beside images costs the scores, and not the run.
     source = open_source(

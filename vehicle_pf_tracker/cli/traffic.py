@@ -13,10 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
+from vehicle_pf_tracker.cli.many_sources import follow_each
 from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.serving import served
+from vehicle_pf_tracker.cli.source_lists import SeveralSources
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, cut_short, numbered_part, stopping
-from vehicle_pf_tracker.cli.tracking_options import ServeAddress, TrackingRequest, by_name, chosen
+from vehicle_pf_tracker.cli.tracking_options import ServeAddress, by_name, chosen
 from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -40,7 +42,7 @@ PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PATHS, HEAT)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(TrackingRequest):
+class Request(SeveralSources):
     """Request of `traffic`."""
 
     output: Path | None = option(
@@ -73,7 +75,14 @@ class Request(TrackingRequest):
 
 
 def run(request: Request) -> int:
-    """Follow all vehicles, write the results, and print a summary."""
+    """Follow all vehicles of the source, or of each of several, and print a summary."""
+    if not request.is_of_several:
+        return run_one(request)
+    return follow_each(request, TRAFFIC, run_one, _configuration)
+
+
+def run_one(request: Request) -> int:
+    """Follow all vehicles of one source, write the results, and print a summary."""
     configuration = _configuration(request)
     stop = Stop()
     source = request.open_source()

@@ -63,10 +63,21 @@ def local_copy(url: str) -> Path:
     InputError
         If it cannot be fetched.
     """
+    folder = Path(tempfile.mkdtemp(prefix="vehicle-pf-tracker-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return fetched(url, folder)
+
+
+def fetched(url: str, folder: Path) -> Path:
+    """Copy the recording or the file at a URL into a folder, and return the copy.
+
+    Raises
+    ------
+    InputError
+        If it cannot be fetched.
+    """
     system, path = _file_system(url)
-    name = path.rstrip("/").rsplit("/", 1)[-1]
-    target = Path(tempfile.mkdtemp(prefix="vehicle-pf-tracker-")) / name
-    atexit.register(shutil.rmtree, target.parent, ignore_errors=True)
+    target = folder / path.rstrip("/").rsplit("/", 1)[-1]
 
     def fetch() -> Path:
         if not system.isdir(path):
