@@ -35,8 +35,16 @@ LIST = ".txt"
 PLACES = ("video", "recording", "tum")
 """Options that name an output: with several sources, a name in each one's folder."""
 NOT_DECISIVE = {
-    "command", "source", "more", "output", "overwrite", "workers", "scheduler", "serve", "token",
-}  # fmt: skip
+    "command",
+    "source",
+    "more",
+    "output",
+    "overwrite",
+    "workers",
+    "scheduler",
+    "serve",
+    "token",
+}
 """Options that change no result, and the source, which the key has otherwise."""
 
 
