@@ -9,6 +9,7 @@ from pathlib import Path
 
 from laboratory.figure_files import save
 from reproduction import experiment as ex
+from reproduction.running import code_digest
 from vehicle_pf_tracker.results.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.results.run_folder import versions
 
@@ -31,6 +32,8 @@ def write_report(folder: Path, experiment: ex.Experiment, report: ex.Report, siz
         "name": experiment.name,
         "title": experiment.title,
         "seeds": list(report.seeds or size.seeds),
+        "command": _command(experiment, size),
+        "code": code_digest(),
         "versions": versions(),
     }
     write_json(folder / f"{VERDICT}.json", {**facts, **report.verdict.to_json()})

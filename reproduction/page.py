@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from reproduction.catalogue import Paper
-from reproduction.experiment import BASIC, OURS, PAPER, PRINTED, Experiment
+from reproduction.experiment import BASIC, OURS, PAPER, PRINTED, SEEDS, Experiment
 from reproduction.output import FIGURE, VERDICT
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.results.output_files import make_folder, write_text
 
@@ -22,8 +23,9 @@ _PICTURES = "images/reproduction"
 _HEAD = """# Reproduction of the papers' experiments
 
 `{command}` makes this page. It runs the trackers on synthetic scenes with exact truth, which stand
-for the papers' own videos; those are not public. `python -m reproduction NAME` repeats one
-experiment, and `results/reproduce/NAME/` has the rest of it: the setting, all tables and
+for the papers' own videos; those are not public. The command above a figure made it, with as many
+runs of each kind as it names, {usual} where it names none. All were made by the same code.
+`results/reproduce/NAME/` then has the rest of an experiment: the setting, all tables and
 interpretations, every cell's data.
 
 A claim is judged under up to three interpretations. *The paper's rule* gives the verdict: the
@@ -52,8 +54,9 @@ def write_page(folder: Path, results: Path, papers: Sequence[Paper], command: st
     Raises
     ------
     InputError
-        If it cannot be written.
+        If it cannot be written, or if the experiments were not all made by the same code.
     """
+    _check_same_code(results, papers)
     pictures = make_folder(folder / _PICTURES)
     overview, parts = [], []
     for paper in papers:
@@ -67,8 +70,23 @@ def write_page(folder: Path, results: Path, papers: Sequence[Paper], command: st
     head = ["figure", "what", PAPER, OURS, PRINTED, "seeds"]
     table = "\n".join([_row(head), _row(["---"] * len(head)), *overview])
     page = folder / PAGE
-    write_text(page, "\n".join([_HEAD.format(command=command, overview=table), *parts]))
+    top = _HEAD.format(command=command, usual=SEEDS, overview=table)
+    write_text(page, "\n".join([top, *parts]))
     return page
+
+
+def _check_same_code(results: Path, papers: Sequence[Paper]) -> None:
+    """Refuse a page whose rows could contradict each other, as they are of several versions."""
+    experiments = [e for paper in papers for e in paper.experiments if _was_run(results, e)]
+    by_code: dict[str, list[str]] = {}
+    for experiment in experiments:
+        by_code.setdefault(_verdict(results, experiment)["code"], []).append(experiment.name)
+    if len(by_code) > 1:
+        *_, rarest = sorted(by_code.values(), key=len, reverse=True)
+        raise InputError(
+            f"{', '.join(rarest)} in {results} were made by other code than the rest: run "
+            "everything again, or name another folder with --output"
+        )
 
 
 def _was_run(results: Path, experiment: Experiment) -> bool:
@@ -96,7 +114,8 @@ def _seeds(seeds: Sequence[int]) -> str:
 
 def _section(experiment: Experiment, verdict: Mapping[str, Any], picture: str) -> str:
     parts = [
-        f"### {experiment.name}\n![{experiment.title}]({_PICTURES}/{picture})",
+        f"### {experiment.name}\n`{verdict['command']}`",
+        f"![{experiment.title}]({_PICTURES}/{picture})",
         _claims(verdict["claims"]),
         *verdict["remarks"],
     ]

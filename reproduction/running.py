@@ -10,8 +10,9 @@ from typing import TypeAlias
 
 from laboratory.result_store import ResultStore
 from reproduction.cells import Cell, Result
-from vehicle_pf_tracker.evaluation.cache_key import result_key, variant_modules
+from vehicle_pf_tracker.evaluation.cache_key import result_key, source_digest, variant_modules
 from vehicle_pf_tracker.following.processes import OnProgress, run_in_processes
+from vehicle_pf_tracker.trackers.papers import shared
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 
@@ -19,6 +20,11 @@ def cell_key(cell: Cell) -> str:
     """Digest the cell's facts, its kind, the code, and the versions of what it runs on."""
     used = {module for name in cell.variants for module in variant_modules(find_variant(name))}
     return result_key({"kind": type(cell).__name__, **cell.facts()}, {type(cell).__module__, *used})
+
+
+def code_digest() -> str:
+    """Digest the code that any experiment depends on: this folder's, and the papers' trackers'."""
+    return source_digest(frozenset({__name__, shared.__name__}))
 
 
 _LARGEST_BATCH = 48

@@ -36,6 +36,7 @@ def test_one_experiment_writes_its_folder_and_its_section_of_the_page(tmp_path, 
     assert f"apf-fig4: {verdict['holds']}  (" in capsys.readouterr().out
     section = page.partition("\n### apf-fig4")[2]
     assert "| claim | the paper's rule | our interpretation | as printed | verdict |" in section
+    assert f"`python -m reproduction apf-fig4 {' '.join(WORDS[:5])}`" in section
     for claim in verdict["claims"]:
         cells = [f"**{f['holds']}**: {f['numbers']}" for f in claim["findings"]]
         row = [f"{claim['claim']} ({claim['place']})", *cells, claim["rule"]]
@@ -58,6 +59,18 @@ def test_the_page_has_what_was_made_before_too_and_a_second_time_nothing_changes
     files = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     reproduce(out, "apf-fig2", "apf-fig4", "--docs", str(docs))
     assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == files
+
+
+def test_a_page_of_several_versions_of_the_code_is_refused(tmp_path, capsys):
+    out, docs = tmp_path / "out", tmp_path / "docs"
+    reproduce(out, "apf-fig2")
+    of_older_code = out / "apf-table1" / "verdict.json"
+    of_older_code.parent.mkdir()
+    verdict = json.loads((out / "apf-fig2" / "verdict.json").read_text())
+    of_older_code.write_text(json.dumps({**verdict, "code": "0"}))
+    assert reproduce(out, "apf-fig2", "--docs", str(docs)) == 1
+    assert "apf-table1 in " in capsys.readouterr().err
+    assert not docs.exists()
 
 
 @pytest.mark.parametrize(
