@@ -28,7 +28,7 @@ from vehicle_pf_tracker.cli.requests import (
     positive,
     request_of,
     switch,
-)  # fmt: skip
+)
 
 PROGRAM = "python -m reproduction"
 CELLS = "cells.jsonl"

@@ -25,6 +25,7 @@ from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 
 _SPEEDS = tuple(range(2, 21, 2)), (4, 12)
 _SIGMAS = tuple(range(1, 21)), (2, 6, 12)
+"""Axes of the paper's figure, px/frame, in full and quick."""
 _PLACE = "section IV, figure 1"
 _SLOPES = 0.4, 0.6
 """Slopes of the best sigma over the speed that round to a half."""
@@ -100,9 +101,15 @@ def _figure(grids: Mapping[str, Grid], size: ex.Size) -> Figure:
         ax.plot(speeds, speeds / 2, color="#D55E00", ls="--", lw=1.8, label="sigma = speed / 2")
         ax.plot(speeds, speeds, color="#0072B2", ls=":", lw=1.8, label="sigma = speed")
         ax.plot(
-            speeds, sigmas[means.argmin(axis=1)], ls="", marker="o", ms=7, color="white",
-            mec="black", label="least error at this speed",
-        )  # fmt: skip
+            speeds,
+            sigmas[means.argmin(axis=1)],
+            ls="",
+            marker="o",
+            ms=7,
+            color="white",
+            mec="black",
+            label="least error at this speed",
+        )
         ax.contour(speeds, sigmas, means.T, [CLOSE_PX], colors="black", linewidths=1.2)
         ax.set(title=interpretation, xlabel="speed, px/frame", xticks=speeds)
     axes[0].set(ylabel="sigma, px/frame")

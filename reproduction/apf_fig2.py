@@ -22,6 +22,7 @@ from vehicle_pf_tracker.core.truth import TOTAL_BELOW
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 
 _WIDTH = 30
+"""Width of the bar in the paper's figure, px."""
 _BEFORE = 4
 """Frames that the picture is taken before the vehicle reaches the bar."""
 
@@ -80,9 +81,13 @@ def _figure(shown: SceneFrame) -> Figure:
     axes.imshow(shown.frame, extent=(0, width, height, 0))
     x, y = width / 2, height * 0.25
     axes.annotate(
-        f"{_WIDTH} px", (x + _WIDTH / 2, y), (x + 70, y), va="center", color="black",
+        f"{_WIDTH} px",
+        (x + _WIDTH / 2, y),
+        (x + 70, y),
+        va="center",
+        color="black",
         arrowprops={"arrowstyle": "->", "color": "black"},
-    )  # fmt: skip
+    )
     axes.set(xlabel="x, px", ylabel="y, px")
     return figure
 

@@ -33,6 +33,7 @@ from reproduction.numbers import (
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 
 _WIDTHS = tuple(range(0, 121, 2)), (0, 30, 60, 120)
+"""Widths of the bar from the paper's least to its largest, px, in full and quick."""
 _PLACE = "section IV, figure 3"
 _RECORD = ("pi", "regime", "x", "y")
 _LAST = 10
@@ -85,8 +86,10 @@ class _Runs:
         ends: dict[int, list[tuple[float, float]]],
         size: ex.Size,
     ) -> None:
-        self._runs, self._ends = runs, ends
-        self.widths, self.seeds = size.of(*_WIDTHS), size.seeds
+        self._runs = runs
+        self._ends = ends
+        self.widths = size.of(*_WIDTHS)
+        self.seeds = size.seeds
 
     def of(self, interpretation: str, what: Callable[[int, Result], Any]) -> list[Any]:
         """Apply `what` to width and result of all runs under a interpretation."""
@@ -140,7 +143,8 @@ def _figure(
     spans: dict[int, tuple[int, int] | None],
     size: ex.Size,
 ) -> Figure:
-    widths, seed = size.of(*_WIDTHS), size.seeds[0]
+    widths = size.of(*_WIDTHS)
+    seed = size.seeds[0]
     figure = Figure(figsize=(11, 4.4), layout="constrained")
     axes = figure.subplots(1, len(INTERPRETATIONS), sharey=True)
     for ax, interpretation in zip(axes, INTERPRETATIONS, strict=True):
@@ -210,8 +214,11 @@ def _verdict(table: _Runs) -> ex.ExperimentVerdict:
 def _tracked(table: _Runs, interpretation: str) -> ex.Finding:
     errors = table.of(interpretation, table.end_error)
     hits = [error < CLOSE_PX for error in errors]
-    wide = [width for width, hit in zip(table.of(interpretation, lambda w, _: w), hits, strict=True)
-            if not hit]  # fmt: skip
+    wide = [
+        width
+        for width, hit in zip(table.of(interpretation, lambda w, _: w), hits, strict=True)
+        if not hit
+    ]
     failing = f"; misses from {min(wide)} px on" if wide and min(wide) else ""
     return ex.Finding(
         interpretation,

@@ -24,7 +24,9 @@ from reproduction.cells import Result, RunCell
 from reproduction.numbers import counted, median_and_range, share
 
 _WIDTHS = 1, 30
+"""Widths of the bar in the paper's figure, px."""
 _TAU = 0.8
+"""Threshold that the paper draws into it."""
 _PLACE = "section IV, figure 4"
 _RECORD = ("pi", "pi_up", "regime")
 _SHOWN = {"pi": "Pi", "pi_up": "Pi_up"}
@@ -93,9 +95,13 @@ def _draw(axes: Axes, traces: dict[int, list[float | None]]) -> None:
         style, colour = _LINES[width]
         # The first frame has no similarity yet: it is the reference.
         axes.plot(
-            range(2, len(trace) + 1), [value or 0.0 for value in trace[1:]], ls=style,
-            color=colour, lw=1.6, label=f"width {width} px",
-        )  # fmt: skip
+            range(2, len(trace) + 1),
+            [value or 0.0 for value in trace[1:]],
+            ls=style,
+            color=colour,
+            lw=1.6,
+            label=f"width {width} px",
+        )
     axes.axhline(_TAU, color="black", ls="--", lw=1.0, label=f"tau = {_TAU:g}")
     axes.set_ylim(0, 1)
 

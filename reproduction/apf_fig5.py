@@ -28,6 +28,7 @@ _Judge: TypeAlias = Callable[[str, Sequence[Result], Sequence[Scores]], ex.Findi
 _PLACE = "section IV, figure 5"
 _RULE = "yes: in 80 % of these frames of every run; partly: in half of those of a run"
 _EARLY = 3
+"""Frame of the first picture: nothing hides the vehicle yet."""
 _ROWS_AROUND = 60
 """Rows of the image shown above and below the vehicle's path."""
 
@@ -95,13 +96,23 @@ def _draw(axes: Axes, frame: Frame, scored: Scores, until: int) -> None:
         *zip(*line, strict=True), color="#0072B2", lw=1.8, label="interpolated while not TRACKING"
     )
     axes.plot(
-        *zip(*path, strict=True), ls=(0, (1, 1)), color="#E69F00", lw=2.0, path_effects=OUTLINE,
+        *zip(*path, strict=True),
+        ls=(0, (1, 1)),
+        color="#E69F00",
+        lw=2.0,
+        path_effects=OUTLINE,
         label="estimates",
-    )  # fmt: skip
+    )
     axes.plot(
-        *zip(path[0], path[-1], strict=True), ls="", marker="+", ms=16, mew=2.4, color="black",
-        path_effects=OUTLINE, label="first and last position",
-    )  # fmt: skip
+        *zip(path[0], path[-1], strict=True),
+        ls="",
+        marker="+",
+        ms=16,
+        mew=2.4,
+        color="black",
+        path_effects=OUTLINE,
+        label="first and last position",
+    )
     rows_of_path = [f.truth.box.centre[1] for f in scored.frames if f.truth is not None]
     axes.set(
         xlim=(0, width), ylim=(max(rows_of_path) + _ROWS_AROUND, min(rows_of_path) - _ROWS_AROUND)

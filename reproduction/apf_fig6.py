@@ -98,7 +98,8 @@ _Means: TypeAlias = tuple[list[float], list[float]]
 
 
 def _finding(interpretation: str, ours: _Means, rivals: Mapping[str, _Means]) -> ex.Finding:
-    smaller, words = [], []
+    smaller = []
+    words = []
     for index, when in enumerate(("before", "after")):
         best = min(rivals, key=lambda label: median(rivals[label][index]))
         smaller.append(median(ours[index]) <= median(rivals[best][index]))

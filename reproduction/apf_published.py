@@ -66,10 +66,16 @@ def averages(videos: Errors, names: Sequence[str], label: str) -> list[float]:
 def video_table(videos: Errors) -> DataTable:
     """Put the paper's number in brackets behind each of ours."""
     rows: list[tuple[Entry, ...]] = [
-        (name, VIDEOS[name].occlusion,
-         *(f"{mean_and_spread(errors[label])} ({PUBLISHED[name][label]:.2f})" for label in LABELS))
+        (
+            name,
+            VIDEOS[name].occlusion,
+            *(
+                f"{mean_and_spread(errors[label])} ({PUBLISHED[name][label]:.2f})"
+                for label in LABELS
+            ),
+        )
         for name, errors in videos.items()
-    ]  # fmt: skip
+    ]
     for title, names in groups(videos).items():
         means = (
             f"{mean_and_spread(averages(videos, names, label))} "

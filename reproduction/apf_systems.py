@@ -13,6 +13,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.parameters.table import Value
 
 VEHICLE_WIDTH, VEHICLE_HEIGHT = 30.0, 22.0
+"""Size of the vehicle, px: the bar of 30 px in the paper's figure 2 hides it wholly."""
 SPEED = 5.0
 """px/frame, where the paper keeps it constant."""
 SETTING = (
@@ -63,6 +64,7 @@ INTERPRETATIONS_NOTE = (
     "printed follows the paper to the letter."
 )
 _OWN: dict[str, Value] = {"likelihood.sigma_v": 0.158}
+"""Perez's lambda of 20, the default of the rivals' variants."""
 OWN_LIKELIHOOD = tuple(
     System.of(f"{rival.label}, sigma_v 0.158", rival.variant, _OWN)
     for rival in RIVALS
@@ -116,6 +118,8 @@ COMPARISONS = (
 """APF under every interpretation against rivals of one likelihood, and in other company."""
 
 SPEEDS_PER_SIGMA = 1.5
+"""Of three rules that follow the speed, the one with the least error of all six trackers together
+(laboratory/notes/reproduction.md)."""
 LEAST_SIGMA, LARGEST_SIGMA = 5.0, 10.0
 """The paper's interval for sigma, px/frame."""
 SIGMA_RULE = (

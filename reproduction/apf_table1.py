@@ -59,10 +59,16 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
         fits += [row == published for row in found]
         counts = [_counts(truths[name, seed]) for seed in size.seeds]
         rows.append(
-            (name, published.vehicle, published.occlusion, published.resolution,
-             VIDEOS[name].what, f"{VIDEOS[name].parameters.speed:g}",
-             *(_range([count[kind] for count in counts]) for kind in (0, 1)))
-        )  # fmt: skip
+            (
+                name,
+                published.vehicle,
+                published.occlusion,
+                published.resolution,
+                VIDEOS[name].what,
+                f"{VIDEOS[name].parameters.speed:g}",
+                *(_range([count[kind] for count in counts]) for kind in (0, 1)),
+            )
+        )
     columns = ("video", "vehicle", "occlusion", "resolution, px", "what hides it here",
                "speed, px/frame", "partly hidden frames", "fully hidden frames")  # fmt: skip
     table = ex.DataTable(columns, tuple(rows))

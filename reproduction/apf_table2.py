@@ -137,10 +137,18 @@ def _data(results: ex.Results, size: ex.Size) -> ex.DataTable:
         found = results[cell]["metrics"]
         hits = [occlusion["recovered"] for occlusion in found["occlusions"]]
         rows.append(
-            (cell.scene.name, cell.system.label, cell.seed, sigma_of(cell.system),
-             found["rmse_px"], found["rmse_visible_px"], found["on_target"], len(hits),
-             hits.count(True))
-        )  # fmt: skip
+            (
+                cell.scene.name,
+                cell.system.label,
+                cell.seed,
+                sigma_of(cell.system),
+                found["rmse_px"],
+                found["rmse_visible_px"],
+                found["on_target"],
+                len(hits),
+                hits.count(True),
+            )
+        )
     columns = ("scene", "tracker", "seed", "sigma", "rmse_px", "rmse_visible_px", "on_target",
                "total_occlusions", "recovered")  # fmt: skip
     return ex.DataTable(columns, tuple(rows))

@@ -18,6 +18,7 @@ from reproduction.numbers import median_and_range
 from reproduction.timing_cell import TimingCell
 
 _MINUTES = {"APF": 14.5, "PF": 14.7, "SAPF": 14.8, "HPFMS": 15.2, "PFCL": 14.8, "MS": 12.7}
+"""The paper's processing times on Video3, minutes."""
 _PLACE = "section IV, processing times on Video3"
 _LIKELIHOOD = "one likelihood"
 """Name of the findings: all trackers have the likelihood of APF."""

@@ -16,6 +16,7 @@ from vehicle_pf_tracker.evaluation.plots import Style
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX, Scores
 
 _QUARTILES = 25, 50, 75
+"""Percentiles of the band and of its curve."""
 _LEAST_ERROR = 0.5
 """Foot of the logarithmic scale, px: smaller errors are below the truth's own precision."""
 BANDS_NOTE = (
@@ -56,6 +57,9 @@ def legend_of(figure: Figure, axes: Iterable[Axes], columns: int = 7) -> None:
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
             handles.setdefault(label, handle)
     figure.legend(
-        list(handles.values()), list(handles), loc="outside lower center", ncols=columns,
+        list(handles.values()),
+        list(handles),
+        loc="outside lower center",
+        ncols=columns,
         frameon=False,
-    )  # fmt: skip
+    )

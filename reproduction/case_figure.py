@@ -47,9 +47,16 @@ def draw_cases(axes: Axes, values: Values, shades: Mapping[str, str]) -> None:
             places, [min(f) for f in found], [max(f) for f in found], color=style.colour, lw=1.3
         )
         axes.plot(
-            places, [median(f) for f in found], ls="", marker=style.marker, ms=6, mec="black",
-            mew=0.5, color=style.colour, label=label,
-        )  # fmt: skip
+            places,
+            [median(f) for f in found],
+            ls="",
+            marker=style.marker,
+            ms=6,
+            mec="black",
+            mew=0.5,
+            color=style.colour,
+            label=label,
+        )
     axes.set(xlim=(-0.5, len(values) - 0.5))
     axes.grid(axis="y", color="0.7", lw=0.5)
     axes.set_axisbelow(True)

@@ -24,6 +24,7 @@ from vehicle_pf_tracker.trackers.registry import find_variant
 
 SCENE_SEEDS = tuple(range(101, 107))
 TRACKER_SEEDS = tuple(range(101, 106))
+"""Above 99, as the animation itself shows others."""
 SIGMAS = (2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
 NAMES = {"apf": "motion.sigma_w", "pf": "sigma"}
 

@@ -15,8 +15,11 @@ from reproduction.bands import legend_of
 from reproduction.experiment import Size
 
 _COLUMNS = 2
-_WIDTH, _LEGEND_HEIGHT = 11.0, 0.5
-"""Size of the figure, inches."""
+"""Cases side by side: the curves of 70 frames and more need half a page's width each."""
+_WIDTH = 11.0
+"""Width of the figure, inches."""
+_LEGEND_HEIGHT = 0.5
+"""Room below the axes for one row of the legend, inches."""
 
 
 def draw_by_case(

@@ -125,9 +125,10 @@ def _steadiest(interpretation: str, spreads: Mapping[str, float]) -> ex.Finding:
     least, most = min(spreads, key=spreads.__getitem__), max(spreads, key=spreads.__getitem__)
     parts = ", ".join(f"{label} {value:.1f}" for label, value in spreads.items())
     return ex.Finding(
-        interpretation, ex.Holds.of((least, most) == (MFPF.label, "Edge"), least == MFPF.label),
+        interpretation,
+        ex.Holds.of((least, most) == (MFPF.label, "Edge"), least == MFPF.label),
         f"standard deviation of the error over the frames, mean of the seeds: {parts} px",
-    )  # fmt: skip
+    )
 
 
 def _parts(

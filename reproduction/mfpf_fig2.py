@@ -104,9 +104,13 @@ def _figure(weights: Weights) -> Figure:
     cumulative = np.cumsum(weights)
     axes.bar(events, weights, 0.7, color="#B07D4B", ec="black", lw=0.6, label="weights")
     axes.step(
-        [0.5, *(events + 0.5)], [0.0, *cumulative], where="pre", color="black", lw=1.6,
+        [0.5, *(events + 0.5)],
+        [0.0, *cumulative],
+        where="pre",
+        color="black",
+        lw=1.6,
         label="cumulative sum",
-    )  # fmt: skip
+    )
     _draw_transformation(axes, cumulative)
     axes.set(xlim=(0.5, _EVENTS + 0.5), ylim=(0, 1.02), xticks=events)
     axes.set(xlabel="event: the particle's number", ylabel="probability")
@@ -117,9 +121,13 @@ def _figure(weights: Weights) -> Figure:
 def _draw_transformation(axes: Axes, cumulative: Array) -> None:
     event = int(np.searchsorted(cumulative, _SHOWN)) + 1
     axes.plot(
-        [0.5, event, event], [_SHOWN, _SHOWN, 0.0], color="#0072B2", ls="--", lw=1.6,
+        [0.5, event, event],
+        [_SHOWN, _SHOWN, 0.0],
+        color="#0072B2",
+        ls="--",
+        lw=1.6,
         label=f"from the uniform number {_SHOWN:g} to event {event}",
-    )  # fmt: skip
+    )
 
 
 def _setting(size: ex.Size) -> str:

@@ -17,6 +17,7 @@ from reproduction.strips import strip_figure, telling_frames
 from vehicle_pf_tracker.core.truth import Occlusion
 
 _FRAMES = 5
+"""Pictures of each case, as many as fit beside each other and can still be seen."""
 _LONG = 60, 80
 """Hidden frames that are about the 70 of the paper's case 4."""
 
@@ -38,14 +39,19 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
         ex.DataTable(columns, rows),
         _figure(results, size),
         ex.ExperimentVerdict(
-            (ex.Claim("the six cases show what the paper's do", "section V, figures 4 to 14",
-                   (_finding(_counts(results, size)),),
-                   "yes: the hidden frames of all cases are as the paper says (none in cases 1 to "
-                   "3, about 70 in case 4, some in 5 and 6); partly: of one"),),
+            (
+                ex.Claim(
+                    "the six cases show what the paper's do",
+                    "section V, figures 4 to 14",
+                    (_finding(_counts(results, size)),),
+                    "yes: the hidden frames of all cases are as the paper says (none in cases 1 to "
+                    "3, about 70 in case 4, some in 5 and 6); partly: of one",
+                ),
+            ),
             f"{mfpf.setting(size)} The picture shows the first seed, in grey, cut to what "
             "is around the true position; an arrow points to a filter that is elsewhere.",
         ),
-    )  # fmt: skip
+    )
 
 
 def _figure(results: ex.Results, size: ex.Size) -> Figure:
@@ -68,7 +74,8 @@ _Counts: TypeAlias = Mapping[str, tuple[list[int], list[int]]]
 def _counts(results: ex.Results, size: ex.Size) -> _Counts:
     found = {}
     for case in mfpf.cases(size):
-        hidden, partial = [], []
+        hidden = []
+        partial = []
         for seed in size.seeds:
             truths = [f.truth for f in mfpf.run_scores(results, case, MFPF, seed).frames]
             kinds = [truth.occlusion for truth in truths if truth is not None]
@@ -79,7 +86,8 @@ def _counts(results: ex.Results, size: ex.Size) -> _Counts:
 
 
 def _finding(counts: _Counts) -> ex.Finding:
-    fits, parts = [], []
+    fits = []
+    parts = []
     for case, (hidden, partial) in counts.items():
         fits.append(_fits(case, hidden, partial))
         parts.append(

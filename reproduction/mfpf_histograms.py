@@ -44,8 +44,10 @@ _SITUATIONS = "shadow", "partial", "full"
 _TITLES = {
     "initial": "initial", "shadow": "in shadow", "partial": "partly hidden", "full": "fully hidden",
 }  # fmt: skip
-_CLEAR, _GONE = 0.95, 0.1
-"""Shares seen above which nothing hides it, and below which it is fully hidden."""
+_CLEAR = 0.95
+"""Share seen above which nothing hides the vehicle: rims of masks take some hundredths."""
+_GONE = 0.1
+"""Share seen below which it is fully hidden: no histogram is of so little of it."""
 _INFORMATIVE = 0.6
 """Hellinger distances from the first histogram below this still say something."""
 
@@ -120,7 +122,8 @@ def features(interpretation: str) -> dict[str, WindowFeature]:
 
 def histograms(made: dict[str, WindowFeature], target: Target, shown: SceneFrame) -> dict[str, Any]:
     """Describe the true window of a frame by every feature."""
-    at, window = np.asarray([shown.truth.box.centre]), target.window(WindowParameters())
+    at = np.asarray([shown.truth.box.centre])
+    window = target.window(WindowParameters())
     return {name: f.histograms(shown.frame, at, window)[0] for name, f in made.items()}
 
 
@@ -168,9 +171,11 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
         ex.DataTable(("interpretation", "situation", "seed", "feature", "distance"), tuple(rows)),
         _figure(size),
         ex.ExperimentVerdict(_claims(found), _setting(size)),
-        {"Hellinger distance from the first frame's histogram, mean ± standard deviation over the "
-         "seeds:": table},
-    )  # fmt: skip
+        {
+            "Hellinger distance from the first frame's histogram, mean ± standard deviation over "
+            "the seeds:": table
+        },
+    )
 
 
 def _setting(size: ex.Size) -> str:
@@ -246,7 +251,9 @@ def _claims(found: dict[str, dict[str, dict[str, list[float]]]]) -> tuple[ex.Cla
 
 
 def _order(interpretation: str, of: dict[str, dict[str, list[float]]]) -> ex.Finding:
-    ordered, edges, parts = [], [], []
+    ordered = []
+    edges = []
+    parts = []
     for situation in ("shadow", "partial"):
         means = {name: fmean(values) for name, values in of[situation].items()}
         order = sorted(means, key=means.__getitem__)
@@ -263,9 +270,10 @@ def _empty(interpretation: str, of: dict[str, dict[str, list[float]]]) -> ex.Fin
     empty = [value >= _INFORMATIVE for value in means.values()]
     parts = ", ".join(f"{FEATURES[name]} {value:.2f}" for name, value in means.items())
     return ex.Finding(
-        interpretation, ex.Holds.of(all(empty), any(empty)),
+        interpretation,
+        ex.Holds.of(all(empty), any(empty)),
         f"distances (at least {_INFORMATIVE:g} counts as not informative): {parts}",
-    )  # fmt: skip
+    )
 
 
 def _figure(size: ex.Size) -> Figure:
@@ -293,7 +301,8 @@ def _figure(size: ex.Size) -> Figure:
 
 def _pictures(seed: int) -> dict[str, tuple[Frame, dict[str, Any]]]:
     """Cut out the true window, and describe it: the first frame's, and the worst of each kind."""
-    made, target = features(ex.PAPER), None
+    made = features(ex.PAPER)
+    target = None
     shown: list[tuple[Frame, dict[str, Any]]] = []
     probe = _Histograms(ex.PAPER)
     for scene_frame in SceneChoice.of(_SCENE).seeded(seed).make().frames():

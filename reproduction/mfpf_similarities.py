@@ -83,8 +83,15 @@ def _draw(axes: Axes, results: ex.Results, case: str, seed: int) -> None:
         limit = mfpf.threshold(ex.PAPER) * values[0]
         axes.axhline(limit, color=style.colour, ls=style.line, lw=0.8)
     predicted = [n for n, r in enumerate(trace["regime"], start=1) if r == "prediction"]
-    axes.plot(predicted, [0.03] * len(predicted), ls="", marker="|", color="black", ms=7,
-              label="prediction mode")  # fmt: skip
+    axes.plot(
+        predicted,
+        [0.03] * len(predicted),
+        ls="",
+        marker="|",
+        color="black",
+        ms=7,
+        label="prediction mode",
+    )
     axes.set(ylim=(0, 1.02))
     axes.margins(x=0.01)
 
@@ -164,17 +171,22 @@ def _used(
 
 def _stays(interpretation: str, by_case: Mapping[str, Mapping[str, Sequence[float]]]) -> ex.Finding:
     """Judge the share of the frames in which each feature is in use, by case."""
-    parts, least = [], []
+    parts = []
+    least = []
     for case, used in by_case.items():
         least.append(min(fmean(values) for values in used.values()))
-        parts.append(f"{case}: " + ", ".join(
-            f"{FEATURES[name]} {mean_and_spread([100 * v for v in values], 0)}"
-            for name, values in used.items()
-        ))  # fmt: skip
+        parts.append(
+            f"{case}: "
+            + ", ".join(
+                f"{FEATURES[name]} {mean_and_spread([100 * v for v in values], 0)}"
+                for name, values in used.items()
+            )
+        )
     return ex.Finding(
-        interpretation, ex.Holds.of(min(least) >= 0.95, min(least) >= 0.5),
+        interpretation,
+        ex.Holds.of(min(least) >= 0.95, min(least) >= 0.5),
         f"percent of the frames in use, {'; '.join(parts)}",
-    )  # fmt: skip
+    )
 
 
 def _losses(
@@ -202,9 +214,10 @@ def _lowest(interpretation: str, losses: Mapping[str, Sequence[float]]) -> ex.Fi
     )
     place = sorted(means, key=lambda name: -means[name]).index("color")
     return ex.Finding(
-        interpretation, ex.Holds.of(place == 0, place == 1),
+        interpretation,
+        ex.Holds.of(place == 0, place == 1),
         f"largest loss of the average similarity: {parts}",
-    )  # fmt: skip
+    )
 
 
 def _last_phase(
@@ -282,11 +295,13 @@ def _first_back(interpretation: str, back: Sequence[Sequence[str]]) -> ex.Findin
     most = max(FEATURES, key=firsts.count)
     return ex.Finding(
         interpretation,
-        ex.Holds.of(judged > 0 and most == "edge" and firsts.count("edge") >= 0.8 * judged,
-                 judged > 0 and most == "edge"),
+        ex.Holds.of(
+            judged > 0 and most == "edge" and firsts.count("edge") >= 0.8 * judged,
+            judged > 0 and most == "edge",
+        ),
         f"first after prediction mode, of {judged} runs that were in it at the end of a full "
         f"occlusion: {parts} (some at once)",
-    )  # fmt: skip
+    )
 
 
 def _back(results: ex.Results, case: str, seed: int, interpretation: str) -> list[str] | None:

@@ -43,6 +43,7 @@ _RULE: Mapping[str, Value] = MappingProxyType({"dispersion.noise": "gaussian"})
 _RULE_OF_ALL: Mapping[str, Value] = MappingProxyType({"update_unused": True})
 """What the paper prints and our interpretation has otherwise, the latter in MFPF alone."""
 _EDGES: Mapping[str, Value] = MappingProxyType({"edges.threshold": 0.2, "edges.floor": 60.0})
+"""Edge points of the filters that have the edge feature, chosen with `_STEADY`."""
 INTERPRETATIONS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
     {
         PAPER: {**_STEADY, **_RULE},
@@ -54,6 +55,7 @@ INTERPRETATIONS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
 """Settings of every filter by interpretation; the paper prints no radius, so it gets ours."""
 
 _SHARP: Mapping[str, Value] = MappingProxyType({"likelihood.sigma_v": 0.1})
+"""A sharper likelihood, which a filter with one feature needs where three multiply theirs."""
 _OWN: Mapping[str, Mapping[str, Mapping[str, Value]]] = MappingProxyType(
     {
         PAPER: {"sfpf_edge": _SHARP, "sfpf_texture": _SHARP},

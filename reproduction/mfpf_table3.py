@@ -16,6 +16,7 @@ from reproduction.numbers import mean_and_spread, share
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 
 _PLACE = "section V, table III"
+# The paper's percentages of cases 1 to 6.
 _PAPER = {
     "RGB": (6.9, 63.4, 58.6, 96.3, 18.1, 70.7),
     "Edge": (67.4, 78.0, 34.4, 70.3, 31.8, 76.9),
@@ -78,24 +79,27 @@ def _claims(shares: Mapping[str, Values]) -> tuple[Claim, ...]:
 
 
 def _first(interpretation: str, found: Values) -> Finding:
-    ahead, parts = [], []
+    ahead = []
+    parts = []
     for case, of_case in found.items():
         best = max((s.label for s in mfpf.SINGLES), key=lambda label: fmean(of_case[label]))
         own = fmean(of_case[mfpf.MFPF.label])
         ahead.append(own >= fmean(of_case[best]))
         parts.append(f"{case} {own:.0f} % ({best} {fmean(of_case[best]):.0f} %)")
     return Finding(
-        interpretation, Holds.of(sum(ahead) >= len(ahead) - 1, any(ahead)),
+        interpretation,
+        Holds.of(sum(ahead) >= len(ahead) - 1, any(ahead)),
         f"ahead or level in {sum(ahead)} of {len(ahead)} cases: {', '.join(parts)}",
-    )  # fmt: skip
+    )
 
 
 def _over_all(interpretation: str, found: Values) -> Finding:
     means = {
-        system.label: [fmean(of) for of in zip(*(c[system.label] for c in found.values()),
-                                               strict=True)]
+        system.label: [
+            fmean(of) for of in zip(*(c[system.label] for c in found.values()), strict=True)
+        ]
         for system in mfpf.FOUR
-    }  # fmt: skip
+    }
     best = max((s.label for s in mfpf.SINGLES), key=lambda label: fmean(means[label]))
     own = means[mfpf.MFPF.label]
     is_above = fmean(own) > fmean(means[best])

@@ -13,7 +13,9 @@ from reproduction.running import code_digest
 from vehicle_pf_tracker.results.output_files import make_folder, write_json, write_text
 from vehicle_pf_tracker.results.run_folder import versions
 
-DATA, FIGURE, VERDICT = "data.csv", "figure", "verdict"
+DATA = "data.csv"
+FIGURE = "figure"
+VERDICT = "verdict"
 
 
 def write_report(folder: Path, experiment: ex.Experiment, report: ex.Report, size: ex.Size) -> None:

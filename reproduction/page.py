@@ -58,7 +58,8 @@ def write_page(folder: Path, results: Path, papers: Sequence[Paper], command: st
     """
     _check_same_code(results, papers)
     pictures = make_folder(folder / _PICTURES)
-    overview, parts = [], []
+    overview = []
+    parts = []
     for paper in papers:
         judged = [(e, _verdict(results, e)) for e in paper.experiments if _was_run(results, e)]
         overview += [_overview_row(*one) for one in judged]

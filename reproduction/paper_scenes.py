@@ -104,7 +104,8 @@ def chosen(kind: str, speed: float, heading: str, others: Mapping[str, str]) -> 
 
 def pillar_at(drive: Drive, share: float, frames: float) -> list[Actor]:
     """Put up a pillar that hides the target for `frames` frames."""
-    middle, width = drive.x(drive.along(share)), hiding_width(drive, frames)
+    middle = drive.x(drive.along(share))
+    width = hiding_width(drive, frames)
     return pillar(middle, width, drive.height, stream(drive.seed, "pillar"))
 
 
@@ -178,8 +179,10 @@ VIDEOS: dict[str, FixedScene] = {video.name: video for video in _VIDEO_TABLE}
 
 SHADE_DEPTH = 0.55
 """Share of the light that trees take away."""
-BEFORE, PARTIAL, FULL = 40, 30, 20
-"""Frames of the first three phases; the fourth is what remains of the way."""
+# Frames of the first three phases; the fourth is what remains of the way.
+BEFORE = 40
+PARTIAL = 30
+FULL = 20
 
 
 def _turn_behind_trees(parameters: DriveParameters, seed: int) -> Scene:
@@ -200,7 +203,8 @@ def _turn_behind_trees(parameters: DriveParameters, seed: int) -> Scene:
 
 def _past_parked_vehicles(drive: Drive) -> list[Actor]:
     """Park a van that hides a part of the target, and a coach behind which it disappears."""
-    length, speed = drive.target.size[0], drive.parameters.speed
+    length = drive.target.size[0]
+    speed = drive.parameters.speed
     van_rear = drive.start + length / 2 + BEFORE * speed
     # Total begins and ends with a tenth of the vehicle visible.
     coach_rear = van_rear + PARTIAL * speed - (1 - TOTAL_BELOW) * length
@@ -217,9 +221,10 @@ def _parked(drive: Drive, faces: list[Face], rear: float) -> tuple[Actor, Actor]
     return model.on(drive.course(rear + model.size[0] / 2, Pace.steady(0.0), LANE + 1))
 
 
-CLEAR, OVERLAPPED = 10, 4
-"""Frames until something covers the vehicle, and while all but a remnant is covered: figure 4 of
-Khong et al. has frames 1 to 10 and about 16 to 19."""
+CLEAR = 10
+"""Frames until something covers the vehicle: 1 to 10 in figure 4 of Khong et al."""
+OVERLAPPED = 4
+"""Frames while all but a remnant is covered: about 16 to 19 there."""
 _LORRY_HEIGHT = 1.19
 """Height of what is parked, in vans: a seventh of the vehicle stays visible above it
 (`python -m reproduction resampling-frames` says between which shares)."""
@@ -227,7 +232,8 @@ _LORRY_HEIGHT = 1.19
 
 def _past_a_parked_lorry(drive: Drive) -> list[Actor]:
     """Park a lorry of one colour that leaves only the edge of the target's roof visible."""
-    length, speed = drive.target.size[0], drive.parameters.speed
+    length = drive.target.size[0]
+    speed = drive.parameters.speed
     rear = drive.start + length / 2 + CLEAR * speed
     stretch = (length + OVERLAPPED * speed) / Model(van((0, 0, 0)), drive.scale).size[0]
     faces = [

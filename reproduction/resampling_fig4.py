@@ -23,7 +23,9 @@ _LOW = 15.0
 _ALIKE = 1.25
 """Ratios up to this count as almost the same."""
 _HIGHER = 1.5
+"""Ratio from which an error counts as much higher."""
 _AT_MOST = 1.05
+"""Ratio up to which an error is no higher: that of equal filters lies within a twentieth of 1."""
 
 Errors = dict[str, dict[str, list[float]]]
 """RMSE of each seed, by filter and phase."""
@@ -196,7 +198,7 @@ def _no_worse(interpretation: str, found: Errors) -> ex.Finding:
         interpretation,
         ex.Holds.of(adaptive <= _AT_MOST * conventional, adaptive <= _ALIKE * conventional),
         f"{_numbers_text(found, 'all')}: {adaptive / conventional:.2f} times",
-    )  # fmt: skip
+    )
 
 
 EXPERIMENT = ex.Experiment(

@@ -19,12 +19,15 @@ from vehicle_pf_tracker.evaluation.plots import STYLES, Style
 
 _PLACE = "section VI, figure 5"
 _MOST_PASSES = 20
+"""The paper's bound of passes a frame."""
 _LOW = 5.0
 """Passes a frame that count as few."""
 _AT_MOST = 0.2
-_RISE, _AFTER = 14, 5
-"""Frame after which the paper sees more of them resampled, and the frames until the vehicle is
-visible again."""
+"""Share of the conventional filter's particles that counts as far fewer."""
+_RISE = 14
+"""Frame after which the paper sees more particles resampled."""
+_AFTER = 5
+"""Frames from there until the vehicle is visible again."""
 _MORE = 1.1
 """Ratio that counts as an increase: the range of the seeds' means is about a tenth."""
 
@@ -55,9 +58,11 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
             f"{resampling.SETTING} {len(size.seeds)} seeds; curves are their means, bands "
             "their ranges. A resampled particle is one that is drawn and weighed anew in a pass.",
         ),
-        {"Passes a frame / resampled particles a frame by phase, mean over frames and seeds:":
-         table},
-    )  # fmt: skip
+        {
+            "Passes a frame / resampled particles a frame by phase, "
+            "mean over frames and seeds:": table
+        },
+    )
 
 
 def _means(results: ex.Results, size: ex.Size, interpretation: str, scalar: str) -> Means:
@@ -99,11 +104,21 @@ def _draw(axes: Axes, runs: Sequence[Sequence[float]], style: Style, label: str)
     columns = list(zip(*runs, strict=False))
     frames = range(2, len(columns) + 2)
     axes.fill_between(
-        frames, [min(of) for of in columns], [max(of) for of in columns], color=style.colour,
-        alpha=0.15, lw=0,
-    )  # fmt: skip
-    axes.plot(frames, [fmean(of) for of in columns], color=style.colour, ls=style.line, lw=1.8,
-              label=label)  # fmt: skip
+        frames,
+        [min(of) for of in columns],
+        [max(of) for of in columns],
+        color=style.colour,
+        alpha=0.15,
+        lw=0,
+    )
+    axes.plot(
+        frames,
+        [fmean(of) for of in columns],
+        color=style.colour,
+        ls=style.line,
+        lw=1.8,
+        label=label,
+    )
 
 
 def _claims(

@@ -180,12 +180,20 @@ def data(results: Results, size: Size) -> DataTable:
                 phase_of = {i: name for name, of in phases(scored).items() for i in of}
                 found = trace(results, view, system, seed)
                 rows += [
-                    (interpretation, system.variant, seed, index + 1, phase_of.get(index),
-                     frame.error,
-                     found["n_eff"][index], found["resampling_passes"][index],
-                     found["resampled_particles"][index], found["regime"][index])
+                    (
+                        interpretation,
+                        system.variant,
+                        seed,
+                        index + 1,
+                        phase_of.get(index),
+                        frame.error,
+                        found["n_eff"][index],
+                        found["resampling_passes"][index],
+                        found["resampled_particles"][index],
+                        found["regime"][index],
+                    )
                     for index, frame in enumerate(scored.frames)
-                ]  # fmt: skip
+                ]
     columns = ("interpretation", "filter", "seed", "frame", "phase", "error_px", "n_eff", "passes",
                "resampled_particles", "regime")  # fmt: skip
     return DataTable(columns, tuple(rows))

@@ -16,11 +16,13 @@ from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.scenery import opaque, post
 
 SIGN_COLOURS: tuple[Colour, ...] = ((28, 92, 60), (30, 66, 130), (196, 160, 40))
+"""Green, blue and yellow of motorways, main roads and works."""
 
 
 def sign_at(drive: Drive, share: float, frames: float) -> list[Actor]:
     """Put up a road sign that hides the target for `frames` frames."""
-    middle, width = drive.x(drive.along(share)), hiding_width(drive, frames)
+    middle = drive.x(drive.along(share))
+    width = hiding_width(drive, frames)
     height = drive.target.size[1]
     board = width, drive.row - height - 12, drive.row + 0.4 * height + 8
     foot = drive.opposite.rows.stop + 22

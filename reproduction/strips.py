@@ -25,6 +25,7 @@ from vehicle_pf_tracker.evaluation.scores import Scores
 _VIEW = 260, 150
 """Width and height in px of what is shown around the true position."""
 _RIM = (Stroke(linewidth=3.6, foreground="black"), Normal())
+"""Dark rim of a bright line, which keeps it visible on any ground."""
 
 
 def telling_frames(scored: Scores, count: int) -> list[int]:
@@ -117,18 +118,28 @@ def _corner(box: Box, frame: Frame) -> tuple[int, int]:
 
 def _add_box(axes: Axes, box: Box, style: Style, width: float) -> None:
     axes.add_patch(
-        Rectangle((box.x, box.y), box.width, box.height, fill=False, ec=style.colour,
-                  ls=style.line, lw=width)
-    )  # fmt: skip
+        Rectangle(
+            (box.x, box.y),
+            box.width,
+            box.height,
+            fill=False,
+            ec=style.colour,
+            ls=style.line,
+            lw=width,
+        )
+    )
 
 
 def _point_to(axes: Axes, place: tuple[float, float], style: Style) -> None:
-    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    left, right = axes.get_xlim()
+    bottom, top = axes.get_ylim()
     x = min(max(place[0], left + 12), right - 12)
     y = min(max(place[1], top + 12), bottom - 12)
     dx, dy = place[0] - x, place[1] - y
     size = max(math.hypot(dx, dy), 1e-9)
     axes.annotate(
-        "", (x + 10 * dx / size, y + 10 * dy / size), (x - 16 * dx / size, y - 16 * dy / size),
+        "",
+        (x + 10 * dx / size, y + 10 * dy / size),
+        (x - 16 * dx / size, y - 16 * dy / size),
         arrowprops={"arrowstyle": "-|>", "color": style.colour, "lw": 1.8, "ls": style.line},
-    )  # fmt: skip
+    )

@@ -27,8 +27,8 @@ def test_means_over_the_scenes_of_both_sides(monkeypatch):
     monkeypatch.setattr(effects, "run_together", run)
     effect = effects.Effect(7, System.of("PF", "pf"), {"sigma": 3.0}, ("bar", "overlap"))
     table = effects.table([effect])
-    assert table.rows == (("7", "`sigma: 3.0`", "pf on bar, overlap", 20.0, 40.0),)
-    assert [len(batch) for batch in batches] == [2, 2]
+    assert table.rows == (("7", "`sigma: 3.0`", "`pf` on bar, overlap", 20.0, 40.0),)
+    assert [len(batch) for batch in batches] == [2] * 2 * len(effects.SEEDS)
 
 
 def test_every_effect_is_of_a_listed_interpretation():

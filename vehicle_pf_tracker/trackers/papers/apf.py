@@ -201,8 +201,9 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         self._levels = ClearLevel(), ClearLevel()
         self._velocity = shared.MeanVelocity(settings.velocity.window, settings.drift_delay)
         self._position = (0.0, 0.0) if settings.velocity.from_origin else centre
+        # Step 1. Its Sigma is not printed; that of equation 7 stands for it (interpretation 37).
         moves = sample_normal(self._rng, settings.num_particles, settings.motion.sigma_w)
-        return np.asarray(centre) + moves  # step 1
+        return np.asarray(centre) + moves
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self._settings
@@ -210,23 +211,27 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         window = self.window
         regular = self._is_clear(settings)  # step 4
         if regular:
+            # Nothing is known of where the vehicle turns, so the density is symmetric (eq. 7).
             ancestors = self._draw(self._cloud.weights, settings.resampling)
             parents = self._cloud.positions[ancestors]  # steps 5 and 6 (Algorithm 2)
             moves = sample_normal(
                 self._rng, len(parents), settings.motion.sigma_w * elapsed
             )  # step 7
         else:
+            # No resampling: by the cover's colour it would gather the particles where they are.
             parents = self._cloud.positions
             moves = self._drift(settings, len(parents), elapsed)  # step 9
         particles, left_image = self._move(frame, parents, moves)
         feature = JointColour(bits)
         rho = self.kernels.similarity(feature, frame, particles, window, self.reference)
+        # Weights of this frame alone, in both regimes: no recursion is printed (interpretation 10).
         weights = from_log(shared.log_likelihood(rho, settings.likelihood))  # steps 11 and 12
         cloud = Cloud(particles, *weights)
         position = cloud.mean()  # step 13
         histogram = self.kernels.histogram(feature, frame, position, window)  # step 14
         evidence = hellinger_similarity(histogram, self.reference.histogram)
         self._compare_and_learn(settings, histogram, evidence)  # steps 15 and 16
+        # Estimates under a cover drift with this very mean: they would only confirm it.
         if regular or not settings.velocity.frozen_while_occluded:
             self._velocity.add(self._position, position, elapsed)
         self._position = position
@@ -251,9 +256,11 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         motion = settings.motion
         velocity = self._velocity.settled
         if motion.drift_from_velocity:
+            # The mean step is sqrt(pi / 2) sigma_R (eq. 20): so the cloud keeps the vehicle's pace.
             sigma_r = float(np.hypot(*velocity)) / RAYLEIGH_MEAN
         else:
             sigma_r = motion.sigma_r or motion.sigma_w
+        # Section IV sets one sigma for all three densities.
         sigma_n = motion.sigma_n or motion.sigma_w
         return sample_normal_rayleigh(
             self._rng, count, velocity, sigma_r * elapsed, sigma_n * elapsed
@@ -269,6 +276,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         to_first = hellinger_similarity(histogram, self._first)
         alpha = self._follow_rate(settings, to_first)
         blended = alpha * histogram + (1 - alpha) * self.reference.histogram
+        # The blend is nearly the reference itself, and lags behind a cover (interpretation 7).
         if settings.occlusion.raw_histogram:
             self._pi = to_first
             self._pi_up = to_last
@@ -276,6 +284,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
             self._pi = hellinger_similarity(blended, self._first)
             self._pi_up = hellinger_similarity(blended, self.reference.histogram)
         self._update_levels(settings)
+        # Last, as step 16 compares with the reference of the frame before.
         if self._is_clear(settings) or not settings.reference.frozen_while_occluded:
             self.reference = Reference(blended)
 
@@ -283,6 +292,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         """Return alpha of step 15; with the relative rule only good frames have one."""
         if settings.occlusion.rule == "fixed":
             return settings.reference.alpha
+        # A vehicle that is half covered still counts as clear, and must not be learnt.
         good = settings.reference.steady_above * self._levels[0].value
         return settings.reference.steady_alpha * (to_first >= good)
 
@@ -292,6 +302,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         similarities = self._pi, self._pi_up
         for running, similarity in zip(self._levels, similarities, strict=True):
             running.judge(similarity, level)
+        # Both, since a fall of either says that the other is of a covered window too.
         if all(running.clear for running in self._levels):
             for running, similarity in zip(self._levels, similarities, strict=True):
                 running.add(similarity, level.rate)

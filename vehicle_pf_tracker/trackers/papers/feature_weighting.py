@@ -78,9 +78,11 @@ def weigh_features(averages: Array, initial: Array, threshold: float) -> Feature
     # A feature that drops out has no weight at all: a part of an occluder that happens to be
     # similar would pull the position as strongly as the vehicle.
     useful = (averages > 0) & (averages >= threshold * initial)
+    # A first similarity of 0 has no share: such a feature never counts.
     ratios = averages / np.where(initial > 0, initial, 1.0)
     confidences = np.where(useful & (initial > 0), ratios, 0.0)
     total = confidences.sum()
+    # Equation 17; without a feature in use its denominator is 0, and so are the factors.
     return FeatureWeighting(
         averages, confidences, confidences / total if total > 0 else confidences
     )
@@ -107,5 +109,6 @@ def common_survivors(sets: Sequence[Ancestors], count: int, otherwise: Ancestors
     otherwise : array of ancestor indices
         Result where no particle survives in all sets.
     """
+    # Random draws of three sets seldom agree: the fewer survive, the more often each is repeated.
     common = functools.reduce(np.intersect1d, sets)
     return np.resize(common, count) if len(common) else otherwise

@@ -61,6 +61,8 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         self._evidence = 0.0
 
     def _learn(self) -> None:
+        # Mean shift needs a histogram that changes smoothly with the position, which a kernel that
+        # falls to 0 at the window's border makes.
         bits = self.parameters.histogram_bits
         self._reference = self.target.kernel_reference(self.window, bits)
 
@@ -75,6 +77,7 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         rho = self.similarity(frame, particles)
         cloud = Cloud(particles, *from_log(log_likelihood(rho, settings.likelihood)))
         outcome = self._report(frame, cloud, elapsed, left_image=left_image)
+        # Kept for the next frame, whose spread it decides.
         self._evidence = outcome.evidence
         return outcome
 
@@ -85,6 +88,8 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         speed = float(np.hypot(*self._velocity.value))
         # After the start there is no clear level yet: the speed is unknown, and the spread wide.
         confidence = self._judge.confidence(self._evidence)
+        # Bounded: after a lost frame the confidence is near 0, and the spread must not fill the
+        # image, where 25 particles are too few.
         widening = 1.0 / max(confidence, 1.0 / transition.widest)
         return widening * max(settings.sigma, transition.speed_share * speed)
 

@@ -96,9 +96,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         if self._initial is not None:
             # The frame after the start is no longer available; the start itself is closest to it.
             # Predictions since widen the search, but not the one that gave this similarity.
-            self._predicted_for, predicted_for = 0.0, self._predicted_for
-            around = centre + self._noise(self._search_radius(1.0))
-            self._predicted_for = predicted_for
+            around = centre + self._noise(self._search_radius(1.0, 0.0))
             self._initial = self._averages(self._compare(self.target.patch, around))
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
@@ -109,8 +107,9 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         self._searching = self._settings.extended
         self._predicted_for = 0.0
         self._age = 0.0
-        self._initial = self._ancestors = None
-        return centre + self._noise(self._search_radius(1.0))
+        self._initial = None
+        self._ancestors = None
+        return centre + self._noise(self._search_radius(1.0, self._predicted_for))
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         particles, prior, left_image = self._disperse(frame, elapsed)
@@ -171,7 +170,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         if self._searching:
             # After a prediction the old particles stand where the vehicle was last seen.
             cloud = Cloud.uniform(np.tile(self._position, (settings.num_particles, 1)))
-            radius = self._search_radius(elapsed)
+            radius = self._search_radius(elapsed, self._predicted_for)
         elif self._ancestors is not None:
             # Copies of one particle part here, by the noise that each draws for itself.
             cloud = Cloud.uniform(cloud.positions[self._ancestors])
@@ -189,12 +188,12 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
             return sample_normal(self._rng, count, radius * DISC_SIGMA)
         return sample_disc(self._rng, count, radius)
 
-    def _search_radius(self, elapsed: float) -> float:
+    def _search_radius(self, elapsed: float, predicted_for: float) -> float:
         # The longer the vehicle is predicted, the less is known of where it is; the largest radius
         # bounds the search where windows would share no pixels, and cost the most.
         dispersion = self._settings.dispersion
         nominal = self._settings.search_factor * dispersion.radius * elapsed
-        grown = nominal + dispersion.growth * self._predicted_for
+        grown = nominal + dispersion.growth * predicted_for
         return min(grown, max(nominal, dispersion.largest))
 
     def _compare(self, frame: Frame, particles: Array) -> Array:
@@ -229,6 +228,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         (interpretation 18), which are equal where no feature is in use
         """
         logs = log_likelihood(rho, self._settings.likelihood)
+        # The weight so far is a factor (eq. 3, interpretation 35), 1/N where step 5 has resampled.
         log_prior = np.log(np.maximum(prior, np.finfo(np.float64).tiny))
         weights = np.stack([from_log(log_prior + row)[0] for row in logs])
         if weighting.full_occlusion:
@@ -241,8 +241,9 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
     ) -> tuple[float, float]:
         """Position by equation 18, from each feature's own by equation 12 or 13 (step 4)."""
         if self._settings.estimate == "best":
-            candidates = particles[weights.argmax(axis=1)]
+            candidates = particles[weights.argmax(axis=1)]  # eq. 12
         else:
+            # Equation 13: steadier than the best of few particles (interpretation 17).
             candidates = weights @ particles
         x, y = weighting.factors @ candidates
         return float(x), float(y)

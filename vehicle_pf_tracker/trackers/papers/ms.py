@@ -52,10 +52,12 @@ class MsTracker(BaseTracker[MsParameters]):
 
     def _learn(self) -> None:
         bits = self.parameters.histogram_bits
+        # The target model (eq. 2): its kernel counts the border least, where windows hold road.
         self._reference = self.target.kernel_reference(self.window, bits)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         self._velocity = MeanVelocity(VELOCITY_WINDOW)
+        # One particle: the search follows the slope from where the vehicle was, and draws nothing.
         return np.asarray([centre])
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:

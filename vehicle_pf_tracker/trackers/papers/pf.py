@@ -77,6 +77,7 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
 
     def _diffuse(self, frame: Frame, parents: Array, sigma: float) -> tuple[Array, bool]:
         """Propagate with a Normal density (P1 eq. 7); the result is that of `_move`."""
+        # Normal in every direction: nothing is known of the turn that the vehicle takes.
         return self._move(frame, parents, sample_normal(self._rng, len(parents), sigma))
 
     def similarity(self, frame: Frame, positions: Array) -> Array:

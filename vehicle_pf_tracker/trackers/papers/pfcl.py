@@ -64,6 +64,7 @@ class PfclTracker(ColourTracker[PfclParameters]):
 
     def _learn(self) -> None:
         super()._learn()
+        # From the target's own patch, as later frames may show it covered.
         centre = np.asarray([self.target.centre])
         self.line_reference = self._line_histograms(self.target.patch, centre)[0]
 
@@ -71,6 +72,7 @@ class PfclTracker(ColourTracker[PfclParameters]):
         settings = self.parameters
         parents = self._resample(self._cloud)
         particles, left_image = self._diffuse(frame, parents, settings.sigma * elapsed)
+        # The two features are taken as independent: their likelihoods are multiplied.
         colour = log_likelihood(self.similarity(frame, particles), settings.likelihood)
         lines = log_likelihood(
             self.line_similarity(frame, particles), LikelihoodParameters(settings.lines.sigma_v)
@@ -88,5 +90,6 @@ class PfclTracker(ColourTracker[PfclParameters]):
     def _line_histograms(self, frame: Frame, positions: Array) -> Array:
         settings = self.parameters.lines
         windows = bounds(frame, positions, self.window)
+        # Lines are searched once in the frame, and then counted by window: windows overlap.
         segments = find_lines(frame, windows, settings.edge_threshold, settings.shortest)
         return line_histograms(segments, windows, settings.bins)

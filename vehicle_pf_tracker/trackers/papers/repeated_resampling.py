@@ -128,6 +128,7 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         settings = self._settings
+        # Every particle moves on: what was drawn within the last frame is its resampling.
         parents = self._cloud.positions
         moved, left_image = self._diffuse(frame, parents, settings.sigma * elapsed)  # steps 3 to 7
         prior = self._cloud.weights if settings.weight_recursion else None  # eq. 6
@@ -174,6 +175,7 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
         count = int(replaced.sum())
         if count == 0:
             return particles, 0, regime
+        # Jittered, as copies in one place would weigh the same again and end no degeneracy.
         ancestors = SCHEMES[self._settings.resampling](weights, count, self._rng)
         spread = jitter * self._settings.sigma * elapsed
         parents = particles.cloud.positions[ancestors]
@@ -268,10 +270,12 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
         settings = self._settings
         weights = particles.cloud.weights
         if self._is_occluded(particles):  # step 15
+            # The cover takes most windows: only the most similar one may still show the vehicle.
             kept = np.arange(len(weights)) == weights.argmax()  # step 16
             jitter = settings.occlusion.jitter
             regime = "occlusion"
         else:
+            # At least the best is kept, whatever `low_weight` is: copies need a parent.
             kept = weights >= min(settings.low_weight / len(weights), weights.max())  # step 19
             jitter = settings.jitter
             regime = "regular"

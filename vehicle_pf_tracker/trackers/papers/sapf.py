@@ -71,6 +71,8 @@ def annealing_rate(log_weights: Weights, survival: float, largest: float) -> flo
     """
     low = 0.0
     high = largest
+    # Never sharper than `largest`: a likelihood that is flat everywhere tells nothing, and the
+    # sharpest rate would make peaks of its noise.
     if survival_rate(log_weights, high) >= survival:
         return high
     for _ in range(_MOST_HALVINGS):
@@ -131,6 +133,7 @@ class SapfTracker(ColourTracker[SapfParameters]):
         cloud = self._cloud
         sigma = settings.sigma * elapsed
         left_image = False
+        # From the widest spread to the narrowest: Deutscher's layers M to 1.
         for _ in range(annealing.layers):
             particles, left_image = self._diffuse(frame, self._resample(cloud), sigma)
             rho = self.similarity(frame, particles)
@@ -138,7 +141,9 @@ class SapfTracker(ColourTracker[SapfParameters]):
             # Flat weights first, so that the layer keeps all maxima; later ones choose among them.
             beta = annealing_rate(log_weights, annealing.survival, annealing.largest_rate)
             cloud = Cloud(particles, *from_log(beta * log_weights))
+            # Where many survived the layer has not settled, and the next must still search wide.
             if annealing.tied:
+                # Deutscher scales the covariance; sigma is its root.
                 sigma *= survival_rate(log_weights, beta) ** 0.5
             else:
                 sigma *= annealing.decay

@@ -61,6 +61,7 @@ def log_likelihood(coefficients: Array, parameters: LikelihoodParameters) -> Wei
     (N,) array
         ``-d_B² / (2 sigma_v²)``, or with ``d_B`` in place of its square.
     """
+    # As a logarithm, and without the factor before exp, which is the same for all particles.
     distance = hellinger_distance(coefficients)
     if parameters.squared_distance:
         distance = np.square(distance)
@@ -113,6 +114,7 @@ class MeanVelocity:
         that.
         """
         count = len(self.moves)
+        # Soon after the start the older half is all there is; with older moves none is needed.
         fewest = 0 if self._older[2] > 0 else (count + 1) // 2
         return self._mean_until(max(count - self._delay, fewest))
 
@@ -123,6 +125,7 @@ class MeanVelocity:
 
     def add(self, before: Vector, after: Vector, elapsed: float) -> None:
         """Count the move from `before` to `after` in `elapsed` nominal frame periods."""
+        # With its time: after a missing frame a move takes two periods, and weighs as much.
         self.moves.append((after[0] - before[0], after[1] - before[1], elapsed))
         while len(self.moves) > self._window + self._delay:
             oldest = self.moves.popleft()
@@ -132,7 +135,8 @@ class MeanVelocity:
     def resized(self, window: int, delay: int = 0) -> MeanVelocity:
         """Return the same history with another window."""
         other = MeanVelocity(window, delay)
-        other._older, other.moves = self._older, self.moves.copy()
+        other._older = self._older
+        other.moves = self.moves.copy()
         return other
 
 
