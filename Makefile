@@ -8,6 +8,8 @@ BENCH_ARGS =
 # File of a network, for `make detector`.
 MODEL =
 FIGURES = all
+# Options of tools.release_check.
+RELEASE_ARGS =
 # Where `bench` and `reproduce` write their pages.
 PAGES = docs
 
@@ -32,7 +34,7 @@ COVERED := 92
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
 # Each target that says of itself what it does, with two hashes, is listed by `make help`.
-.PHONY: help demo test test-all test-research mutants test-rest test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs detector dist clean
+.PHONY: help demo test test-all test-research mutants test-rest test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs detector dist release-check clean
 
 demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
@@ -130,6 +132,10 @@ dist: .venv/docs  ## build the wheel and the source archive, into results/dist
 	$(BIN)/twine check --strict results/dist/*
 	cd results/dist && tar -xzf *.tar.gz && cd */ && \
 		PYTHONPATH=. $(CURDIR)/$(BIN)/python -m pytest -m "not slow" test/core test/packaging test/tools test/test_walls.py
+
+# Archives in fresh environments with RELEASE_ARGS="--extras video ros evaluation", the default, take minutes.
+release-check: dist  ## all that has to hold before a release is tagged: checkout, archives, README
+	$(BIN)/python -m tools.release_check results/dist $(RELEASE_ARGS)
 
 clean:  ## remove what the other targets made
 	rm -rf .venv .venv-noble .venv-kilted .venv-baselines build install log results *.egg-info

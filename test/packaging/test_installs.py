@@ -6,7 +6,6 @@
 import os
 import re
 import shutil
-import subprocess
 import sys
 import venv
 from importlib.util import find_spec
@@ -15,6 +14,8 @@ from pathlib import Path
 import pytest
 import setuptools
 
+from tools import release_check
+from tools.release_check import run
 from vehicle_pf_tracker.trackers.registry import NODES
 
 pytestmark = pytest.mark.slow
@@ -30,18 +31,6 @@ ASK = "import vehicle_pf_tracker; print(vehicle_pf_tracker.__file__)"
 needs_colcon = pytest.mark.skipif(
     find_spec("colcon_core") is None, reason="needs colcon: `make .venv/colcon`"
 )
-
-
-def run(*command, cwd, **variables):
-    """Run a command away from the checkout and from any ROS workspace; its standard output."""
-    hidden = {"AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "PYTHONPATH", "PYTHONUSERBASE", "COLCON"}
-    env = {name: value for name, value in os.environ.items() if name not in hidden}
-    env.update({name: str(value) for name, value in variables.items()})
-    done = subprocess.run(
-        list(map(str, command)), cwd=cwd, env=env, text=True, capture_output=True, check=False
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
 
 
 def pip(*words, cwd, python=None, **variables):
@@ -168,39 +157,6 @@ def assert_ros_finds(prefix):
     assert run("sh", "-c", command, sys.executable, stated, cwd=prefix).strip() == "[]"
 
 
-WRITTEN = {
-    "video": (
-        "grid.png",
-        "seen.mp4",
-        "out/summary.png",
-        "out/estimates.csv",
-        "vehicles/tracks.csv",
-    ),
-    "ros": ("rec/metadata.yaml", "replayed/estimates.csv"),
-    "evaluation": ("recordings/bridge/metadata.yaml", "results/report.html"),
-}
-"""What the README's commands leave, by the extra that they need."""
-
-
-def readme_commands(extra):
-    """The commands after `pip install '.[EXTRA]'` in the README's part on the ways in."""
-    ways = (ROOT / "README.md").read_text().split("## Three ways in")[1]
-    blocks = re.findall(r"```sh\n(.*?)```", ways, re.DOTALL)
-    first = f"pip install '.[{extra}]'\n"
-    (commands,) = [block.removeprefix(first) for block in blocks if block.startswith(first)]
-    return commands
-
-
-@pytest.mark.parametrize("extra", WRITTEN)
-def test_an_extra_brings_all_that_the_readme_shows_for_it(wheel, extra, tmp_path):
-    python = bare(tmp_path / "env")
-    pip("install", f"{wheel}[{extra}]", cwd=tmp_path, python=python)
-    script = f"trap 'kill $(jobs -p) || true' EXIT\nset -e\n{readme_commands(extra)}"
-    variables = {
-        "PATH": f"{python.parent}:{os.environ['PATH']}",
-        "ROS_DOMAIN_ID": 1 + os.getpid() % 100,  # not that of the tests beside this one
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-    }
-    run("bash", "-c", script, cwd=tmp_path, **variables)
-    for name in WRITTEN[extra]:
-        assert (tmp_path / name).stat().st_size > 0
+@pytest.mark.parametrize("extra", release_check.WRITTEN)
+def test_an_extra_brings_all_that_the_readme_shows_for_it(wheel, extra):
+    assert re.match(r"\d+ MB; .*numpy", release_check.check_install(wheel, extra))

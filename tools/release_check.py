@@ -1,0 +1,244 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Checks before a release is tagged: the checkout, and its archives in fresh environments.
+
+    python -m tools.release_check results/dist [--extras video ros evaluation]
+
+`make release-check` builds the archives first. Every check runs; the status says whether all held.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import tarfile
+import venv
+import xml.etree.ElementTree as ET
+import zipfile
+from collections.abc import Callable, Collection, Iterable, Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[1]
+NAME = "vehicle_pf_tracker"
+WRITTEN = {
+    "video": (
+        "grid.png",
+        "seen.mp4",
+        "out/summary.png",
+        "out/estimates.csv",
+        "vehicles/tracks.csv",
+    ),
+    "ros": ("rec/metadata.yaml", "replayed/estimates.csv"),
+    "evaluation": ("recordings/bridge/metadata.yaml", "results/report.html"),
+}
+"""Files that the README's commands leave, by the extra that they need."""
+SIZES = {"video": 450, "ros": 600, "evaluation": 600}
+"""Largest site-packages by extra, MB: a laptop's patience, and a robot's disk of 8 GB."""
+_PAGES_WITH_VERSION = ("docs/performance.md",)
+_ASK_LICENCES = """
+import re
+from importlib.metadata import distributions
+for one in distributions():
+    told = one.metadata
+    classes = [c.rpartition("::")[2] for c in told.get_all("Classifier", []) if "License" in c]
+    words = told.get("License-Expression") or "; ".join(classes) or told.get("License") or ""
+    files = [f for f in one.files or [] if re.search("(?i)licen[sc]e|copying|notice", f.name)]
+    print(told["Name"], told["Version"], " ".join(words.split())[:60], len(files), sep="\\t")
+"""
+
+
+class ReleaseError(Exception):
+    """What stands against a release, a sentence."""
+
+
+class Licence(NamedTuple):
+    """Licence of an installed distribution, with the number of its files."""
+
+    name: str
+    version: str
+    words: str
+    files: int
+
+
+def run(*command: object, cwd: Path, **variables: object) -> str:
+    """Run a command away from the checkout and any ROS workspace, and return what it prints.
+
+    Raises
+    ------
+    ReleaseError
+        If it fails.
+    """
+    hidden = {"AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "PYTHONPATH", "PYTHONUSERBASE", "COLCON"}
+    environment = {name: value for name, value in os.environ.items() if name not in hidden}
+    environment.update({name: str(value) for name, value in variables.items()})
+    words = list(map(str, command))
+    done = subprocess.run(
+        words, cwd=cwd, env=environment, text=True, capture_output=True, check=False
+    )
+    if done.returncode:
+        raise ReleaseError(
+            f"`{' '.join(words)}` ends with {done.returncode}:\n{done.stdout}{done.stderr}"
+        )
+    return done.stdout
+
+
+def check_clean(root: Path) -> str:
+    """Check that git has all of the checkout."""
+    left = run("git", "status", "--porcelain", cwd=root).splitlines()
+    if left:
+        raise ReleaseError(f"the tree is not clean: {', '.join(line[3:] for line in left)}")
+    return run("git", "rev-parse", "--short", "HEAD", cwd=root).strip()
+
+
+def check_version(root: Path) -> str:
+    """Check that all files state the version of package.xml, and that no tag has it."""
+    version = ET.parse(root / "package.xml").getroot().findtext("version", "")  # noqa: S314
+    stated = {
+        "CHANGELOG.rst": r"(?m)^(\d\S*)\n-+$",
+        "CITATION.cff": r"(?m)^version: (\S+)$",
+        **dict.fromkeys(_PAGES_WITH_VERSION, r"vehicle pf tracker ([\w.]+),"),
+    }
+    for name, pattern in stated.items():
+        found = re.search(pattern, (root / name).read_text(encoding="utf-8"))
+        if found is None or found[1] != version:
+            raise ReleaseError(f"{name} has {found[1] if found else 'no version'}, not {version}")
+    if run("git", "tag", "--list", version, f"v{version}", cwd=root).strip():
+        raise ReleaseError(f"the version {version} is tagged already")
+    return version
+
+
+def check_pages(root: Path) -> str:
+    """Check that the pages and files that are generated are those of this code."""
+    run(sys.executable, "-m", "tools.generate", cwd=root, PYTHONPATH=root)
+    changed = run("git", "diff", "--name-only", cwd=root).split()
+    if changed:
+        raise ReleaseError(f"`make config` changes {', '.join(changed)}")
+    return "generated pages are of this code"
+
+
+def archives(folder: Path, version: str) -> tuple[Path, Path]:
+    """Return the wheel and the source archive of a version, with its licence in them."""
+    wheel = folder / f"{NAME}-{version}-py3-none-any.whl"
+    source = folder / f"{NAME}-{version}.tar.gz"
+    for path in (wheel, source):
+        if not path.exists():
+            raise ReleaseError(f"{path} is not there: `make dist`")
+    with zipfile.ZipFile(wheel) as of_wheel, tarfile.open(source) as of_source:
+        names = {wheel: of_wheel.namelist(), source: of_source.getnames()}
+    for path, inside in names.items():
+        if not any(re.search(r"(^|/)LICENSE$", name) for name in inside):
+            raise ReleaseError(f"{path.name} has no LICENSE")
+    return wheel, source
+
+
+def readme_commands(extra: str) -> str:
+    """Return the commands after ``pip install '.[EXTRA]'`` in the README's part on the ways in."""
+    ways = (ROOT / "README.md").read_text(encoding="utf-8").split("## Three ways in")[1]
+    blocks = re.findall(r"```sh\n(.*?)```", ways, re.DOTALL)
+    first = f"pip install '.[{extra}]'\n"
+    (commands,) = [block.removeprefix(first) for block in blocks if block.startswith(first)]
+    return commands
+
+
+def installed(archive: Path, extra: str, folder: Path) -> Path:
+    """Install an archive with an extra into a fresh environment, and return its Python."""
+    venv.create(folder, symlinks=True)
+    python = folder / "bin" / "python"
+    pip = (sys.executable, "-m", "pip", "--python", python, "--disable-pip-version-check")
+    run(*pip, "install", "--quiet", f"{archive.absolute()}[{extra}]", cwd=folder)
+    return python
+
+
+def follow_readme(python: Path, extra: str, folder: Path) -> None:
+    """Type the README's commands in an empty folder, and check what they leave."""
+    folder.mkdir(exist_ok=True)
+    script = f"trap 'kill $(jobs -p) || true' EXIT\nset -e\n{readme_commands(extra)}"
+    variables = {
+        "PATH": f"{python.parent}:{os.environ['PATH']}",
+        "ROS_DOMAIN_ID": 1 + os.getpid() % 100,  # not that of nodes beside this one
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+    run("bash", "-c", script, cwd=folder, **variables)
+    for name in WRITTEN[extra]:
+        if not (folder / name).exists() or not (folder / name).stat().st_size:
+            raise ReleaseError(f"the README's commands for [{extra}] leave no {name}")
+
+
+def licences(python: Path) -> list[Licence]:
+    """Return the licences of all distributions in an environment."""
+    lines = run(python, "-c", _ASK_LICENCES, cwd=python.parent).splitlines()
+    rows = [line.split("\t") for line in lines]
+    return sorted(Licence(name, version, words, int(files)) for name, version, words, files in rows)
+
+
+def check_licences(found: Iterable[Licence]) -> str:
+    """Check that every distribution states its licence, in words or by a file."""
+    found = list(found)
+    silent = [one.name for one in found if not one.words and not one.files]
+    if silent:
+        raise ReleaseError(f"these state no licence: {', '.join(silent)}")
+    return "; ".join(f"{one.name} {one.version}: {one.words or 'see its file'}" for one in found)
+
+
+def megabytes(python: Path) -> int:
+    """Return the size of the site-packages beside a Python, MB, as `du -sm` has it."""
+    (folder,) = python.parents[1].glob("lib/python*/site-packages")
+    return int(run("du", "-sm", folder, cwd=folder).split()[0])
+
+
+def check_install(archive: Path, extra: str) -> str:
+    """Check an archive in a fresh environment: README, licences; return them and its size."""
+    with TemporaryDirectory(prefix="release-check-") as scratch:
+        python = installed(archive, extra, Path(scratch, "env"))
+        size = megabytes(python)
+        told = check_licences(licences(python))
+        follow_readme(python, extra, Path(scratch, "work"))
+    if size > SIZES[extra]:
+        raise ReleaseError(f"[{extra}] takes {size} MB, more than {SIZES[extra]}")
+    return f"{size} MB; {told}"
+
+
+def checks(dist: Path, extras: Collection[str]) -> Iterator[tuple[str, Callable[[], object]]]:
+    """Give the checks by name, in their order."""
+    yield "clean tree", lambda: check_clean(ROOT)
+    yield "version", lambda: check_version(ROOT)
+    yield "pages", lambda: check_pages(ROOT)
+    version = ET.parse(ROOT / "package.xml").getroot().findtext("version", "")  # noqa: S314
+    yield "archives", lambda: ", ".join(path.name for path in archives(dist, version))
+    for extra in extras:
+        yield (
+            f"wheel [{extra}]",
+            lambda extra=extra: check_install(archives(dist, version)[0], extra),
+        )
+    if "video" in extras:
+        yield "source [video]", lambda: check_install(archives(dist, version)[1], "video")
+
+
+def main(words: list[str] | None = None) -> int:
+    """Run the checks that a command line asks for, and return its status."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("dist", type=Path, help="folder of the archives, as `make dist` fills it")
+    parser.add_argument("--extras", nargs="*", default=list(WRITTEN), choices=WRITTEN)
+    args = parser.parse_args(words)
+    verdicts = [_holds(name, check) for name, check in checks(args.dist, args.extras)]
+    return int(not all(verdicts))
+
+
+def _holds(name: str, check: Callable[[], object]) -> bool:
+    """Print whether a check holds, and return that."""
+    try:
+        print(f"{name}: ok, {check()}", flush=True)
+    except ReleaseError as problem:
+        print(f"{name}: FAILED: {problem}", flush=True)
+        return False
+    return True
+
+
+if __name__ == "__main__":
+    sys.exit(main())
