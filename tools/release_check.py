@@ -20,6 +20,7 @@ import venv
 import xml.etree.ElementTree as ET
 import zipfile
 from collections.abc import Callable, Collection, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -140,7 +141,7 @@ def archives(folder: Path, version: str) -> tuple[Path, Path]:
 def readme_commands(extra: str) -> str:
     """Return the commands after ``pip install '.[EXTRA]'`` in the README's part on the ways in."""
     ways = (ROOT / "README.md").read_text(encoding="utf-8").split("## Three ways in")[1]
-    blocks = re.findall(r"```sh\n(.*?)```", ways, re.DOTALL)
+    blocks: list[str] = re.findall(r"```sh\n(.*?)```", ways, re.DOTALL)
     first = f"pip install '.[{extra}]'\n"
     (commands,) = [block.removeprefix(first) for block in blocks if block.startswith(first)]
     return commands
@@ -212,12 +213,13 @@ def checks(dist: Path, extras: Collection[str]) -> Iterator[tuple[str, Callable[
     version = ET.parse(ROOT / "package.xml").getroot().findtext("version", "")  # noqa: S314
     yield "archives", lambda: ", ".join(path.name for path in archives(dist, version))
     for extra in extras:
-        yield (
-            f"wheel [{extra}]",
-            lambda extra=extra: check_install(archives(dist, version)[0], extra),
-        )
+        yield f"wheel [{extra}]", partial(_check_archive, 0, dist, version, extra)
     if "video" in extras:
-        yield "source [video]", lambda: check_install(archives(dist, version)[1], "video")
+        yield "source [video]", partial(_check_archive, 1, dist, version, "video")
+
+
+def _check_archive(which: int, dist: Path, version: str, extra: str) -> str:
+    return check_install(archives(dist, version)[which], extra)
 
 
 def main(words: list[str] | None = None) -> int:
