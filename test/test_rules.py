@@ -13,7 +13,7 @@ SOURCE = Path(__file__).resolve().parents[1] / "vehicle_pf_tracker"
 FILES = sorted(SOURCE.rglob("*.py"))
 MOST_FIELDS = 12
 """Fields of a class that a reader keeps in mind."""
-TABLES = re.compile(r"Parameters$|Request$|Options?$|^Metrics$|^Estimate$|^Health$")
+TABLES = re.compile(r"Parameters$|Request$|Options?$|^Metrics$|^Estimate$")
 """Classes that are tables: of parameters, of options of a command, of results by name."""
 ROW = re.compile(r"^(share|parameter|\w+_parameter|option|positional|switch|group)$")
 """Calls that are a row of a table of parameters, laid out by hand."""

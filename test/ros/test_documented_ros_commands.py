@@ -89,7 +89,7 @@ def give(rig, topic, kind, text):
         rig.bench.wait_for(lambda: rig.node.feed.asked is not None)
         answer = rig.show_frame(road(1, *SIZE)[0], 1)
         assert answer.status[0].message == "TRACKING"
-    assert rig.node.diagnostics.health.refused_targets == 0
+    assert rig.node.diagnostics.health.refusals.count == 0
 
 
 def change(rig, node, name, text):

@@ -125,8 +125,8 @@ def run(request: Request) -> int:
         raise UsageError("--target is not allowed with --no-target; leave one out")
     if request.loop and request.output:
         raise UsageError("-o cannot be combined with --loop, which never ends")
-    from vehicle_pf_tracker.ros.replay.player import NoTargetError
     from vehicle_pf_tracker.ros.replay.replaying import noted_interrupts, replay
+    from vehicle_pf_tracker.ros.replay.starting_target import NoTargetError
 
     recording = Recording(request.recording, request.topic)
     told = recording.notices

@@ -16,7 +16,7 @@ from tracker_rig import Rig, header, on_target, road
 
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node import diagnostics
-from vehicle_pf_tracker.ros.node.diagnostics import Health
+from vehicle_pf_tracker.ros.node.health import Health
 
 pytestmark = pytest.mark.ros
 
@@ -181,23 +181,23 @@ def numbered(number) -> dict[str, object]:
 def test_gaps_in_the_numbers_of_one_publisher_are_dropped_images(numbers, publishers, dropped):
     health = Health(Clock())
     for number in numbers:
-        health.arrived(numbered(number), 0.0, lambda: publishers)
-    assert (health.images, health.dropped) == (len(numbers), dropped)
+        health.arrivals.add(numbered(number), 0.0, lambda: publishers)
+    assert (health.arrivals.images, health.arrivals.dropped) == (len(numbers), dropped)
 
 
 def test_images_missed_while_not_listening_are_not_dropped():
     health = Health(Clock())
-    health.arrived(numbered(1), 0.0, lambda: 1)
-    health.listen()
-    health.arrived(numbered(50), 0.0, lambda: 1)
-    assert health.dropped == 0
+    health.arrivals.add(numbered(1), 0.0, lambda: 1)
+    health.arrivals.listen()
+    health.arrivals.add(numbered(50), 0.0, lambda: 1)
+    assert health.arrivals.dropped == 0
 
 
 def test_rates_are_those_since_the_last_report():
     clock = Clock()
     health = Health(clock)
     for number in range(1, 11):
-        health.arrived(numbered(number), 0.25, lambda: 1)
+        health.arrivals.add(numbered(number), 0.25, lambda: 1)
     clock.now += 2.0
     health.answered("TRACKING", 1.25)
     clock.now += 2.0

@@ -81,7 +81,7 @@ def test_an_image_taken_just_before_is_left_alone(bench, manager, transitions):
     for transition in transitions:
         assert manager.change(transition)
     take(image_message(header(3), frames[3]), {})
-    assert rig.node.diagnostics.health.images == 3
+    assert rig.node.diagnostics.health.arrivals.images == 3
     assert len(rig.modes) == 3
 
 

@@ -50,7 +50,7 @@ def test_a_detection_starts_a_node_and_comes_back(bench, messages, monkeypatch):
     assert found[3].id == "2"
     wanted.bbox.center.theta = 1.0
     target.publish(wanted)
-    bench.wait_for(lambda: rig.node.diagnostics.health.refused_targets == 1)
+    bench.wait_for(lambda: rig.node.diagnostics.health.refusals.count == 1)
 
 
 def test_the_camera_pose_comes_from_tf(bench, messages, monkeypatch):

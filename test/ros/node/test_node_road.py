@@ -204,10 +204,10 @@ def test_frames_of_pixel_outputs_can_be_marked(bench):
     health = rig.node.diagnostics.health
     publisher.publish(boxes[0])
     bench.wait_for(lambda: rig.node.feed.asked is not None)
-    assert health.refused_targets == 0
+    assert health.refusals.count == 0
     boxes[0].header.frame_id = "map"
     publisher.publish(boxes[0])
-    bench.wait_for(lambda: health.refused_targets == 1)
+    bench.wait_for(lambda: health.refusals.count == 1)
 
 
 def transform(parent, child, position, quaternion=(0.0, 0.0, 0.0, 1.0)):

@@ -52,13 +52,13 @@ class Targets:
 
     def give(self, message) -> None:
         stream, health = self.rig.node.feed, self.rig.node.diagnostics.health
-        before = stream.asked, health.refused_targets
+        before = stream.asked, health.refusals.count
         self.topics[type(message)].publish(message)
-        self.rig.bench.wait_for(lambda: (stream.asked, health.refused_targets) != before)
+        self.rig.bench.wait_for(lambda: (stream.asked, health.refusals.count) != before)
 
     @property
     def last_refusal(self) -> str:
-        return self.rig.node.diagnostics.health.last_refusal
+        return self.rig.node.diagnostics.health.refusals.last
 
 
 @pytest.fixture
@@ -122,10 +122,10 @@ def test_a_click_takes_the_present_size(tracking):
 )
 def test_a_target_that_cannot_be_is_refused_and_the_track_kept(tracking, message, words):
     rig, targets = tracking
-    refused = rig.node.diagnostics.health.refused_targets
+    refused = rig.node.diagnostics.health.refusals.count
     targets.give(message)
     answer = rig.show_frame(road(4)[3], 3)
-    assert rig.node.diagnostics.health.refused_targets == refused + 1
+    assert rig.node.diagnostics.health.refusals.count == refused + 1
     assert words in targets.last_refusal
     assert values_of(answer)["regime"] != "start"
     assert answer.status[0].message == "TRACKING"

@@ -9,9 +9,9 @@ from replay_rig import IMAGE_TOPIC, StubTracker, record, spinning, stamps
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.ros.replay.player import NoTargetError
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 from vehicle_pf_tracker.ros.replay.replaying import replay
+from vehicle_pf_tracker.ros.replay.starting_target import NoTargetError
 
 pytestmark = pytest.mark.ros
 

@@ -187,7 +187,7 @@ def test_a_selection_that_cannot_be_is_refused_and_the_old_one_stays(bench, monk
     elsewhere.header.frame_id = "map"
     bad = PointStamped()
     bad.point.x = float("nan")
-    refused = rig.node.diagnostics.health
+    refused = rig.node.diagnostics.health.refusals
     for count, (publisher, message) in enumerate(
         [
             (chooser, Int64(data=-1)),
@@ -199,7 +199,7 @@ def test_a_selection_that_cannot_be_is_refused_and_the_old_one_stays(bench, monk
         start=1,
     ):
         publisher.publish(message)
-        rig.bench.wait_for(lambda: refused.refused_targets == count)  # noqa: B023
+        rig.bench.wait_for(lambda: refused.count == count)  # noqa: B023
     assert rig.vehicles.selection.identity == number
     assert len(said) == 1
     assert said[0].startswith("selection refused: no vehicle has the number -1; there are ")
@@ -217,7 +217,7 @@ def test_targets_given_by_hand_are_followed_without_a_detector(bench):
         targets.publish(RegionOfInterest(x_offset=x, y_offset=y, width=width, height=height))
         bench.wait_for(lambda: rig.vehicles.session.tracker.last_identity == count)  # noqa: B023
     targets.publish(RegionOfInterest(x_offset=5000, y_offset=0, width=20, height=20))
-    bench.wait_for(lambda: rig.node.diagnostics.health.refused_targets == 1)
+    bench.wait_for(lambda: rig.node.diagnostics.health.refusals.count == 1)
     rig.play(frames[WARM_UP + 8 :], WARM_UP + 8)
     end = rig.said(COUNT - 1)
     assert list(end) == [1, 2]

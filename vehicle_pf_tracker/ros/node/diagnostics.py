@@ -1,140 +1,27 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""`/diagnostics` at 1 Hz: counts of a node's input and work, and why no images arrive."""
+"""`/diagnostics` of a node: its health once a second, and why no images arrive."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-from vehicle_pf_tracker.ros.messages import LEVELS, WAITING, status
+from vehicle_pf_tracker.ros.messages import LEVELS, status
+from vehicle_pf_tracker.ros.node.health import Health
 from vehicle_pf_tracker.ros.node.image_input import ImageInput
 
-PERIOD = 1.0
+_PERIOD = 1.0
+"""Interval of the reports, s: that of ROS's own diagnostic_updater."""
 SILENCE = 5.0
-"""Time without an image after which a warning is published, s."""
+"""Time without an image after which a warning is published, s: a camera that connects again is
+back within it, and nobody looks at a picture that stands for longer."""
 _WARNING_PERIOD = 30.0
-
-
-class Health:
-    """Counters since the node was configured; rates since the last report.
-
-    Parameters
-    ----------
-    clock : callable
-        Steady time in s.
-
-    Attributes
-    ----------
-    images, rejected, dropped : int
-        Images that arrived, that could not be used, and that were sent but never arrived.
-    refused_targets : int
-        Targets that could not be used.
-    restarts : int
-        Times that the tracker failed twice in a row and started anew.
-    last_rejection, last_refusal : str
-        The reasons.
-    road : mapping
-        Place and speed on the road with the last estimate, by name; empty without a road.
-    mode : str
-        Mode of the last `~/mode`.
-    """
-
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._clock = clock
-        self.images = self.rejected = self.dropped = self.refused_targets = 0
-        self.restarts = 0
-        self.last_rejection = self.last_refusal = ""
-        self.mode = WAITING
-        self.road: Mapping[str, object] = {}
-        self._mode_since = self._heard = self._reported = clock()
-        self._images_reported = 0
-        self._number: int | None = None
-        self._age = 0.0
-        self._step_ms = 0.0
-
-    @property
-    def silence(self) -> float:
-        """Seconds since the last image, or since listening began."""
-        return self._clock() - self._heard
-
-    def listen(self) -> None:
-        """Start waiting for images: neither the time nor the images missed before count."""
-        self._heard = self._clock()
-        self._number = None
-
-    def arrived(
-        self, info: Mapping[str, Any], age: float, count_publishers: Callable[[], int]
-    ) -> None:
-        """Count an image.
-
-        Parameters
-        ----------
-        info : mapping
-            The message's info; gaps in its publication sequence number are dropped images.
-        age : float
-            Time from the image's stamp to now, in s.
-        count_publishers : callable
-            Returns the number of publishers on the topic; is called where images seem to be
-            missing, as the numbers of several publishers cannot be told apart.
-        """
-        self.images += 1
-        self._heard = self._clock()
-        self._age = age
-        number = info.get("publication_sequence_number")
-        if number is not None and self._number is not None:
-            # A publisher that was restarted counts from 1 again.
-            missing = number - self._number - 1
-            if missing > 0 and count_publishers() == 1:
-                self.dropped += missing
-        self._number = number
-
-    def answered(self, mode: str, step_ms: float | None = None) -> None:
-        """Note the mode that an image was answered with, and how long the step took."""
-        if mode != self.mode:
-            self.mode, self._mode_since = mode, self._clock()
-        if step_ms is not None:
-            self._step_ms = step_ms
-
-    def reject(self, reason: str) -> None:
-        """Count an image that could not be used."""
-        self.rejected += 1
-        self.last_rejection = reason
-
-    def refuse_target(self, reason: str) -> None:
-        """Count a target that could not be used."""
-        self.refused_targets += 1
-        self.last_refusal = reason
-
-    def report(self) -> dict[str, object]:
-        """Give the values for `/diagnostics` by name, and begin the next interval."""
-        now = self._clock()
-        new = self.images - self._images_reported
-        seconds = now - self._reported
-        self._images_reported = self.images
-        self._reported = now
-        return {
-            "mode": self.mode,
-            "time in mode (s)": round(now - self._mode_since, 1),
-            "input rate (Hz)": round(new / seconds, 2) if seconds > 0 else 0.0,
-            "age of frames (ms)": round(self._age * 1e3, 1),
-            "step time (ms)": round(self._step_ms, 3),
-            "images": self.images,
-            "dropped": self.dropped,
-            "rejected": self.rejected,
-            "last rejection": self.last_rejection,
-            "refused targets": self.refused_targets,
-            "last refused target": self.last_refusal,
-            "restarts after errors": self.restarts,
-            "time since last image (s)": round(now - self._heard, 1),
-            **self.road,
-        }
+"""Interval between two lines in the log about one silence, s; /diagnostics has it each time."""
 
 
 class Diagnostics:
@@ -163,7 +50,7 @@ class Diagnostics:
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         # Steady, because simulated time may stand still and that is worth a report too.
         clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._timer = node.create_timer(PERIOD, self.publish, clock=clock)
+        self._timer = node.create_timer(_PERIOD, self.publish, clock=clock)
 
     def begin(self) -> Health:
         """Reset the counters, and return them."""
@@ -173,7 +60,7 @@ class Diagnostics:
     def listen_to(self, source: ImageInput) -> None:
         """Expect images from `source`."""
         self.source = source
-        self.health.listen()
+        self.health.arrivals.listen()
 
     def cease(self) -> None:
         """Close the source and expect nothing."""
@@ -197,7 +84,7 @@ class Diagnostics:
             return DiagnosticStatus.OK, "not active"
         topic = self.source.topic
         level = LEVELS[self.health.mode]
-        if self.health.silence < SILENCE:
+        if self.health.arrivals.silence < SILENCE:
             return level, self.health.mode
         words = f"no image for {SILENCE:g} s on {topic}: {self.source.explain_silence()}"
         self._node.get_logger().warning(words, throttle_duration_sec=_WARNING_PERIOD)

@@ -200,7 +200,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         if source is None or self.accept is None:
             return
         age = self.get_clock().now().nanoseconds - stamp_ns(image.header)
-        self.diagnostics.health.arrived(info, age * 1e-9, source.count_publishers)
+        self.diagnostics.health.arrivals.add(info, age * 1e-9, source.count_publishers)
         self.accept(image)
 
     def warn_of_overrides(self, *, qos: bool) -> None:

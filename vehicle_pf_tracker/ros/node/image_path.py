@@ -150,7 +150,7 @@ class ImagePath:
             self.incidents.keep(mode, self._feed.followed)
 
     def _rejected(self, header: Header, reason: str) -> Answer:
-        self.journal.health.reject(reason)
+        self.journal.health.rejections.add(reason)
         self.journal.errors.say("rejected", f"image rejected: {reason}")
         return Answer(header=header, mode=REJECTED, values={"reason": reason})
 

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 
 from rclpy.node import Node
 
-from vehicle_pf_tracker.ros.node.diagnostics import Health
+from vehicle_pf_tracker.ros.node.health import Health
 from vehicle_pf_tracker.ros.node.notices import Notices
 
 
@@ -43,7 +43,7 @@ class Journal:
 
     def refuse(self, what: str, reason: str) -> None:
         """Report that a target or a selection cannot be used; all vehicles are kept."""
-        self.health.refuse_target(reason)
+        self.health.refusals.add(reason)
         self.errors.say(what, f"{what} refused: {reason}")
 
     def note_seed(self, given: int, seed: int) -> None:

@@ -251,7 +251,7 @@ class TrackerFeed:
     def _events(self, session: Session) -> list[str]:
         """Log what the session says of the last image, and return it, a sentence each."""
         if session.refusal:
-            self._journal.health.refuse_target(session.refusal)
+            self._journal.health.refusals.add(session.refusal)
         if session.events:
             log = self._journal.errors if session.recovered else self._journal.warnings
             log.say("event", "; ".join(session.events))

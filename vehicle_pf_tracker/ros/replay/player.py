@@ -10,22 +10,18 @@ from collections.abc import Callable, Iterator
 
 from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.publisher import Publisher
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
-from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Lookout, Spinner
+from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Spinner
 from vehicle_pf_tracker.ros.replay.pace import Pace, PlaybackClock
 from vehicle_pf_tracker.ros.replay.publishing import make_publishers
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, ReplayReport
 from vehicle_pf_tracker.ros.replay.starting_target import Targets, played, starting_target
-from vehicle_pf_tracker.ros.replay.tracker_link import TrackerLink
+from vehicle_pf_tracker.ros.replay.tracker_links import TrackerLinks
 
 _ACKNOWLEDGEMENT_SLICE = Duration(seconds=0.05)
-
-
-class NoTargetError(InputError):
-    """Tracker nodes are there, but no target for them."""
+"""Longest wait for acknowledgements without a look whether the user asked to end."""
 
 
 class Player:
@@ -57,18 +53,17 @@ class Player:
         on_progress: Callable[[int, float | None], None],
         tell: Callable[[str], None],
     ) -> None:
-        self._frames = 0
-        self._node = node
         self._spinner = spinner
         self._recording = recording
         self._options = options
         self._on_progress = on_progress
-        self._tell = tell
+        # Publishers first: see `TrackerLink`.
         self._publishers, notices = make_publishers(node, recording, options)
         for notice in notices:
             tell(notice)
-        self._links: list[TrackerLink] = []
-        self._frame = 0
+        self._nodes = TrackerLinks(node, spinner, options, tell)
+        self._frames = 0  # in all passes
+        self._frame = 0  # in this pass
         self._skipped: list[str] = []
         self._pace = Pace(options.rate or (None if options.lockstep else 1.0))
         self._clock = PlaybackClock(node, self._pace, options.clock) if options.clock else None
@@ -94,7 +89,7 @@ class Player:
         return ReplayReport(
             frames=self._frames,
             seconds=time.monotonic() - began,
-            nodes=tuple(link.report() for link in self._links),
+            nodes=tuple(link.report() for link in self._nodes.links),
             notices=tuple(self._notices(is_interrupted=is_interrupted)),
             interrupted=is_interrupted,
         )
@@ -102,55 +97,23 @@ class Player:
     def _notices(self, *, is_interrupted: bool) -> Iterator[str]:
         if self._skipped:
             yield f"skipped {len(self._skipped)} messages; the first, {self._skipped[0]}"
-        for link in self._links:
-            losses = link.answers.losses()
-            # An interruption leaves the last image without its answer, which is no loss.
-            if losses.total > is_interrupted:
-                yield losses.sentence(link.name, self._frames)
+        yield from self._nodes.loss_notices(self._frames, is_interrupted=is_interrupted)
 
     def _get_ready(self) -> Targets:
         options = self._options
         images = self._publishers.get(self._recording.image_topic)
         if images is not None:
-            self._connect(images.publisher)
+            self._nodes.connect(images.publisher)
         elif options.lockstep or options.nodes or options.wait_for_subscribers:
             raise InputError(
                 f"the image topic {self._recording.image_topic} is not played; "
                 "add it to --topics, or leave out what waits for it"
             )
-        target = None
-        if self._links and options.set_target:
-            target = starting_target(self._recording, options)
-            if target is None:
-                raise NoTargetError(
-                    f"the recording {self._recording.path} has no true box to start on; "
-                    "give --target x,y,w,h, or --no-target to leave the nodes' targets alone"
-                )
+        links = self._nodes.links
+        has_target = links and options.set_target
+        target = starting_target(self._recording, options) if has_target else None
         self._spinner.until_time(time.monotonic() + options.delay)
-        return Targets(self._links, target)
-
-    def _connect(self, images: Publisher) -> None:
-        """Link the nodes, and wait until images and answers will reach each other."""
-        options = self._options
-        count = images.get_subscription_count
-        if options.wait_for_subscribers and not count():
-            self._tell(f"waiting for a subscriber of {images.topic_name}")
-            self._spinner.until(lambda: count() > 0)
-        lookout = Lookout(self._node, self._spinner, images.topic_name)
-        if options.nodes:
-            names = lookout.await_named(options.nodes, options.timeout)
-        else:
-            names = lookout.find(options.timeout if options.lockstep else 0.0)
-        if not names:
-            if options.lockstep:
-                raise InputError(lookout.nobody())
-            self._tell(lookout.nobody())
-        self._links += [
-            TrackerLink(self._node, self._spinner, name, options.timeout) for name in names
-        ]
-        for link in self._links:
-            link.greet()
-        self._spinner.until(lambda: count() >= len(names), options.timeout)
+        return Targets(links, target)
 
     def _play(self, targets: Targets) -> None:
         """Play until the end, or until interrupted when looping."""
@@ -158,12 +121,11 @@ class Player:
             self._spinner.check()
             self._pace.restart()
             self._frame = 0
-            for link in self._links:
-                link.answers.begin_pass()
+            self._nodes.begin_pass()
             targets.begin_pass()
             self._play_once(targets)
             self._await_acknowledgement()
-            self._await_last_answers()
+            self._nodes.await_last(self._frame)
             if not self._options.loop:
                 return
 
@@ -203,14 +165,7 @@ class Player:
         assert message.stamp_ns is not None
         self._frames += 1
         self._frame += 1
-        for link in self._links:
-            link.answers.expect(self._frame, message.stamp_ns)
-        for link in self._links if self._options.lockstep else ():
-            if not link.await_answer(self._frame, self._options.timeout):
-                raise InputError(
-                    f"the node {link.name} did not answer frame {self._frame} "
-                    f"(stamp {message.stamp_ns} ns) within {self._options.timeout:g} s"
-                )
+        self._nodes.expect(self._frame, message.stamp_ns)
 
     def _await_acknowledgement(self) -> None:
         """Wait until reliable subscribers have everything, no longer than the timeout."""
@@ -220,11 +175,3 @@ class Player:
                 self._spinner.check()
                 if time.monotonic() >= deadline:
                     return
-
-    def _await_last_answers(self) -> None:
-        """Wait for the answers to the last image.
-
-        Nodes answer in order: with the last answer in, what is missing was dropped.
-        """
-        for link in self._links if self._frame else ():
-            link.await_answer(self._frame, self._options.timeout)

@@ -16,6 +16,10 @@ from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 from vehicle_pf_tracker.ros.replay.tracker_link import TrackerLink
 
 
+class NoTargetError(InputError):
+    """Tracker nodes are there, but no target for them."""
+
+
 def played(
     recording: Recording, options: ReplayOptions, topics: set[str]
 ) -> Iterator[RecordedMessage]:
@@ -23,19 +27,20 @@ def played(
     return recording.messages(topics, options.start_offset, options.playback_duration)
 
 
-def starting_target(recording: Recording, options: ReplayOptions) -> tuple[Box, int] | None:
+def starting_target(recording: Recording, options: ReplayOptions) -> tuple[Box, int]:
     """Choose the target: the one given, else the first true box of the part that is played.
 
     A true box is started on in the image nearest to it in time, as offline.
 
     Returns
     -------
-    (Box, int) or None
-        The box, and the image to start in, counted from 1 in the part played; None without a
-        target and truth.
+    (Box, int)
+        The box, and the image to start in, counted from 1 in the part played.
 
     Raises
     ------
+    NoTargetError
+        If there is neither a target nor truth.
     InputError
         If no image is near the truth.
     """
@@ -46,7 +51,10 @@ def starting_target(recording: Recording, options: ReplayOptions) -> tuple[Box, 
     if truth is not None and truth.stamp_ns < earliest_ns:
         truth = next((item for item in recording.truth() if item.stamp_ns >= earliest_ns), None)
     if truth is None:
-        return None
+        raise NoTargetError(
+            f"the recording {recording.path} has no true box to start on; "
+            "give --target x,y,w,h, or --no-target to leave the nodes' targets alone"
+        )
     images = played(recording, options, {recording.image_topic})
     stamps = (image.stamp_ns for image in images if image.stamp_ns is not None)
     frame = nearest_frame(stamps, truth.stamp_ns, max_diff_ns(PAIRED_WITHIN_S))
