@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from vehicle_pf_tracker.ros.video_source import Pace
+from vehicle_pf_tracker.ros.video_source.pace import Pace
 
 MS = 1_000_000
 

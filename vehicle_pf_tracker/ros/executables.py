@@ -73,7 +73,7 @@ video_source = main
 
 def _run(name: str, words: Sequence[str]) -> int:
     if name == _VIDEO:
-        from vehicle_pf_tracker.ros.video_source import run_video_source  # noqa: PLC0415
+        from vehicle_pf_tracker.ros.video_source.running import run_video_source  # noqa: PLC0415
 
         return run_video_source(words)
     if name == _ANY and words[:1] != ["--variant"]:

@@ -1,20 +1,16 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The executable `video_source`: a node that publishes the images of a source."""
+"""Node `video_source`: publishes the images of a source, and opens it again when it breaks off."""
 
 from __future__ import annotations
 
-import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import rclpy
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import Image
@@ -29,28 +25,18 @@ from vehicle_pf_tracker.recordings.recording_names import is_recording
 from vehicle_pf_tracker.recordings.video import Camera, open_footage
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
-from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_nodes
+from vehicle_pf_tracker.ros.video_source.pace import Pace
 
-_NAME = "video_source"
+NAME = "video_source"
 _DEPTH = 5
 """Images kept for a slow subscriber. Reliable, since that serves both kinds of subscribers."""
 _LATE = 1.0
 """Seconds behind the source's rate that are worth a warning: more than a hiccup of the disk."""
 _SAY_AGAIN = 10.0
 """Seconds between two warnings of a kind."""
-_IMAGE_BYTES = 1920 * 1080 * 3
-"""Size of an image of which the segment holds four; one of 4K still fits once."""
-_LAST_WAIT = 2.0
-"""Seconds that the thread gets to end; one that waits for a silent camera is left behind."""
 _FIRST_RETRY, _LAST_RETRY = 1.0, 30.0
 """Seconds until a source that broke off is opened again: twice as long each time, up to the last.
 A camera that restarts is back within a minute, and one that is gone costs next to nothing."""
-_LOOK_EVERY = 0.1
-"""Seconds between two looks whether the source has ended."""
-_USAGE = """\
-usage: video_source SOURCE [--ros-args -p NAME:=VALUE -r image:=TOPIC ...]
-SOURCE is a video file, a folder of images, a camera's index or a stream's URL. Parameters: source,
-fps, loop, frame_id."""
 
 
 @dataclass(frozen=True)
@@ -86,50 +72,6 @@ def declare(node: Node) -> Settings:
     return settings
 
 
-class Pace:
-    """Stamps for the images of one pass through a source.
-
-    Images of a file keep the intervals that it states: the first is stamped by the clock, and the
-    others follow, so that stamps do not carry the jitter of this process. Live images are stamped
-    by the clock as they come.
-
-    Parameters
-    ----------
-    clock : callable
-        Returns the present time in ns.
-    stop : threading.Event
-        Ends every wait.
-    """
-
-    def __init__(self, clock: Callable[[], int], stop: threading.Event) -> None:
-        self._clock = clock
-        self._stop = stop
-        self._is_live = False
-        self._began: tuple[int, int, float] | None = None
-        self.last = 0
-
-    def begin(self, *, is_live: bool) -> None:
-        """Begin a pass, of images that come by themselves where `is_live`."""
-        self._began = None
-        self._is_live = is_live
-
-    def stamp(self, recorded_ns: int) -> int:
-        """Return the stamp of an image with the source's own time, once it is due.
-
-        It is later than any before. Returns early when the process ends.
-        """
-        if self._is_live:
-            self.last = max(self._clock(), self.last + 1)
-            return self.last
-        if self._began is None:
-            self._began = recorded_ns, max(self._clock(), self.last + 1), time.monotonic()
-        first, stamped, when = self._began
-        passed = recorded_ns - first
-        self._stop.wait(max(when + passed / 1e9 - time.monotonic(), 0.0))
-        self.last = stamped + passed
-        return self.last
-
-
 class VideoSourceNode(Node):  # type: ignore[misc]
     """Publishes images of a source from a thread of its own.
 
@@ -152,7 +94,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
     """
 
     def __init__(self, source: str = "", **keywords: Any) -> None:
-        super().__init__(_NAME, automatically_declare_parameters_from_overrides=True, **keywords)
+        super().__init__(NAME, automatically_declare_parameters_from_overrides=True, **keywords)
         settings = declare(self)
         self._source_name = source or settings.source
         if not self._source_name:
@@ -274,45 +216,3 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         )
         self._stop.wait(self._retry)
         self._retry = min(2 * self._retry, _LAST_RETRY)
-
-
-def run_video_source(arguments: Sequence[str]) -> int:
-    """Publish a source until it ends or a signal comes.
-
-    Parameters
-    ----------
-    arguments : sequence of str
-        Command line without the program's name.
-
-    Returns
-    -------
-    int
-        Exit status: 0 ended by a signal or at the end of a file, 1 a source that cannot be read
-        (printed on stderr), 2 usage.
-    """
-
-    def serve(words: list[str]) -> int:
-        if len(words) > 1 or any(word.startswith("-") for word in words):
-            return answer_usage(_NAME, words, _USAGE)
-        return spin_nodes([lambda: VideoSourceNode(*words)], _IMAGE_BYTES, _spin, arguments)
-
-    return run_process(_NAME, arguments, serve)
-
-
-def _spin(executor: SingleThreadedExecutor, node: VideoSourceNode) -> int:
-    """Run callbacks until the source has ended or a signal comes, then end the thread."""
-    try:
-        while rclpy.ok() and not node.is_done:
-            executor.spin_once(timeout_sec=_LOOK_EVERY)
-    except Exception:
-        if rclpy.ok():
-            raise  # otherwise a signal took the ground from under a call
-    has_ended = node.stop(_LAST_WAIT)
-    status = 1 if node.problem else 0
-    if node.problem:
-        print(f"{_NAME}: {node.problem}", file=sys.stderr)
-    if not has_ended:  # it waits for a silent camera; the node's shared memory would stay
-        node.destroy_node()
-        rclpy.try_shutdown()
-        end_at_once(status)
-    return status

@@ -1,0 +1,4 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The node that publishes the images of a video, a folder, a camera or a stream."""
