@@ -10,6 +10,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
+from vehicle_pf_tracker.ros.video_source.outage import Outage
 from vehicle_pf_tracker.ros.video_source.pace import Pace
 
 MS = 1_000_000
@@ -56,3 +57,24 @@ def test_the_end_of_the_process_ends_waits():
     pace.stamp(0)
     pace.stamp(3600 * 1000 * MS)
     assert time.monotonic() - began < 5
+
+
+class Waits(threading.Event):
+    def __init__(self):
+        super().__init__()
+        self.lengths = []
+
+    def wait(self, timeout=None):
+        self.lengths.append(timeout)
+
+
+def test_waits_for_a_source_double_up_to_half_a_minute_and_begin_anew_with_an_image():
+    waits = Waits()
+    outage = Outage(waits)
+    assert outage.end() is None
+    for _ in range(7):
+        outage.begin()
+        outage.wait()
+    assert waits.lengths == [1, 2, 4, 8, 16, 30, 30]
+    assert outage.end() >= 0
+    assert (outage.next_wait, outage.end()) == (1, None)

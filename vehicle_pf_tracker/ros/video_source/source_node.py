@@ -6,8 +6,7 @@
 from __future__ import annotations
 
 import threading
-import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +24,7 @@ from vehicle_pf_tracker.recordings.recording_names import is_recording
 from vehicle_pf_tracker.recordings.video import Camera, open_footage
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
+from vehicle_pf_tracker.ros.video_source.outage import Outage
 from vehicle_pf_tracker.ros.video_source.pace import Pace
 
 NAME = "video_source"
@@ -33,10 +33,7 @@ _DEPTH = 5
 _LATE = 1.0
 """Seconds behind the source's rate that are worth a warning: more than a hiccup of the disk."""
 _SAY_AGAIN = 10.0
-"""Seconds between two warnings of a kind."""
-_FIRST_RETRY, _LAST_RETRY = 1.0, 30.0
-"""Seconds until a source that broke off is opened again: twice as long each time, up to the last.
-A camera that restarts is back within a minute, and one that is gone costs next to nothing."""
+"""Seconds between two warnings of a kind: a log of a day without its camera stays readable."""
 
 
 @dataclass(frozen=True)
@@ -96,19 +93,18 @@ class VideoSourceNode(Node):  # type: ignore[misc]
     def __init__(self, source: str = "", **keywords: Any) -> None:
         super().__init__(NAME, automatically_declare_parameters_from_overrides=True, **keywords)
         settings = declare(self)
-        self._source_name = source or settings.source
-        if not self._source_name:
+        self._settings = replace(settings, source=source or settings.source)
+        if not self._settings.source:
             raise InputError("give a source: `video_source SOURCE`, or -p source:=SOURCE")
-        self._settings = settings
         options = QoSOverridingOptions.with_default_policies()
         self._image = self.create_publisher(Image, "image", _DEPTH, qos_overriding_options=options)
-        self._is_live = self._goes_on = False
+        self._is_live = False
+        self._goes_on = False
         self._stop = threading.Event()
         self._pace = Pace(self._now, self._stop)
-        self._retry = _FIRST_RETRY
+        self._outage = Outage(self._stop)
         self._shown = 0
         self._told: set[str] = set()
-        self._broke_at: float | None = None
         self.problem = ""
         # It opens the source too, which may wait for a network: signals are heard meanwhile.
         self._thread = threading.Thread(target=self._run, name="images", daemon=True)
@@ -126,7 +122,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         return self.is_done
 
     def _open(self) -> Footage:
-        name = self._source_name
+        name = self._settings.source
         if is_recording(Path(name)):
             raise InputError(f"{name} is a recording; `bag_replay {name}` plays it")
         return open_footage(name, fps=self._settings.fps or None)
@@ -160,7 +156,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
                     return False
                 self._publish(picture)
             if self._is_live:
-                raise InputError(f"{self._source_name} sends no more images")
+                raise InputError(f"{self._settings.source} sends no more images")
         except InputError as error:
             if not self._goes_on:
                 raise
@@ -185,11 +181,9 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         self._note_image(stamp)
 
     def _note_image(self, stamp: int) -> None:
-        if self._broke_at is not None:
-            seconds = time.monotonic() - self._broke_at
+        seconds = self._outage.end()
+        if seconds is not None:
             self.get_logger().info(f"images again after {seconds:.1f} s")
-            self._broke_at = None
-        self._retry = _FIRST_RETRY
         late = (self._now() - stamp) / 1e9
         if late > _LATE and not self._is_live:
             self.get_logger().warning(
@@ -209,10 +203,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         """Say why there are no images, and wait before the next try."""
         if self._is_over:
             return
-        if self._broke_at is None:
-            self._broke_at = time.monotonic()
-        self.get_logger().warning(
-            f"{why}; trying again after {self._retry:.0f} s", throttle_duration_sec=_SAY_AGAIN
-        )
-        self._stop.wait(self._retry)
-        self._retry = min(2 * self._retry, _LAST_RETRY)
+        self._outage.begin()
+        words = f"{why}; trying again after {self._outage.next_wait:.0f} s"
+        self.get_logger().warning(words, throttle_duration_sec=_SAY_AGAIN)
+        self._outage.wait()
