@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.registry import Variant
 
 _VIDEO = "video_source"
+"""Name of the one executable that is no tracker."""
 _ANY = "vehicle"
+"""``vehicle_tracker`` without its ending: runs the variant, or the cameras, that it is told."""
 _USAGE = "usage: vehicle_tracker (--variant NAME | --cameras FILE) [--ros-args ...]"
 _NO_ROS = (
     "ROS 2 was not found (no module {}): source its setup.bash, or install this package with the "

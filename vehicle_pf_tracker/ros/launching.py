@@ -58,9 +58,9 @@ ARGUMENTS = {
 """Default and description of each argument of ``tracker.launch.py``."""
 
 _KEYS = ("topic", "variant", "transport", "target", "params_file", "parameters")
-"""Of a camera in a file of cameras."""
+"""Keys that a camera may have in a file of cameras."""
 _TARGET = ("x", "y", "width", "height")
-"""Of its target."""
+"""Parameters below `target` that the four numbers of a camera's target are."""
 
 
 def declared(arguments: Mapping[str, tuple[str, str]]) -> list[Any]:

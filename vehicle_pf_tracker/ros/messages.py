@@ -62,16 +62,18 @@ LEVELS: Mapping[str, bytes] = {
     WAITING: DiagnosticStatus.OK,
     REJECTED: DiagnosticStatus.ERROR,
 }
+"""Level of each message of `~/mode`: an operator has to look at errors, and may at warnings."""
 
 UNKNOWN_ANGLE = math.pi**2 / 3
-"""Variance of an angle that nothing is known of, rad²."""
+"""Variance of an angle that nothing is known of, rad²: that of the even density over a turn."""
 
 _DATATYPES = {"<u4": PointField.UINT32, "|u1": PointField.UINT8, "<f4": PointField.FLOAT32}
+"""ROS's number of each type of a field, by numpy's name."""
 _PARTICLE = np.dtype([(name, "<f4") for name in ("x", "y", "z", "weight")])
+"""A point of `~/particles`: RViz draws clouds that have x, y and z as 32-bit numbers."""
 
 Status = tuple[bytes, str, str, Mapping[str, object]]
 """Level, subject, words and values of a status."""
-
 
 _UPRIGHT = 1e-3
 """Angle of a box that counts as upright, rad: over 1000 px it moves a corner by a pixel."""
@@ -158,11 +160,10 @@ def pose_message(header: Header, position: Array, covariance: Array) -> PoseWith
     pose = message.pose
     pose.pose.position.x, pose.pose.position.y = map(float, position)
     pose.pose.orientation.w = 1.0
-    rows = covariance.tolist()
-    numbers = [0.0] * 36
-    numbers[0:2], numbers[6:8] = rows[0], rows[1]
-    numbers[21] = numbers[28] = numbers[35] = UNKNOWN_ANGLE
-    pose.covariance = numbers
+    # Six rows and columns: x, y, z, and the angles about them.
+    numbers = np.diag([0.0, 0.0, 0.0, UNKNOWN_ANGLE, UNKNOWN_ANGLE, UNKNOWN_ANGLE])
+    numbers[:2, :2] = covariance
+    pose.covariance = numbers.ravel()
     return message
 
 
@@ -243,7 +244,8 @@ def box_of_polygon(message: PolygonStamped) -> Box:
         )
     across = finite("~/set_box", *(point.x for point in points))
     down = finite("~/set_box", *(point.y for point in points))
-    left, top = min(across), min(down)
+    left = min(across)
+    top = min(down)
     return Box(left, top, max(across) - left, max(down) - top)
 
 

@@ -37,9 +37,10 @@ _OVERLAY_BYTES = 1280 * 720 * 3
 Whether the images themselves come through is decided by the camera's segment."""
 
 _MOST_FAILURES = 20
+"""Failed callbacks in short succession that end the process, so that ``respawn`` in a launch file
+can restart it: one is a malformed request, twenty are a broken node."""
 _FAILING = 10.0
-"""This many failed callbacks within this many seconds mean a broken node, not malformed requests:
-it ends, so that ``respawn`` in a launch file can restart it."""
+"""The short succession, s: a person who tries requests by hand sends fewer than two a second."""
 
 
 class _Interrupts:

@@ -63,6 +63,7 @@ _WAIT_METHODS = (
     "get_ready_entities",
     "wait",
 )
+"""Methods of rclpy's compiled wait set that `EntityWait` calls."""
 
 
 def can_wait_for_entities() -> bool:

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""A target for a running node, published once and until it has certainly arrived."""
+"""Target for a running node, published once, and waited for until it has arrived."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from vehicle_pf_tracker.core.errors import InputError
 _GRAPH_PERIOD = 0.05
 """Seconds between two queries of the graph, whose changes wake nobody."""
 _REGION = "sensor_msgs/msg/RegionOfInterest"
+"""Type of ``~/set_target``, by which nodes that take targets are known."""
 _LARGEST = 2**32 - 1
 """Largest number in a region of interest, whose fields have 32 bits."""
 

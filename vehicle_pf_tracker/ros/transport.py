@@ -30,8 +30,11 @@ USER_VARIABLES = (*PROFILE_VARIABLES, "FASTDDS_BUILTIN_TRANSPORTS")
 
 SHARED_MEMORY = Path("/dev/shm")  # noqa: S108 (the system's place for it)
 IMAGES_PER_SEGMENT = 4
+"""Images that a segment has room for: one that is written, one that is read, and two that wait."""
 SMALLEST_SEGMENT = 4 * 1024 * 1024
+"""Bytes of a segment at least: four raw VGA images, with which none of 150 was lost at 30 Hz."""
 _LARGEST_SEGMENT = 2**31
+"""Bytes of a segment at most: Fast DDS counts them in 32 bits, and a sign may be among these."""
 
 LAUNCHED_SEGMENT = 64 * 2**20
 """Bytes of shared memory for `large_images` of the launch files, as ``config/large_images.xml`` has

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.trackers.estimate import Estimate
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
-    """What is said of every image, also of one that cannot be used.
+    """Answer to an image, also to one that cannot be used.
 
     Attributes
     ----------

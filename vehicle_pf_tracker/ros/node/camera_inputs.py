@@ -32,10 +32,14 @@ except ImportError:  # an optional package: only road.from_tf needs it
     TFMessage = None
 
 _THROTTLE = 30.0
-"""Interval between two lines of the same kind in the log, s."""
+"""Interval between two lines of the same kind in the log, s: a driver repeats its mistake with
+every image, and TF a hundred times a second."""
 _NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""For camera_info: only the newest counts, and best effort fits drivers of either kind."""
 _MOVING = QoSProfile(depth=100)
+"""As tf2 listens to /tf."""
 _LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""As tf2 listens to /tf_static, which is sent once, perhaps before this node was there."""
 
 
 class CameraInputs:
@@ -57,6 +61,9 @@ class CameraInputs:
     def __init__(self, node: Node) -> None:
         self._node = node
         self.lens: ImageLens | None = None
+        # tf2_ros is in no package index but apt's, so that a node whose ROS comes from pip could not
+        # use it. Its buffer gives the pose at an image's stamp; the newest, which this has, differs
+        # only while the camera turns.
         self.poses = PoseTree()
         self._asked: tuple[bool, bool, bool] | None = None
         self._subscriptions: list[Subscription] = []
@@ -175,6 +182,8 @@ class ImageLens:
 def lens_of_info(message: CameraInfo, *, rectified: bool) -> ImageLens:
     """Read the lens of a CameraInfo, for the images that it goes with: binned and cut out.
 
+    image_geometry does the same, but is in apt only, as tf2_ros is.
+
     Parameters
     ----------
     message : CameraInfo
@@ -193,11 +202,11 @@ def lens_of_info(message: CameraInfo, *, rectified: bool) -> ImageLens:
         raise InputError("camera_info has no calibration: its focal length is not above 0")
     across = max(message.binning_x, 1)
     down = max(message.binning_y, 1)
-    left, top = message.roi.x_offset, message.roi.y_offset
     model, coefficients = _distortion(message, rectified=rectified)
-    centre = _binned(cx, left, across), _binned(cy, top, down)
+    centre = _binned(cx, message.roi.x_offset, across), _binned(cy, message.roi.y_offset, down)
     lens = Lens((fx / across, fy / down), centre, model, coefficients)
-    width, height = message.roi.width or message.width, message.roi.height or message.height
+    width = message.roi.width or message.width  # 0 of a whole image
+    height = message.roi.height or message.height
     return ImageLens(lens, (width // across, height // down))
 
 

@@ -23,8 +23,10 @@ from vehicle_pf_tracker.image.encodings import frame_of_message
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError
 
 ImageCallback = Callable[[Any, Mapping[str, Any]], None]
+"""Takes a message and its info."""
 
 _TYPE_NAMES = {Image: "sensor_msgs/msg/Image", CompressedImage: "sensor_msgs/msg/CompressedImage"}
+"""Names of the types in the graph, which knows no classes."""
 
 
 def image_topic(node: Node, transport: str) -> str:

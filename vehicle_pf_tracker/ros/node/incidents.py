@@ -34,6 +34,8 @@ _TOPICS = {
     CompressedImage: ("/camera/image_raw/compressed", "sensor_msgs/msg/CompressedImage"),
     DiagnosticArray: ("/{}/mode", "diagnostic_msgs/msg/DiagnosticArray"),
 }
+"""Topic and type in the recording of each kind of message: the images' as camera drivers name
+theirs, whatever the node's were remapped to, so that `run` and `replay` need no options."""
 
 
 class IncidentRecorder:

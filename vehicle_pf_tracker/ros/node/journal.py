@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a node says of its images: lines in its log, and counts for its report."""
+"""Journal of a node: lines in its log about its images, and counts for its report."""
 
 from __future__ import annotations
 

@@ -16,7 +16,9 @@ from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.rehearsal import rehearse
 
 _THREAD = "loading kernels"
+"""Name of the threads, by which `is_loading` finds those of all nodes of the process."""
 _REASON = f"{NOT_READY}; the first start compiles them, for up to a minute"
+"""Answer to every image meanwhile."""
 _rehearsed: set[str] = set()
 """Variants whose kernels this process has."""
 

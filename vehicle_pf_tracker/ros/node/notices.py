@@ -9,7 +9,8 @@ import time
 from collections.abc import Callable
 
 _PERIOD = 5.0
-"""Interval between two lines of the same kind in the log, s."""
+"""Interval between two lines of the same kind in the log, s: a fault is seen while it lasts, and a
+screen of lines holds minutes of it."""
 
 
 class Notices:

@@ -36,7 +36,9 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 
 RELIABLE = QoSProfile(depth=10)
+"""For results: a third of a second of images may wait for a slow subscriber; ROS's usual depth."""
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""For what people look at: a late picture is worth nothing, and must not hold up the node."""
 
 Topics = Mapping[str, tuple[Any, QoSProfile]]
 """Message type and QoS by the name below the node's; the type is None where it is not installed."""

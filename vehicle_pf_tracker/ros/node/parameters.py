@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Parameters as ROS sees them: declared with all that is known of them, set as a whole.
+"""Parameters of a node: declared with bounds, unit and source, and set all or none.
 
 Setting goes in rclpy's three steps: before (integers become doubles where those are declared),
 on (validate everything, all or nothing), after (apply; in a single-threaded executor that is
@@ -27,6 +27,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec, unknown_name
 
 QOS_PREFIX = "qos_overrides."
+"""Beginning of the parameters with which ROS lets users change the QoS of a topic."""
 _OF_RCLPY = {"use_sim_time", "start_type_description_service"}
 """Parameters that rclpy itself declares."""
 

@@ -24,7 +24,8 @@ from vehicle_pf_tracker.ros.node.tracker_feed import TrackerFeed
 from vehicle_pf_tracker.trackers.registry import Variant
 
 _POLL = 0.1
-"""Interval of the check for loaded kernels while no image asks for them, s."""
+"""Interval of the check for loaded kernels while no image asks for them, s: not felt by who waits
+for the word `ready`."""
 
 
 class TrackerNode(ImageNode):

@@ -18,12 +18,13 @@ from vehicle_pf_tracker.recordings.messages import DIAGNOSTIC_ARRAY, IMAGE_TYPES
 
 _SLICE = 0.05
 """Longest uninterrupted wait in s: changes of the graph and signals wake no executor."""
-
-
 DISCOVERY = 5.0
 """Shortest search for a node, s: discovery takes no longer on a quiet machine."""
 _QUIET = 1.0
-"""A search ends so many s after the last node was found."""
+"""A search ends so many s after the last node was found: nodes that run already are found in one
+burst."""
+_MODE = "/mode"
+"""End of the topic by which tracker nodes are known."""
 
 
 class Interrupted(Exception):  # noqa: N818 (no error: the user wants it so)
@@ -73,9 +74,6 @@ class Spinner:
     def close(self) -> None:
         """Release the node."""
         self._executor.shutdown()
-
-
-_MODE = "/mode"
 
 
 def full_name(name: str) -> str:

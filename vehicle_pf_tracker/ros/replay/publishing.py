@@ -25,8 +25,11 @@ from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, recorded_qos
 
 _SUFFIX = "/compressed"
+"""End of a topic of compressed images, as image_transport names it."""
 _IMAGE_DEPTH = 10
+"""Images kept for a slow subscriber: of 1080p they are 60 MB."""
 _DEPTH = 100
+"""Messages kept of other topics, which are small, and may come in bursts as TF does."""
 
 
 class RecordedImages(NamedTuple):

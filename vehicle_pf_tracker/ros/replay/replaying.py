@@ -40,6 +40,7 @@ def noted_interrupts() -> Iterator[threading.Event]:
 
 
 NODE_NAME = "bag_replay"
+"""Name of the player's node, that of its executable."""
 
 
 def replay(

@@ -22,9 +22,10 @@ from vehicle_pf_tracker.ros.replay.discovery import DISCOVERY, Spinner
 from vehicle_pf_tracker.ros.replay.replay_options import NodeReport
 
 _DEPTH = 1000
-"""Answers that may wait."""
+"""Answers that may wait: half a minute of 30 Hz, while the player reads a slow disk."""
 _AGAIN = 0.2
-"""Seconds until a node that is not ready is asked again."""
+"""Seconds until a node that is not ready is asked again: it compiles for up to a minute, so a
+fifth of a second is not missed, and the questions cost it nothing."""
 
 
 class TrackerLink:

@@ -19,6 +19,7 @@ from vehicle_pf_tracker.ros.traffic.messages import read_serialized_detections
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 
 _BY_PIXELS = "vehicles are followed by their pixels meanwhile"
+"""Consequence of missing detections, for the log."""
 
 WaitingMessages = WaitingImages[Image | CompressedImage]
 

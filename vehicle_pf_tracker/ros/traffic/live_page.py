@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The page of a node of many vehicles, and where its address is told."""
+"""Live page of a node of many vehicles; only its owner can read the address."""
 
 from __future__ import annotations
 

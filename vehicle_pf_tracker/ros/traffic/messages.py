@@ -36,12 +36,11 @@ CODES: Mapping[TrackMode, int] = MappingProxyType(
 
 _FLOATS = [(name, "<f4") for name in ("x", "y", "width", "height", "vx", "vy")]
 _TRACK = np.dtype([("id", "<u4"), *_FLOATS, ("mode", "u1"), ("confidence", "<f4")], align=True)
+"""A point of `~/tracks`, aligned, as C++ subscribers read it into a struct."""
 _LINE_WIDTH = 2.0
-"""Width of the lines of boxes in px."""
+"""Width of the lines of boxes in px: one is lost where RViz shows a large image small."""
 _LETTERS = 14.0
-"""Height of numbers in px."""
-
-
+"""Height of numbers in px: about that of the smallest vehicles that are followed."""
 LONGEST = 1_000_000
 """Longest message in bytes that is read: 2300 detections, which take rclpy 0.3 s. Ten thousand
 would take 1.5 s, in which no image is answered."""
@@ -150,7 +149,8 @@ def _values(
     if place in counter.occupancy:
         values["occupancy"] = counter.occupancy[place]
     if last is not None:
-        values["last id"], values["last direction"] = last.identity, last.direction
+        values["last id"] = last.identity
+        values["last direction"] = last.direction
         values["last stamp (ns)"] = last.stamp_ns
         speeds = {"last speed (px/s)": last.speed_px, "last speed (km/h)": last.speed_kmh}
         values |= {name: speed for name, speed in speeds.items() if speed is not None}
@@ -189,7 +189,8 @@ def read_serialized_detections(message: bytes) -> Detections:
     boxes = np.array(rows, dtype=np.float64).reshape(-1, 5)
     with np.errstate(invalid="ignore", over="ignore"):
         x, y, width, height, theta = boxes.T
-        cosine, sine = np.abs(np.cos(theta)), np.abs(np.sin(theta))
+        cosine = np.abs(np.cos(theta))
+        sine = np.abs(np.sin(theta))
         # Negative sizes stay so: they are to be refused, and a turn could make them positive.
         is_turned = (theta != 0) & (width > 0) & (height > 0)
         across = np.where(is_turned, width * cosine + height * sine, width)

@@ -27,6 +27,7 @@ from vehicle_pf_tracker.showing.drawing import Colour, draw_box, line_width
 from vehicle_pf_tracker.showing.live_page import LivePage
 
 _SELECTED: Colour = (255, 255, 255)
+"""Colour of the selected vehicle's frame: white, which no vehicle's number gives it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,7 +79,6 @@ class TrafficOutputs(Outputs):
             "markers": (MarkerArray, RELIABLE),
         }
         super().__init__(node, hardware_id, more)
-
         self._vehicles = vehicles
         self._journal = journal
         self.page = page

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Everything that a node knows of the vehicles: session, counts, selection, targets.
+"""Vehicles of a node: followed, counted, added and selected by hand.
 
 The selected vehicle is reported as that of a single tracker is.
 """
@@ -26,9 +26,7 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMod
 NONE = 0
 """Number that ends a selection; vehicles have numbers from 1."""
 _SHOWN = 10
-"""Numbers of vehicles that an error lists."""
-
-
+"""Numbers of vehicles that an error lists: a line of a log."""
 _MOST_TARGETS = 100
 """Targets that may wait for the first image, or come between two: more are a mistake of a program,
 and each would be followed."""

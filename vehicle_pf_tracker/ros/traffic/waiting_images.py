@@ -15,9 +15,12 @@ from vehicle_pf_tracker.detection.detections import Detections
 
 MOST_WAITING = 16
 """Images that may wait: half a second at 30 Hz; of 1080p they are 100 MB."""
-_REMEMBERED = 100
-"""Images passed on whose detections are recognised as late; detections kept whose image has not
-come."""
+_PASSED_ON = 100
+"""Images passed on whose detections are recognised as late: 3 s at 30 Hz, after which a detector
+has stalled."""
+_EARLY = 100
+"""Detections kept whose image has not come: 3 s at 30 Hz. An image is never overtaken so long; its
+stamp was not copied."""
 
 ImageT = TypeVar("ImageT")
 
@@ -57,7 +60,10 @@ class WaitingImages(Generic[ImageT]):
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self.matched = self.missed = self.late = self.unmatched = 0
+        self.matched = 0
+        self.missed = 0
+        self.late = 0
+        self.unmatched = 0
         self.latency = 0.0
         self._clock = clock
         self._images: deque[_Waiting[ImageT]] = deque()
@@ -79,7 +85,8 @@ class WaitingImages(Generic[ImageT]):
         now = self._clock()
         waiting = _Waiting(image, stamp_ns, self._number, now, now + max_wait)
         if stamp_ns in self._early:
-            waiting.is_answered, waiting.detections = True, self._early.pop(stamp_ns)
+            waiting.is_answered = True
+            waiting.detections = self._early.pop(stamp_ns)
         self._number += 1
         self._images.append(waiting)
 
@@ -99,7 +106,7 @@ class WaitingImages(Generic[ImageT]):
             self._awaited = self._passed.pop(stamp_ns) + every
             return
         self._early[stamp_ns] = detections
-        if len(self._early) > _REMEMBERED:
+        if len(self._early) > _EARLY:
             del self._early[next(iter(self._early))]
             self.unmatched += 1
 
@@ -116,7 +123,7 @@ class WaitingImages(Generic[ImageT]):
             else:
                 self.missed += first.number >= self._awaited
                 self._passed[first.stamp_ns] = first.number
-                if len(self._passed) > _REMEMBERED:
+                if len(self._passed) > _PASSED_ON:
                     del self._passed[next(iter(self._passed))]
             yield first.image, first.detections
 
