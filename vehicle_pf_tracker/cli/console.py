@@ -17,15 +17,19 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.following.processes import OnProgress
 
 PROGRAM = "vehicle-pf-tracker"
-FAILED, USAGE, INTERRUPTED, PIPE_CLOSED = 1, 2, 130, 141
-"""Exit statuses; the last two are those of a program that a signal ended."""
+"""Name of the program, as it is typed."""
+# Exit statuses: the first two by custom; the last two as shells have them for a program that
+# SIGINT (2) or SIGPIPE (13) ended, 128 more than the signal's number.
+FAILED = 1
+USAGE = 2
+INTERRUPTED = 130
+PIPE_CLOSED = 141
 _WIDE = 200
 """Columns of a table that is written to a file or a pipe, where lines may be long."""
-
-
-_FIRST_SECONDS, _LINE_SECONDS = 2.0, 5.0
-"""Seconds before the first plain line and between two: quick work prints none, and long work does
-not fill a log."""
+_FIRST_SECONDS = 2.0
+"""Seconds before the first plain line of progress: quick work prints none."""
+_LINE_SECONDS = 5.0
+"""Seconds between two lines of progress: a log of an hour has 720 of them."""
 
 
 class UsageError(Exception):

@@ -21,6 +21,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.results.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.results.run_folder import ESTIMATES
 
+# Programs of Python, not names of executables: those need not be on the path.
 _VERB = "from vehicle_pf_tracker.cli.main import main; raise SystemExit(main())"
 _NODE = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('fusion'))"
 _PATIENCE = "600"

@@ -19,6 +19,7 @@ EXTRAS: Mapping[str, str] = {
 """The smallest extra that brings a module, by its name."""
 
 _ROS_ENDINGS = ("_msgs", "_interfaces", "_srvs")
+"""Endings of ROS's packages of messages, which come with ROS and not from an index."""
 
 
 def remedy(module: str) -> str:

@@ -41,7 +41,11 @@ Document: TypeAlias = dict[str, Any]
 """Drawn shapes by section, as in a file of `pick`."""
 
 PAIR_FORM = "{pixel: [u, v], road: [x, y]}, …"
-TARGETS, PAIRS = "targets", "pairs"
+"""Form of the entries of `PAIRS`, for errors."""
+TARGETS = "targets"
+"""Section of the boxes that vehicles are in at first."""
+PAIRS = "pairs"
+"""Section of pixels with the points of the road that they show."""
 USES: Mapping[str, str] = {
     TARGETS: "run --targets",
     **dict.fromkeys(("lines", "zones", "roi"), "traffic --lines"),
@@ -49,6 +53,7 @@ USES: Mapping[str, str] = {
 }
 """Verb and option that read a section of the file."""
 _TEXT = "text/plain; charset=utf-8"
+"""Type of answers to the page: the words that it shows."""
 _LONGEST = 1 << 20
 """Bytes of an answer: ten thousand boxes, and no more memory than that for a stray request."""
 

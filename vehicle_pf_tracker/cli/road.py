@@ -37,6 +37,7 @@ from vehicle_pf_tracker.road.suspects import disagreement
 from vehicle_pf_tracker.showing.drawing import draw_road_grid
 
 _TITLE = "Road. Written by `vehicle-pf-tracker road calibrate`."
+"""First line of the file."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -35,8 +35,11 @@ from vehicle_pf_tracker.showing.pictures import Pictures
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
 SHEET = "summary.png"
+"""Picture of the key frames."""
 TRACKS = "tracks.csv"
+"""Table of several targets, instead of `ESTIMATES`."""
 PRODUCTS = (ESTIMATES, METRICS, RUN, SHEET, TRACKS)
+"""Files of a run, which `--overwrite` replaces: no others in the folder are touched."""
 
 
 @dataclass(frozen=True, kw_only=True)

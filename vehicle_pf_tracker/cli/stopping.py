@@ -34,11 +34,11 @@ T = TypeVar("T")
 
 SIGNALS_STATUS = 128
 """Exit status of a program that a signal ended, less the signal's number, as shells have it."""
-
-
-_PATIENCE, _POLL = 1.0, 0.1
-"""Seconds that a computation has to end by itself after a signal, and between two looks at it: a
-person who presses Ctrl-C has the terminal back within two seconds."""
+_PATIENCE = 1.0
+"""Seconds that a computation has to end by itself after a signal: a person who presses Ctrl-C has
+the terminal back within two."""
+_POLL = 0.1
+"""Seconds between two looks whether it has ended, which nobody feels."""
 
 
 class Terminated(BaseException):

@@ -36,11 +36,15 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.grid.running import Runner
 
-SEEDS, FEW_SEEDS = 5, 1
-"""Runs of each system; few where the cases vary more than the seeds of one case do."""
-ALL, ALL_BASELINES = "all", "baselines"
+SEEDS = 5
+"""Runs of each system: enough to see a spread. An interval of the mean needs more."""
+FEW_SEEDS = 1
+"""Runs of each system where the cases vary more than the seeds of one case do."""
+ALL = "all"
+"""Word for all variants."""
+ALL_BASELINES = "baselines"
+"""Word for all baselines that need no files of networks."""
 _BASELINES_WITHOUT_MODELS = tuple(name for name, models in BASELINE_MODELS.items() if not models)
-
 
 Set: TypeAlias = tuple[list[Path], list[str]]
 """Files and assignments of a set of parameters."""
@@ -192,7 +196,8 @@ def _variant_system(
     variant: Variant, everywhere: Sequence[str], label: str, own: Set
 ) -> System | str:
     """Return the variant with a set of parameters, or say why it does not fit."""
-    table, (files, assignments) = settable(variant), own
+    table = settable(variant)
+    files, assignments = own
     words = [word for word in everywhere if word.partition("=")[0] in table] + assignments
     try:
         values = parse_assignments(table, words)

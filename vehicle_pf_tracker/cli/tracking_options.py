@@ -23,6 +23,7 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
 
 EntryT = TypeVar("EntryT")
 
+# A node's parameter file may be given to `run`, which passes over what is ROS's alone.
 _OF_ROS = ("use_sim_time", "start_type_description_service")
 _OF_ROS_PREFIX = "qos_overrides."
 _LAST_PORT = 65535
@@ -111,6 +112,9 @@ def _variants_with(names: Iterable[str], kind: type[Configuration]) -> list[str]
 
 
 TARGET_FORM = "{name: van, frame: 1, box: [310, 202, 40, 30]}"
+"""Form of a target in a file, for errors."""
+# A target on the command line, as `van@1:310,202,40,30`: name and frame may be left out. Nine
+# digits of a frame are years of video, and fit every integer.
 _WORDS = re.compile(r"(?:(?P<name>[A-Za-z0-9_-]*)(?:@(?P<frame>[0-9]{1,9}))?:)?(?P<box>[^:@]*)")
 
 

@@ -39,6 +39,7 @@ from vehicle_pf_tracker.showing.traffic_pictures import HEAT, PATHS, TrafficPict
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
 PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PATHS, HEAT)
+"""Files of a run, which `--overwrite` replaces: no others in the folder are touched."""
 
 
 @dataclass(frozen=True, kw_only=True)

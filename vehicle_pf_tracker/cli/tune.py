@@ -46,8 +46,17 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.tuning import SearchTask
 
-TRIALS, SEEDS, SEARCH_SEED = 60, 3, 100
-BEST, EVALUATION = "best.yaml", "evaluation"
+TRIALS = 60
+"""Parameter sets that are tried unless told otherwise: ten batches, from nine of which the sampler
+learns."""
+SEEDS = 3
+"""Runs of each set on each recording: a gain of one lucky seed is not taken for one of the set."""
+SEARCH_SEED = 100
+"""First seed of the search, beyond those of an evaluation, which begin at 0."""
+BEST = "best.yaml"
+"""Parameter file of the best set."""
+EVALUATION = "evaluation"
+"""Folder in which the best set is compared with the first."""
 Recordings = Sequence[tuple[Source, dict[int, Truth]]]
 
 

@@ -184,6 +184,7 @@ def _alone_with(output: Output) -> Iterator[None]:
 
 def _lock(path: Path) -> int | None:
     """Lock a file and return its descriptor; None if another process has it."""
+    # filelock leaves its file, which here is among the user's results, after the lock is gone.
     while True:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
         try:

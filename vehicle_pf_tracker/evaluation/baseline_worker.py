@@ -33,6 +33,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+# By the names that users give them.
 OPENCV = {
     "csrt": "TrackerCSRT",
     "kcf": "TrackerKCF",
@@ -161,7 +162,8 @@ def sequence_data(frames: int, truth: Any, tracks: Any) -> dict[str, Any]:
     data: dict[str, Any] = {"num_timesteps": frames, "similarity_scores": []}
     for name, rows in (("gt", truth), ("tracker", tracks)):
         known, numbers = np.unique(rows[:, 1], return_inverse=True)
-        data[f"num_{name}_ids"], data[f"num_{name}_dets"] = len(known), len(rows)
+        data[f"num_{name}_ids"] = len(known)
+        data[f"num_{name}_dets"] = len(rows)
         data[f"{name}_ids"] = [numbers[rows[:, 0] == t] for t in range(1, frames + 1)]
     for t in range(1, frames + 1):
         overlap = overlaps(truth[truth[:, 0] == t, 2:], tracks[tracks[:, 0] == t, 2:])

@@ -36,6 +36,7 @@ LOCK = Path(__file__).with_name("baselines.txt")
 """Lock file of their environment: exact versions, with hashes."""
 
 WORKER = Path(__file__).with_name("baseline_worker.py")
+"""Program that runs in their environment, as a file: this package is not installed there."""
 Self = TypeVar("Self", bound="Worker")
 
 
@@ -232,7 +233,8 @@ class Baseline(Worker):
         InputError
             If the baseline refuses the box, or has died.
         """
-        width, height = max(round(box.width), 1), max(round(box.height), 1)
+        width = max(round(box.width), 1)
+        height = max(round(box.height), 1)
         self._box = box
         return self._track(frame, box=[round(box.x), round(box.y), width, height])
 

@@ -64,6 +64,7 @@ HIDDEN = "Total occlusions"
 CLAIMS = "Claims"
 RUN = "Run"
 
+# The fields of a row are those of `Column`, in its order.
 COLUMNS = (
     Column("success_auc", OVERLAP, "success AUC", "", 3, True,
            "Area under the success curve: share of frames whose overlap (intersection over union) "
@@ -116,6 +117,7 @@ PAPER = (SUCCESS, PRECISION, RMSE, RECOVERED, STEP)
 
 
 NO_VALUE = "–"
+"""Sign of a value that does not exist, in tables for people."""
 
 
 def number_text(value: float | None, decimals: int) -> str:

@@ -62,11 +62,18 @@ class Source:
     identity: int | None = None
 
 
-PLAN, FAILED = "evaluation.json", "failed.json"
-CELLS_FOLDER, RECORDINGS_FOLDER = "cells", "recordings"
+PLAN = "evaluation.json"
+"""File of what is evaluated, which is there before the first result."""
+CELLS_FOLDER = "cells"
+"""Folder of the results, with a folder of a run for each recording, system and seed."""
+FAILED = "failed.json"
+"""File in the folder of a run that failed, with the reason."""
+RECORDINGS_FOLDER = "recordings"
+"""Folder of what the report needs of each recording, so that it can be written again without it."""
 TRUTH = "truth.csv"
-
+"""File of a recording's truth there."""
 COLUMNS = ("frame", "stamp_ns", "x", "y", "width", "height", "occlusion")
+"""Columns of `TRUTH`: x and y are the top-left corner, px."""
 
 
 def write_truth(path: Path, truths: Mapping[int, Truth]) -> None:

@@ -43,6 +43,7 @@ SUCCESS_THRESHOLDS: Array = np.linspace(0.0, 1.0, 21)
 """Intersections over union: 0, 0.05, ... 1."""
 NORMALISED_THRESHOLDS: Array = np.linspace(0.0, 0.5, 51)
 """Errors of the centre in sizes of the true box: 0, 0.01, ... 0.5."""
+# Modes whose frames are counted.
 _MODES = (*(mode.value for mode in Mode), WAITING, REJECTED)
 
 

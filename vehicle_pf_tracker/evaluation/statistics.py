@@ -14,7 +14,10 @@ import numpy as np
 from scipy import stats
 
 CONFIDENCE = 0.95
+"""Confidence of the intervals, the usual one."""
 RESAMPLES = 9999
+"""Samples of the bootstrap, SciPy's own number: the interval's ends are right to a hundredth of its
+width, and take milliseconds."""
 _GENERATOR = "rng" if "rng" in inspect.signature(stats.bootstrap).parameters else "random_state"
 """Name of SciPy's argument: it changed in 1.15."""
 

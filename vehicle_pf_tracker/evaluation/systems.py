@@ -16,7 +16,9 @@ from vehicle_pf_tracker.trackers.parameters import ParticleParameters
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 BASELINE = "baseline:"
+"""Beginning of the names of baselines where they stand among those of variants."""
 Settings = tuple[tuple[str, Value], ...]
+"""Names of parameters with their values, in order, so that equal ones are equal."""
 
 
 @dataclass(frozen=True, slots=True)

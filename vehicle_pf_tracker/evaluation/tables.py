@@ -25,7 +25,9 @@ from vehicle_pf_tracker.evaluation.scores import OcclusionScore
 from vehicle_pf_tracker.evaluation.statistics import Summary
 
 NO_SCORE = "-"
+"""Sign of a value that does not exist, in tables that programs may read."""
 Rows: TypeAlias = list[list[str]]
+"""Words of the cells, row by row."""
 
 
 def mean_text(summary: Summary | None, column: Column) -> str:

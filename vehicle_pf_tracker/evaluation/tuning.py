@@ -47,8 +47,10 @@ BATCH = 6
 """Trials proposed before the first of them is known: enough to keep a few workers busy, few enough
 for the sampler to learn (40 trials are 7 batches)."""
 FACTOR = 4.0
-"""A number without a range is searched from its value divided by this to its value times this."""
+"""A number without a range is searched from its value divided by this to its value times this: a
+third of random trials is then within a factor of 1.6 of it."""
 _DONE = (TrialState.COMPLETE, TrialState.PRUNED)
+"""States of trials that are not tried again."""
 
 Space = Mapping[str, BaseDistribution]
 """Distribution that Optuna draws from, by the name of the parameter."""
@@ -112,7 +114,8 @@ def _derived(spec: ParameterSpec, value: Value) -> BaseDistribution:
         raise InputError(
             f"{spec.name} is {value}, which gives no range: --search {spec.name}=LOW:HIGH"
         )
-    low, high = max(value / FACTOR, least), min(value * FACTOR, most)
+    low = max(value / FACTOR, least)
+    high = min(value * FACTOR, most)
     return _between(spec, low, high, is_logarithmic=True)
 
 

@@ -17,7 +17,7 @@ OBJECTIVES: Mapping[str, bool] = {
     **dict.fromkeys(("success_auc", "precision_auc", "on_target", "p_error_lt_15px"), True),
     "rmse_px": False,
 }
-"""Whether larger is better, by the name of a metric."""
+"""Metrics that can be improved; True where larger is better."""
 
 
 def default_search(variant: Variant) -> list[str]:

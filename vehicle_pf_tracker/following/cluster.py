@@ -33,6 +33,7 @@ SCHEDULER_SECONDS = 10.0
 """Time to wait for a scheduler, s: one that runs answers within one, over a slow network too."""
 
 _PACKAGE = Path(__file__).parents[1]
+"""Folder of our code, all of which counts for the fingerprint."""
 _ONE_TASK = threading.Lock()
 """Held by the task of this worker process: with several threads its frames would be kept twice in
 memory, and its steps timed beside each other."""

@@ -222,6 +222,8 @@ def _reserved(part: Path | None) -> Iterator[Path | None]:
     if part is None:
         yield None
         return
+    # filelock empties the file that it locks: each part would need another beside it, which a
+    # killed process leaves.
     with part.open("ab") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -18,6 +18,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 _RELEASE = "https://github.com/Megvii-BaseDetection/YOLOX/releases/download/0.1.1rc0"
+"""The makers' release that their own list of networks for ONNX names."""
 PACKAGE = "vehicle_pf_detector"
 """A package that an organisation may build of a network, and install from an index of its own."""
 

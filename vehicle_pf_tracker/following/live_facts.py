@@ -16,6 +16,7 @@ from vehicle_pf_tracker.results.estimates import EstimateRow, clock_words
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 _MINUTE_NS = 60 * 10**9
+"""Time that counts as recent, ns: a page with crossings per minute needs no other."""
 
 
 class RecentCrossings:

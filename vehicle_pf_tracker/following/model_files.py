@@ -14,8 +14,10 @@ from urllib.parse import unquote, urldefrag, urlsplit
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.following.fetching import Progress, fetch, silent, sum_of
 from vehicle_pf_tracker.following.known_networks import NETWORKS, installed
+from vehicle_pf_tracker.recordings.recording_names import is_url
 
 _UNSAFE = re.compile(r"[^A-Za-z0-9._-]")
+"""Letters of a URL that no file name gets."""
 _LONGEST_NAME = 80
 """Letters of a file's own name that are kept: with sum and endings less than the 255 of Linux."""
 
@@ -41,7 +43,7 @@ def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
         if brought is not None:
             return brought, _sum_of(brought)
         model = NETWORKS[model].address
-    if not _is_url(model):
+    if not is_url(model):
         return Path(model), _sum_of(Path(model))
     url, demand = urldefrag(model)
     demand = demand.lower()
@@ -62,7 +64,7 @@ def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
 
 def is_fetched(model: str) -> bool:
     """Tell whether a network is one that is fetched, by a URL or a name."""
-    return model in NETWORKS or _is_url(model)
+    return model in NETWORKS or is_url(model)
 
 
 def discard(model: str) -> str:
@@ -71,7 +73,7 @@ def discard(model: str) -> str:
     A file whose sum was demanded is as it should be, and stays.
     """
     url, demand = urldefrag(model)
-    if not _is_url(url) or demand:
+    if not is_url(url) or demand:
         return ""
     path = cached(url)
     path.unlink(missing_ok=True)
@@ -98,10 +100,6 @@ def cached(url: str) -> Path:
     name = _UNSAFE.sub("_", unquote(PurePosixPath(parts.path).name))[-_LONGEST_NAME:]
     digest = hashlib.sha256(url.encode()).hexdigest()[:12]
     return cache / "vehicle_pf_tracker" / "models" / f"{digest}-{name}"
-
-
-def _is_url(model: str) -> bool:
-    return "://" in model
 
 
 def _sum_of(path: Path) -> str:

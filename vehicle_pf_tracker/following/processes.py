@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Work in several processes of this machine: running tasks, reporting progress, ending children."""
+"""Processes of this machine that work for this one, and end with it."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ ResultT = TypeVar("ResultT")
 
 
 PATIENCE = 10.0
+"""Seconds that a child gets to end by itself: a node on a busy machine needs a few to clean up."""
 
 
 def run_in_processes(

@@ -33,11 +33,16 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMod
 
 DetectionsT = TypeVar("DetectionsT")
 
-
-_RGB, _BGR = "rgb", "bgr"
-"""Orders of an image's colours: ours, and that of images which OpenCV reads."""
-_LTWH, _XYXY, _CXCYWH = "ltwh", "xyxy", "cxcywh"
-"""Forms of a box: left, top, width, height; left, top, right, bottom; centre, width, height."""
+_RGB = "rgb"
+"""Order of an image's colours that is ours."""
+_BGR = "bgr"
+"""Order of the colours of images which OpenCV reads."""
+_LTWH = "ltwh"
+"""Form of a box: left, top, width, height."""
+_XYXY = "xyxy"
+"""Form of a box: left, top, right, bottom."""
+_CXCYWH = "cxcywh"
+"""Form of a box: centre, width, height."""
 _JUDGED = 50
 """Boxes by which their form is judged: some images, in which not all vehicles leave."""
 

@@ -98,7 +98,9 @@ REJECTED = "REJECTED"
 """Mode of a frame that the tracker could not use; all numbers are empty."""
 
 COLUMNS = tuple(field.name for field in fields(EstimateRow))
+"""Columns of `estimates.csv`."""
 _NUMBERS = ("x", "y", "width", "height", "confidence", "n_eff", "step_ms")
+"""Columns that are empty where there is no estimate."""
 
 
 def write_estimates(
@@ -189,7 +191,8 @@ def _is_leaving(row: EstimateRow | None, size: tuple[int, int] | None) -> bool:
     """Return whether the box of a row, the last before a loss, reaches the border of the image."""
     if row is None or row.box is None or size is None:
         return False
-    (left, top), (right, bottom) = row.box.corners[0], row.box.corners[2]
+    left, top = row.box.corners[0]
+    right, bottom = row.box.corners[2]
     return min(left, top) <= 0 or right >= size[0] or bottom >= size[1]
 
 
@@ -216,5 +219,6 @@ def start_of_clock(start_ns: int | None, stamp_ns: int) -> int:
 
 def _words(span: Sequence[tuple[str, str]], *, is_last: bool) -> str:
     """Return mode and times of consecutive rows of one mode, each a mode and a time in words."""
-    (mode, first), (_, last) = span[0], span[-1]
+    mode, first = span[0]
+    _, last = span[-1]
     return f"LOST from {first}" if is_last and mode == Mode.LOST.value else f"{mode} {first}-{last}"

@@ -91,7 +91,12 @@ def versions() -> dict[str, str | None]:
     }
 
 
-ESTIMATES, METRICS, RUN = "estimates.csv", "metrics.json", "run.json"
+ESTIMATES = "estimates.csv"
+"""File of the estimates, a row for each frame."""
+METRICS = "metrics.json"
+"""File of the scores, where there is truth."""
+RUN = "run.json"
+"""File of what ran: source, parameters, seed, versions."""
 
 
 def write_run(

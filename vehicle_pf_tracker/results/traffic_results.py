@@ -22,7 +22,12 @@ from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.results.output_files import replacing
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
-TRACKS, MOT_TRACKS, COUNTS = "tracks.csv", "tracks.txt", "counts.csv"
+TRACKS = "tracks.csv"
+"""File of all vehicles, a row for each in each frame."""
+MOT_TRACKS = "tracks.txt"
+"""The same in the format of MOTChallenge, which tools for scoring read."""
+COUNTS = "counts.csv"
+"""File of the crossings, a row for each."""
 
 TRACK_COLUMNS = (
     "frame",
@@ -60,13 +65,12 @@ COUNT_COLUMNS = (
 _HIDDEN_CONFIDENCE = 0.5
 """Share of its confidence that an occluded vehicle is written to `tracks.txt` with, so that a
 threshold of a half leaves no predicted box."""
-
-
 _MOT_ROW = "{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.4f},{},{},{}\n"
 """Row of `tracks.txt`, of `mot_numbers`."""
 IN_TRACKS = frozenset({TrackMode.TENTATIVE, *CONFIRMED})
 """Modes of numbered vehicles that `tracks.txt` has."""
 _SEEN = frozenset({TrackMode.TENTATIVE, TrackMode.TRACKING})
+"""Modes in which a box was measured, not predicted."""
 _HELD_FRAMES = 90
 """Frames that are held back at most until their tentative vehicles are known: 3 s at 30 Hz."""
 FrameEstimates = tuple[int, int, Sequence[TrackEstimate]]
@@ -248,7 +252,9 @@ def _exact(value: float) -> str:
 
 
 _INTEGERS = {"frame", "stamp_ns", "id"}
+"""Columns that are read as integers: a stamp in ns has more digits than a float."""
 _TEXTS = {"mode", "label", "hidden_by", "place", "direction"}
+"""Columns that are read as text; all others are floats."""
 
 
 def read_tracks(folder: str | Path, *, pandas: bool = False) -> Any:

@@ -163,7 +163,8 @@ def _number(count: int, noun: str) -> str:
 
 def _ahead(one: TrackEstimate) -> Position:
     """Return the point half a vehicle ahead of its centre, px: where it is detected last."""
-    (x, y), (across, down) = one.position, one.velocity
+    x, y = one.position
+    across, down = one.velocity
     speed = math.hypot(across, down)
     way = max(one.box.width, one.box.height) / 2 / speed if speed else 0.0
     return x + way * across, y + way * down

@@ -15,8 +15,9 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.results.output_files import write_picture
 
 THUMB_WIDTH = 400
-"""Width of a key frame on the sheet, px: three of them fill a page's width."""
+"""Width of a key frame on the sheet, px: words and boxes in it can still be read."""
 _COLUMNS = 3
+"""Key frames beside each other: they fill the width of a page or a screen."""
 _MOST = 12
 """Key frames on a sheet: four rows."""
 _KEPT = 200
@@ -64,7 +65,9 @@ class ContactSheet:
         rows = -(-len(shown) // columns)
         sheet: Frame = np.full((rows * height, columns * THUMB_WIDTH, 3), 24, np.uint8)
         for index, thumb in enumerate(shown):
-            top, left = index // columns * height, index % columns * THUMB_WIDTH
+            row, column = divmod(index, columns)
+            top = row * height
+            left = column * THUMB_WIDTH
             sheet[top : top + thumb.shape[0], left : left + THUMB_WIDTH] = thumb
         write_picture(path, sheet)
 

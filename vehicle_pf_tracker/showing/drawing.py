@@ -34,19 +34,22 @@ a line's width are illegible in a player's window."""
 _PART = 200.0
 """Height of a picture in widths of a letter's stroke at least: a line of words is a fourteenth."""
 _DASH = 6
-"""Length of a dash and of a gap, in line widths."""
+"""Length of a dash and of a gap, in line widths: the smallest boxes still have a few."""
 _LAST_PIXEL = 20_000
 """Pixels beyond which OpenCV's coordinates, of 16 bits and a fraction, overflow."""
 NEUTRAL: Colour = (200, 200, 200)
+"""Colour of what is not sure: grey, which claims nothing."""
 _PARTICLE: Colour = (96, 160, 255)
+"""Colour of particles: blue, which no mode has."""
 _PATH_LENGTH = 300
 """Positions shown of a path: ten seconds of video, longer ones hide the road."""
 _STEPS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-"""Distances of lines, px or m."""
+"""Distances of lines, px or m: round numbers, between which people read fractions."""
 _LINES = 12
 """Lines across the image, about: enough to read a point to a fifth of their distance."""
 _PIECES = 60
-"""Pieces that a line of the road is drawn in, which the lens may bend."""
+"""Pieces that a line of the road is drawn in, which the lens may bend: over a right angle, two
+pieces differ by 1.5 degrees."""
 
 
 def line_width(picture: Frame) -> int:
@@ -152,7 +155,8 @@ def _places(picture: Frame, words: str, box: Box, width: float) -> Array:
     pen = max(1, round(width))
     scale = _LETTER_SCALE * width
     (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, scale, pen)
-    (left, top), (right, bottom) = box.corners[0], box.corners[2]
+    left, top = box.corners[0]
+    right, bottom = box.corners[2]
     size = np.array((across + 2 * pen, LETTER * width))  # with the dark edge
     corners = (left, top - size[1]), (left, bottom), (right, top), (left - size[0], top)
     room = np.subtract(frame_size(picture), size) - pen
@@ -260,14 +264,18 @@ def annotated(
     return picture
 
 
-_LINE, _TEXT = (255, 240, 80), (255, 255, 255)
-_POINT, _ROAD = (255, 60, 60), (80, 220, 255)
+# Colours of the grids, which are told apart on grey roads and green verges.
+_LINE = (255, 240, 80)
+_TEXT = (255, 255, 255)
+_POINT = (255, 60, 60)
+_ROAD = (80, 220, 255)
 
 
 def draw_pixel_grid(frame: Frame) -> Frame:
     """Draw lines with their pixel coordinates over a copy of `frame`."""
     picture = np.array(frame, order="C")
-    (width, height), pen = frame_size(frame), max(1, line_width(picture) // 2)
+    width, height = frame_size(frame)
+    pen = max(1, line_width(picture) // 2)
     step = _step(max(width, height) / _LINES)
     for x in range(step, width, step):
         cv2.line(picture, (x, 0), (x, height - 1), _LINE, pen)
@@ -287,10 +295,12 @@ def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Fra
         for pair in pairs
     ]
     points = np.array([pair.road for pair in pairs])
-    low, high = points.min(axis=0), points.max(axis=0)
+    low = points.min(axis=0)
+    high = points.max(axis=0)
     for axis in (0, 1):
         step = _step(float(high[axis] - low[axis]) / _LINES)
-        first, last = np.ceil(low[axis] / step), np.floor(high[axis] / step)
+        first = np.ceil(low[axis] / step)
+        last = np.floor(high[axis] / step)
         line = np.empty((_PIECES, 2))
         line[:, 1 - axis] = np.linspace(low[1 - axis], high[1 - axis], _PIECES)
         for number in np.arange(first, last + 1) * step:

@@ -22,15 +22,16 @@ from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.showing import drawing
 from vehicle_pf_tracker.trackers.estimate import Mode
 
-LINE_LOOP, LINE_LIST = 2, 4
-"""Ways to join points: to a closed line, and in pairs."""
-
+LINE_LOOP = 2
+"""Foxglove's number for points that are joined to a closed line."""
+LINE_LIST = 4
+"""Foxglove's number for points that are joined in pairs."""
 _GROUND_OPACITY = 0.6
 """Opacity of the black behind words: they are legible on a bright road, which stays visible."""
 _DASH = 4
-"""Length of a dash and of a gap, in line widths."""
+"""Length of a dash and of a gap, in line widths: a viewer scales them with its window."""
 _LETTERS = 12
-"""Height of letters, in line widths."""
+"""Height of letters, in line widths: as high as a small vehicle."""
 
 
 def image_annotations(name: str, row: EstimateRow, size: tuple[int, int]) -> Any:

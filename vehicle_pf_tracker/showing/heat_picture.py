@@ -25,17 +25,19 @@ drives, and what the noise of a standing vehicle's box leaves of its speed."""
 _LONGEST_GAP = 1.0
 """Longest time in s that a frame stands for; over a longer one nobody knows who was there."""
 _FOOTPRINT = 0.3
-"""Lower part of a box, as a share of its height, that is taken for the road below the vehicle."""
+"""Lower part of a box, as a share of its height, that is taken for the road below the vehicle: what
+a camera on a mast sees of a car's length is about as high."""
 _COLOURS: tuple[tuple[str, drawing.Colour], ...] = (
     ("drove", (40, 160, 255)),
     ("stood", (255, 60, 30)),
 )
+"""Words and colour of each layer: blue and red, which the colour-blind tell apart."""
 _MOST_OPAQUE = 0.8
 """Opacity of the place with the longest time, so that the road can be seen below it."""
 _LEAST_SCALE = 1.0
 """Time in s at the end of the scale at least: a run without a stop or a jam is not dramatic."""
 _BAR = (80, 7)
-"""Length and height of a colour bar, in widths of a letter's stroke."""
+"""Length and height of a colour bar, in widths of a letter's stroke: as wide as the words."""
 
 
 class HeatPicture:
@@ -62,7 +64,8 @@ class HeatPicture:
             if one.mode in CONFIRMED:
                 box = one.box
                 speed = float(np.hypot(*one.velocity)) / period
-                (left, _), (right, bottom) = box.corners[0], box.corners[2]
+                left, _ = box.corners[0]
+                right, bottom = box.corners[2]
                 edges = [left, bottom - _FOOTPRINT * box.height, right, bottom]
                 within = np.clip(np.round(edges), 0, [width, height] * 2)
                 left, top, right, bottom = within.astype(int).tolist()

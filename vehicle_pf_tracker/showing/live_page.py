@@ -23,7 +23,8 @@ image per s are shown late."""
 _FAREWELL = 2.0
 """Time at the end of a run in which a browser that looks on fetches the last picture, s."""
 _LOOKED_ON = 5.0
-"""Time since the last question after which nobody looks on any more, s."""
+"""Time since the last question after which nobody looks on any more, s: a page asks for the next
+picture at once, and a slow line takes a second or two for one."""
 
 
 class LivePage(PageServer):
@@ -49,7 +50,8 @@ class LivePage(PageServer):
         self._shown = threading.Condition()
         self._is_wanted = False
         self._asked = -_LOOKED_ON
-        self._has_ended = self._was_told = False
+        self._has_ended = False
+        self._was_told = False
         self._picture = b""
         self._facts = b"{}"
         self._latest: tuple[Callable[[], Frame], Callable[[], Mapping[str, object]]] | None = None

@@ -25,9 +25,7 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMod
 _LEAST_WIDTH = 640
 """Width in px below which the picture is enlarged, so that numbers are smaller than vehicles."""
 _HIDDEN = 0.4
-"""Brightness of a path's hidden parts."""
-
-
+"""Brightness of a path's hidden parts: they are guesses, and less sure than the rest."""
 _LANES_FROM = 12
 """Number of vehicles above which lanes are drawn: more lines of their own are a skein."""
 _STEP = 2.0
@@ -137,7 +135,8 @@ class PathPicture:
         """
         if self.ground is None:
             return
-        scale, (height, width) = self._scale, self._size
+        scale = self._scale
+        height, width = self._size
         size = width * scale, height * scale
         picture = np.asarray(cv2.resize(self.ground, size, interpolation=cv2.INTER_CUBIC), np.uint8)
         if len(self._ends) >= _LANES_FROM:

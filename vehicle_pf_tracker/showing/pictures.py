@@ -32,7 +32,7 @@ Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
 _LONGEST_GAP = 10.0
 """Longest time that a frame is shown, s: stamps that leap do not make a video of hours."""
 _DEFAULT_RATE = 30.0
-"""Frame rate of a video whose stamps state none, 1/s."""
+"""Frame rate of a video whose stamps state none, 1/s, the most usual of cameras."""
 _RATE_FRAMES = 30
 """Frames whose stamps give the video's rate: the median of a second forgives a gap."""
 

@@ -22,6 +22,7 @@ from vehicle_pf_tracker.showing.drawing import Labels
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 _PLAN: drawing.Colour = (255, 255, 255)
+"""Colour of lines and zones: white, which no vehicle's number gives."""
 _GOLDEN = 0.6180339887498949
 """Golden ratio: multiples of it modulo 1 stay apart as far as their number allows."""
 _TRAIL = 60

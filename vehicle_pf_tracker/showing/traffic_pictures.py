@@ -15,7 +15,10 @@ from vehicle_pf_tracker.showing.path_picture import PathPicture
 from vehicle_pf_tracker.showing.side_products import SideProducts
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 
-PATHS, HEAT = "summary.png", "heat.png"
+PATHS = "summary.png"
+"""Picture of the vehicles' paths."""
+HEAT = "heat.png"
+"""Picture of where vehicles drove and stood."""
 
 
 class TrafficPictures:

@@ -19,13 +19,17 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.results.output_files import make_folder, replacing
 
 SUFFIX = ".mp4"
+"""Ending of a video: the container that browsers play everywhere."""
 _TICKS = 90_000
 """Ticks of an H.264 video's clock per second, those of MPEG: whole for every usual frame rate."""
 _QUALITY = {"preset": "veryfast", "crf": "23"}
 """x264's own middle quality, with the preset that costs 4 ms for a frame of 640x360 px."""
-LOWEST_RATE, HIGHEST_RATE = 0.1, 1000.0
-"""Frame rates that a video is written with, 1/s: a frame for ten seconds, as of a time-lapse, and
-a high-speed camera's. H.264's encoder refuses rates far beyond them."""
+LOWEST_RATE = 0.1
+"""Lowest frame rate that a video is written with, 1/s: a frame for ten seconds, as of a time-lapse.
+The encoder refuses rates far below it."""
+HIGHEST_RATE = 1000.0
+"""Highest frame rate that a video is written with, 1/s, that of a high-speed camera. The encoder
+refuses rates far above it."""
 
 Write: TypeAlias = Callable[[Frame, float], None]
 """Appends an RGB frame to a video, which is shown from a time after the beginning on, s."""

@@ -91,6 +91,7 @@ class Part(NamedTuple):
 
 
 ALL_CELLS = Part(1, 1)
+"""The only part of an evaluation that one machine runs."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ from vehicle_pf_tracker.results.output_files import make_folder, write_json
 from vehicle_pf_tracker.results.run_folder import METRICS
 
 _PLANNED = ("format", "systems", "seeds", "options")
-"""What the parts of one evaluation have in common, beside the contents of their recordings."""
+"""Keys of the plan that are equal in all parts of one evaluation, as their recordings are."""
 
 
 def merge(parts: Sequence[Path], output: Path) -> int:

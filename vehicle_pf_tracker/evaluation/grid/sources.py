@@ -55,6 +55,7 @@ FRAMES_BYTES = 1 << 30
 """Largest recording, in bytes of frames, that is decoded once: 1 GiB, a share of a small machine
 that leaves room for a worker per core. Larger ones are decoded for each run."""
 _BLOCK = 1 << 22
+"""Bytes of a file that are digested at once, so that a recording of gigabytes needs no memory."""
 
 
 class Footage:

@@ -38,12 +38,16 @@ COLOURS: Mapping[str, str] = {
 }
 """Colours of figures in files. On the page, which has schemes, each is ``var(--name)``: so no two
 are the same, and none is a black that SVG leaves out."""
-INK, MUTED, RULE, ACCENT = (COLOURS[name] for name in ("ink", "muted", "rule", "accent"))
+INK = COLOURS["ink"]
+MUTED = COLOURS["muted"]
+RULE = COLOURS["rule"]
+ACCENT = COLOURS["accent"]
 _LETTERS = 8.0
 """Size of the letters, points: as large as captions; the smallest that IEEE advises is 8."""
-_NARROW, _WIDE = 3.9, 10.2
-"""Widths of a figure and of a row of panels, inches."""
-
+_NARROW = 3.9
+"""Width of a figure, inches: two stand beside each other on the page of the report."""
+_WIDE = 10.2
+"""Width of a row of panels, inches: that of the page."""
 SETTINGS: Any = {
     "svg.fonttype": "none",  # the reader's fonts
     "svg.hashsalt": "vehicle_pf_tracker",
@@ -84,10 +88,12 @@ CURVES = {
 ERRORS = "errors_"
 """Beginning of the names of figures of errors over time; the recording follows."""
 LEAST_ERROR = 0.5
-"""Errors below this, in px, are drawn at the foot of the logarithmic scale."""
+"""Errors below this, in px, are drawn at the foot of the logarithmic scale: truth that was drawn by
+hand errs by about a pixel."""
 _PANEL_HEIGHT = 1.35
 """Height of a panel of errors over time, inches: three in a row are then about 5 to 3."""
 _PANELS_IN_A_ROW = 3
+"""Panels beside each other: their words are then as large as those of the page."""
 
 
 class Drawn(NamedTuple):
@@ -201,7 +207,8 @@ def draw_errors(axes: Axes, errors: Array) -> None:
     frames = np.arange(1, table.shape[1] + 1)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # frames without truth have no median
-        low, high = np.nanmin(table, axis=0), np.nanmax(table, axis=0)
+        low = np.nanmin(table, axis=0)
+        high = np.nanmax(table, axis=0)
         middle = np.nanmedian(table, axis=0)
     axes.fill_between(frames, low, high, color=ACCENT, alpha=0.25, lw=0)
     axes.plot(frames, middle, color=ACCENT, lw=1.2)

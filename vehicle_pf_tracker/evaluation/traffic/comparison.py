@@ -38,6 +38,7 @@ from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 OURS = "traffic"
+"""Name of our system among the others."""
 MOTION = "motion"
 """Source of detections: the embedded detector, whose boxes the baselines get too."""
 
@@ -227,6 +228,7 @@ COLUMNS: Mapping[str, tuple[str, int]] = {
 }
 """Measures, with their headings and decimals."""
 
+# Words below the table.
 RULES = """\
 HOTA, DetA, AssA, IDF1 and MOTA (percent), identity switches and fragmentations are TrackEval's, at
 an overlap of a half where they need one; means over seeds. Totally hidden vehicles are not scored.

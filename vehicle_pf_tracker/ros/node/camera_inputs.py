@@ -61,7 +61,7 @@ class CameraInputs:
     def __init__(self, node: Node) -> None:
         self._node = node
         self.lens: ImageLens | None = None
-        # tf2_ros is in no package index but apt's, so that a node whose ROS comes from pip could not
+        # tf2_ros is in no index but apt's, so that a node whose ROS comes from pip could not
         # use it. Its buffer gives the pose at an image's stamp; the newest, which this has, differs
         # only while the camera turns.
         self.poses = PoseTree()
