@@ -14,8 +14,8 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.following.driver import OfflineTracker, with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.results.estimates import REJECTED, WAITING
+from vehicle_pf_tracker.trackers.attempts import TrackerError
 from vehicle_pf_tracker.trackers.registry import VARIANTS
-from vehicle_pf_tracker.trackers.session import TrackerError
 
 PF = VARIANTS["pf"]
 TARGET = with_target(SessionParameters(), box_of(0))

@@ -18,7 +18,7 @@ from vehicle_pf_tracker.following.traffic_following import TrafficRun
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.results.traffic_results import TrackFiles
-from vehicle_pf_tracker.trackers.session import TrackerError
+from vehicle_pf_tracker.trackers.attempts import TrackerError
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 

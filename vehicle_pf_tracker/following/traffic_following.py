@@ -25,7 +25,7 @@ from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.showing.live_page import PAGE, LivePage
 from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
 from vehicle_pf_tracker.showing.traffic_pictures import TrafficPictures
-from vehicle_pf_tracker.trackers.session import TrackerError
+from vehicle_pf_tracker.trackers.attempts import TrackerError
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 _MOST_NOTICES = 20

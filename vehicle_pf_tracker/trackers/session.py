@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""One target followed through one stream of stamped images, and the frame of such sessions.
+"""Session: one target followed through one stream of stamped images.
 
 Offline runs and the node both drive their tracker through a session, and so give the same
 estimates.
@@ -10,119 +10,26 @@ estimates.
 from __future__ import annotations
 
 import copy
-from abc import ABC, abstractmethod
-from collections.abc import Callable
 from functools import partial
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
+from vehicle_pf_tracker.trackers.attempts import Attempts
 from vehicle_pf_tracker.trackers.base import BaseTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.image_stream import ImageStream, Turn
 from vehicle_pf_tracker.trackers.registry import Variant
-
-TrackerT = TypeVar("TrackerT")
-ResultT = TypeVar("ResultT")
 
 
 class TargetError(InputError):
     """Target that no tracker can start on in the image that it was given for."""
 
 
-class TrackerError(Exception):
-    """Unexpected error of a tracker in one image; its cause is the error itself.
-
-    Attributes
-    ----------
-    persists : bool
-        True where the tracker failed again as soon as it had started anew: it is broken.
-    """
-
-    def __init__(self, error: Exception, *, persists: bool) -> None:
-        super().__init__(unexpected(error))
-        self.persists = persists
-
-
-def unexpected(error: Exception) -> str:
-    """Describe an error that nobody expected."""
-    if isinstance(error, TrackerError):
-        return str(error)
-    return f"unexpected {type(error).__name__}: {error}"
-
-
-class StreamSession(ABC, Generic[TrackerT]):
-    """Common part of the sessions: one stream of images, and what becomes of a tracker's errors.
-
-    The first unexpected error costs its image: it may be that image's fault. After the second one
-    in a row the tracker starts anew and takes the same image again. If that fails too, the tracker
-    is broken.
-
-    Parameters
-    ----------
-    tracker : TrackerT
-        Tracker of what is in the images.
-    frame_rate : float
-        Nominal rate in 1/s; 0 takes the median of the first ten intervals.
-    reset_on_time_jump : bool
-        Begin anew when stamps go back and stay back.
-
-    Attributes
-    ----------
-    events : list of str
-        Irregularities of the last image, for logs and diagnostics.
-    recovered : bool
-        True where the tracker failed and started anew in the last image.
-    """
-
-    def __init__(self, tracker: TrackerT, frame_rate: float, reset_on_time_jump: bool) -> None:
-        self.tracker = tracker
-        self.events: list[str] = []
-        self.recovered = False
-        self._stream = ImageStream(frame_rate, reset_on_time_jump)
-        self._errors_in_a_row = 0
-
-    @property
-    def size(self) -> tuple[int, int] | None:
-        """Width and height in px that images are expected to have; None for any size."""
-        return self._stream.size
-
-    def _admit(
-        self, image: Frame | CodedImage, stamp_ns: int, *, is_tracking: bool = True
-    ) -> list[Turn]:
-        """Return the images to track in now; see `ImageStream.admit`."""
-        self.events = []
-        self.recovered = False
-        return self._stream.admit(image, stamp_ns, is_tracking=is_tracking)
-
-    def _attempt(self, step: Callable[[], ResultT]) -> ResultT:
-        """Take `step`, once more after a new start."""
-        try:
-            result = step()
-        except InputError:  # the tracker is not at fault
-            raise
-        except Exception as error:  # whatever a tracker or a network raises
-            self._errors_in_a_row += 1
-            if self._errors_in_a_row % 2:
-                raise TrackerError(error, persists=self._errors_in_a_row > 1) from error
-            self.events.append(
-                f"the tracker failed twice in a row and has started anew: {unexpected(error)}"
-            )
-            self._start_anew()
-            self.recovered = True
-            return self._attempt(step)
-        self._errors_in_a_row = 0
-        return result
-
-    @abstractmethod
-    def _start_anew(self) -> None:
-        """Discard the tracker's state, so that the same image can be taken again."""
-
-
-class Session(StreamSession[BaseTracker[Any]]):
+class Session:
     """Control of one variant's tracker: start, steps, restarts.
 
     Odd images are rejected, or admitted after all, by `ImageStream`; then only the estimate of the
@@ -141,8 +48,8 @@ class Session(StreamSession[BaseTracker[Any]]):
 
     Attributes
     ----------
-    events, recovered
-        See `StreamSession`.
+    tracker : BaseTracker
+        Follows the target.
     refusal : str
         Reason why the last frame's new target was refused while there is a track; else empty.
     """
@@ -153,12 +60,27 @@ class Session(StreamSession[BaseTracker[Any]]):
         self.variant = variant
         self.settings = settings or SessionParameters()
         self.refusal = ""
-        super().__init__(
-            variant.tracker(parameters), parameters.frame_rate, self.settings.reset_on_time_jump
-        )
+        self.tracker: BaseTracker[Any] = variant.tracker(parameters)
+        self._stream = ImageStream(parameters.frame_rate, self.settings.reset_on_time_jump)
+        self._attempts = Attempts()
         self._backup: BaseTracker[Any] | None = None
         self._pending: Box | None = self.settings.target.box
         self._seen: Box | None = None
+
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """Width and height in px that images are expected to have; None for any size."""
+        return self._stream.size
+
+    @property
+    def events(self) -> list[str]:
+        """Irregularities of the last image, for logs and diagnostics."""
+        return self._attempts.events
+
+    @property
+    def recovered(self) -> bool:
+        """True where the tracker failed and started anew in the last image."""
+        return self._attempts.recovered
 
     @property
     def waiting(self) -> bool:
@@ -176,7 +98,8 @@ class Session(StreamSession[BaseTracker[Any]]):
     def reset(self) -> None:
         """Go back to the configured target, or to waiting for one, and discard the track."""
         self._stream.reset()
-        self._backup = self._seen = None
+        self._backup = None
+        self._seen = None
         self._pending = self.settings.target.box
 
     def reconfigure(self, parameters: Any, settings: SessionParameters) -> None:
@@ -211,9 +134,10 @@ class Session(StreamSession[BaseTracker[Any]]):
             If the tracker fails, and does not start anew for it.
         """
         self.refusal = ""
+        self._attempts.begin_image()
         estimate = None
-        for turn in self._admit(image, stamp_ns, is_tracking=self._is_tracking):
-            self.events += turn.events
+        for turn in self._stream.admit(image, stamp_ns, is_tracking=self._is_tracking):
+            self.events.extend(turn.events)
             if turn.corrects:
                 self._take_back()
             kernels = self.tracker.kernels  # they have no state of their own, and need no copy
@@ -223,7 +147,7 @@ class Session(StreamSession[BaseTracker[Any]]):
                 self._seen = None
                 self._start_anew()
             self.tracker.frame_period = turn.period
-            estimate = self._attempt(partial(self._step, turn))
+            estimate = self._attempts.take(partial(self._step, turn), self._start_anew)
         return estimate
 
     def _start_anew(self) -> None:

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.ros.node.image_input import read_image
 from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder
 from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.node.kept_target import KeptTarget
-from vehicle_pf_tracker.trackers.session import TrackerError, unexpected
+from vehicle_pf_tracker.trackers.attempts import TrackerError, unexpected
 
 
 class Feed(Protocol):

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -20,8 +21,8 @@ from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import Detector
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.counting_plan import Region
-from vehicle_pf_tracker.trackers.image_stream import Turn
-from vehicle_pf_tracker.trackers.session import StreamSession
+from vehicle_pf_tracker.trackers.attempts import Attempts
+from vehicle_pf_tracker.trackers.image_stream import ImageStream, Turn
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
@@ -56,7 +57,7 @@ class DetectionTotals:
     ambiguous: int = 0
 
 
-class TrafficSession(StreamSession[TrafficTracker]):
+class TrafficSession:
     """Control of the tracker: elapsed time, restarts, detections.
 
     Odd images are rejected, or admitted after all, by `ImageStream`; then only the estimates of the
@@ -85,8 +86,8 @@ class TrafficSession(StreamSession[TrafficTracker]):
         The detector in use.
     found : DetectionTotals
         Totals of what was detected.
-    events, recovered
-        See `StreamSession`.
+    tracker : TrafficTracker
+        As given.
     restarts : int
         Times that all vehicles were discarded, so that whoever counts knows.
     successors : mapping of int to int
@@ -102,7 +103,9 @@ class TrafficSession(StreamSession[TrafficTracker]):
         reset_on_time_jump: bool = True,
         regions: Sequence[Region] = (),
     ) -> None:
-        super().__init__(tracker, frame_rate, reset_on_time_jump)
+        self.tracker = tracker
+        self._stream = ImageStream(frame_rate, reset_on_time_jump)
+        self._attempts = Attempts()
         self.estimates: tuple[TrackEstimate, ...] = ()
         self.found = DetectionTotals()
         self.restarts = 0
@@ -112,6 +115,21 @@ class TrafficSession(StreamSession[TrafficTracker]):
         self._regions = tuple(regions)
         self._given: dict[int, tuple[Box, str]] = {}
         self._detections: Detections | None = None
+
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """Width and height in px that images are expected to have; None for any size."""
+        return self._stream.size
+
+    @property
+    def events(self) -> list[str]:
+        """Irregularities of the last image, for logs and diagnostics."""
+        return self._attempts.events
+
+    @property
+    def recovered(self) -> bool:
+        """True where the tracker failed and started anew in the last image."""
+        return self._attempts.recovered
 
     def add(self, box: Box, label: str = "") -> int:
         """Follow the vehicle in `box` of the last image; see `TrafficTracker.add`."""
@@ -158,17 +176,18 @@ class TrafficSession(StreamSession[TrafficTracker]):
         """
         given = self._detections, detections  # of the image before, which may be admitted only now
         self._detections = detections
-        turns = self._admit(image, stamp_ns)
+        self._attempts.begin_image()
+        turns = self._stream.admit(image, stamp_ns)
         for turn, found in zip(turns, given[-len(turns) :], strict=True):
             self._take(turn, found)
         return self.estimates
 
     def _take(self, turn: Turn, detections: Detections | None) -> None:
-        self.events += turn.events
+        self.events.extend(turn.events)
         if turn.begins_anew:
             self._restart()
         self.tracker.frame_period = turn.period
-        self._attempt(lambda: self._step(turn, detections))
+        self._attempts.take(partial(self._step, turn, detections), self._start_anew)
 
     def _step(self, turn: Turn, detections: Detections | None) -> None:
         if detections is None and self.detector is not None:
