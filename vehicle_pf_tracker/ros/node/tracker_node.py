@@ -19,8 +19,8 @@ from vehicle_pf_tracker.ros.node.image_input import image_topic
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
 from vehicle_pf_tracker.ros.node.image_path import ImagePath
 from vehicle_pf_tracker.ros.node.journal import Journal
-from vehicle_pf_tracker.ros.node.outputs import TrackerOutputs
 from vehicle_pf_tracker.ros.node.tracker_feed import TrackerFeed
+from vehicle_pf_tracker.ros.node.tracker_outputs import TrackerOutputs
 from vehicle_pf_tracker.trackers.registry import Variant
 
 _POLL = 0.1

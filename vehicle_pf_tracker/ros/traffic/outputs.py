@@ -20,7 +20,7 @@ from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.ros.messages import detections_type, image_message
 from vehicle_pf_tracker.ros.node.answer import Answer
 from vehicle_pf_tracker.ros.node.journal import Journal
-from vehicle_pf_tracker.ros.node.outputs import RELIABLE, Outputs, in_pixels
+from vehicle_pf_tracker.ros.node.publishers import RELIABLE, Outputs, in_pixels
 from vehicle_pf_tracker.ros.traffic import messages
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.showing.drawing import Colour, draw_box, line_width
