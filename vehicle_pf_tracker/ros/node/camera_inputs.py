@@ -16,6 +16,7 @@ from rclpy.subscription import Subscription
 from sensor_msgs.msg import CameraInfo
 from std_msgs.msg import Header
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.parameters.road import RoadParameters
@@ -24,7 +25,7 @@ from vehicle_pf_tracker.road.poses import Pose, PoseTree
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.image_input import image_topic
 from vehicle_pf_tracker.trackers.estimate import Estimate
-from vehicle_pf_tracker.trackers.localisation import Localisation
+from vehicle_pf_tracker.trackers.localisation import Localisation, RoadEstimate
 
 try:
     from tf2_msgs.msg import TFMessage
@@ -117,8 +118,8 @@ class CameraInputs:
         self._node.get_logger().warning(words, throttle_duration_sec=_THROTTLE)
 
 
-class StreamLocalisation(Localisation):
-    """Localisation with lens and pose from topics.
+class StreamLocalisation:
+    """Localisation of a track with lens and pose from topics.
 
     Parameters
     ----------
@@ -131,40 +132,68 @@ class StreamLocalisation(Localisation):
     """
 
     def __init__(self, variant: str, parameters: RoadParameters, cameras: CameraInputs) -> None:
-        super().__init__(variant, parameters)
+        self._track = Localisation(variant, parameters)
         self._cameras = cameras
+        self._misfit = ""
+
+    def reconfigure(self, parameters: RoadParameters) -> None:
+        """Take another mapping to the road; lens and pose that came from outside are kept."""
+        self._track.reconfigure(parameters)
 
     def locate(self, estimate: Estimate, header: Header, frame: Frame, period: float) -> None:
         """Take the estimate of the image `frame`, with the nominal frame period in s."""
-        parameters = self.parameters
+        track = self._track
+        parameters = track.parameters
         lens = self._cameras.lens
+        # First lens and pose: the estimate is mapped by those of its own image.
         if lens is not None:
-            self.set_lens(lens.lens)
+            track.set_lens(lens.lens)
         if parameters.from_tf:
             with contextlib.suppress(InputError):  # TF does not have it yet
-                self.set_pose(self._cameras.poses.find(header.frame_id, parameters.frame_id))
-        self.follow(estimate, stamp_ns(header), period)
-        size = frame_size(frame)
-        if lens and lens.size != size and self.has_road and parameters.from_camera_info:
-            self.road = None
-            self.objection = (
+                track.set_pose(self._cameras.poses.find(header.frame_id, parameters.frame_id))
+        track.follow(estimate, stamp_ns(header), period)
+        width, height = frame_size(frame)
+        self._misfit = ""
+        if lens is not None and lens.size != (width, height) and parameters.from_camera_info:
+            self._misfit = (
                 f"camera_info is for {lens.size[0]}x{lens.size[1]} px, "
-                f"the image has {size[0]}x{size[1]}"
+                f"the image has {width}x{height}"
             )
+
+    @property
+    def has_road(self) -> bool:
+        """True where a mapping to the road is asked for."""
+        return self._track.has_road
+
+    @property
+    def road(self) -> RoadEstimate | None:
+        """Last position on the road; None where there is none."""
+        return None if self._misfit else self._track.road
+
+    @property
+    def road_frame_id(self) -> str:
+        """Frame of positions on the road."""
+        return self._track.parameters.frame_id
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance (2, 2) of the last estimate's position, px²."""
+        return self._track.covariance
 
     @property
     def values(self) -> dict[str, object]:
         """Road position and speed for `~/mode` by name, or the reason why there are none."""
         if not self.has_road:
             return {}
-        return {"road": self.objection or "ok", **(self.road.scalars() if self.road else {})}
+        road = self.road
+        objection = self._misfit or self._track.objection
+        return {"road": objection or "ok", **(road.scalars() if road else {})}
 
     @property
     def words(self) -> str:
         """Speed for people; empty where there is none."""
-        if self.road is None:
-            return ""
-        return f"{self.road.speed:.1f} +- {self.road.speed_deviation:.1f} km/h"
+        road = self.road
+        return f"{road.speed:.1f} +- {road.speed_deviation:.1f} km/h" if road else ""
 
 
 _COEFFICIENTS = {"rational_polynomial": 8, "equidistant": 4}

@@ -49,7 +49,7 @@ _COMMON: Topics = MappingProxyType(
 )
 
 
-class Outputs:
+class Publishers:
     """Publishers of a node; outputs without subscribers are not computed.
 
     Parameters

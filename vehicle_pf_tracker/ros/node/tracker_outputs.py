@@ -21,7 +21,7 @@ from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.node.publishers import (
     BEST_EFFORT,
     RELIABLE,
-    Outputs,
+    Publishers,
     in_frame,
     in_pixels,
 )
@@ -29,7 +29,7 @@ from vehicle_pf_tracker.showing.drawing import Annotator, draw_target
 from vehicle_pf_tracker.trackers.estimate import Estimate
 
 
-class TrackerOutputs(Outputs):
+class TrackerOutputs:
     """Everything that a configured node of one target publishes.
 
     Parameters
@@ -58,11 +58,15 @@ class TrackerOutputs(Outputs):
             "road_velocity": (Vector3Stamped, RELIABLE),
             "detection": (messages.detection_type(), RELIABLE),
         }
-        super().__init__(node, hardware_id, more)
+        self._publishers = Publishers(node, hardware_id, more)
         self._localisation = localisation
         self._journal = journal
         self._annotator = Annotator(particles=True)
         self._track = 0
+
+    def close(self) -> None:
+        """Destroy the publishers."""
+        self._publishers.close()
 
     def send(self, answer: Answer, own: NodeParameters, *, is_kept: bool) -> DiagnosticArray | None:
         """Publish an answer, its `~/mode` last; returns that, if it was made."""
@@ -72,7 +76,7 @@ class TrackerOutputs(Outputs):
             if own.publish.overlay:
                 with self._journal.drawing("the overlay"):
                     self._publish_overlay(answer)
-        return self.publish_mode(answer, is_kept=is_kept)
+        return self._publishers.publish_mode(answer, is_kept=is_kept)
 
     def _publish_estimate(
         self, header: Header, estimate: Estimate, own: NodeParameters, period: float
@@ -82,30 +86,29 @@ class TrackerOutputs(Outputs):
             self._track += 1
             self._annotator.follow(None)  # a new path
         self._annotator.follow(estimate)
+        publish = self._publishers.publish
         header = in_pixels(header, own)
-        self.publish_vehicle(header, estimate, own, period)
+        self._publishers.publish_vehicle(header, estimate, own, period)
         if own.publish.particles:
-            self.publish("particles", messages.particles_message, header, estimate)
-        self.publish("detection", messages.detection_message, header, estimate, str(self._track))
+            publish("particles", messages.particles_message, header, estimate)
+        publish("detection", messages.detection_message, header, estimate, str(self._track))
         localisation = self._localisation
         road = localisation.road
         if road is not None:
-            there = in_frame(header, localisation.parameters.frame_id)
-            self.publish(
+            there = in_frame(header, localisation.road_frame_id)
+            publish(
                 "pose_with_covariance", messages.pose_message, there, road.position, road.covariance
             )
-            self.publish("road_position", messages.point_message, there, road.position)
-            self.publish("road_velocity", messages.velocity_message, there, road.velocity)
-        elif not localisation.has_road and self.is_heard("pose_with_covariance"):
+            publish("road_position", messages.point_message, there, road.position)
+            publish("road_velocity", messages.velocity_message, there, road.velocity)
+        elif not localisation.has_road and self._publishers.is_heard("pose_with_covariance"):
             position = np.asarray(estimate.position)
             covariance = localisation.covariance
-            self.publish(
-                "pose_with_covariance", messages.pose_message, header, position, covariance
-            )
+            publish("pose_with_covariance", messages.pose_message, header, position, covariance)
 
     def _publish_overlay(self, answer: TrackerAnswer) -> None:
         """Publish the drawn-on image, if anybody looks; the speed stands after the mode."""
-        if not self.is_heard("overlay"):
+        if not self._publishers.is_heard("overlay"):
             return
         mode = answer.mode
         estimate = answer.estimate
@@ -114,4 +117,4 @@ class TrackerOutputs(Outputs):
         if estimate is not None:
             words = f"{mode} {estimate.confidence:.2f}  {self._localisation.words}".rstrip()
         draw_target(picture, self._annotator, mode, estimate, words, row=1)
-        self.publish("overlay", messages.image_message, answer.header, picture)
+        self._publishers.publish("overlay", messages.image_message, answer.header, picture)

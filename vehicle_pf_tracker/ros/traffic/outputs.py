@@ -20,7 +20,7 @@ from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.ros.messages import detections_type, image_message
 from vehicle_pf_tracker.ros.node.answer import Answer
 from vehicle_pf_tracker.ros.node.journal import Journal
-from vehicle_pf_tracker.ros.node.publishers import RELIABLE, Outputs, in_pixels
+from vehicle_pf_tracker.ros.node.publishers import RELIABLE, Publishers, in_pixels
 from vehicle_pf_tracker.ros.traffic import messages
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.showing.drawing import Colour, draw_box, line_width
@@ -46,7 +46,7 @@ class TrafficAnswer(Answer):
     period: float
 
 
-class TrafficOutputs(Outputs):
+class TrafficOutputs:
     """Everything that a configured node of many vehicles publishes.
 
     Parameters
@@ -78,10 +78,14 @@ class TrafficOutputs(Outputs):
             "detections": (detections_type(), RELIABLE),
             "markers": (MarkerArray, RELIABLE),
         }
-        super().__init__(node, hardware_id, more)
+        self._publishers = Publishers(node, hardware_id, more)
         self._vehicles = vehicles
         self._journal = journal
         self.page = page
+
+    def close(self) -> None:
+        """Destroy the publishers; the page is its owner's."""
+        self._publishers.close()
 
     def send(self, answer: Answer, own: NodeParameters, *, is_kept: bool) -> DiagnosticArray | None:
         """Publish an answer, its `~/mode` last; returns that, if it was made."""
@@ -90,24 +94,26 @@ class TrafficOutputs(Outputs):
             selected = self._vehicles.selected
             self._publish_vehicles(answer.header, there, answer.period)
             if selected is not None:
-                self.publish_vehicle(there, selected, own, answer.period)
+                self._publishers.publish_vehicle(there, selected, own, answer.period)
             self._show(answer, own)
-        return self.publish_mode(answer, is_kept=is_kept)
+        return self._publishers.publish_mode(answer, is_kept=is_kept)
 
     def _publish_vehicles(self, header: Header, there: Header, period: float) -> None:
         """Publish all vehicles, px under the header `there`, and what was counted.
 
         The frame `period` is in s.
         """
+        publish = self._publishers.publish
+        statuses = self._publishers.statuses
         counter = self._vehicles.counter
         estimates = self._vehicles.estimates
-        self.publish("tracks", messages.tracks_message, there, estimates, period)
-        self.publish("modes", self.statuses, header, messages.mode_statuses(estimates))
-        self.publish("detections", messages.detections_message, there, estimates)
-        self.publish("markers", messages.markers_message, there, estimates)
+        publish("tracks", messages.tracks_message, there, estimates, period)
+        publish("modes", statuses, header, messages.mode_statuses(estimates))
+        publish("detections", messages.detections_message, there, estimates)
+        publish("markers", messages.markers_message, there, estimates)
         if counter.plan.is_counting:
             counts = messages.count_statuses(counter, self._vehicles.latest)
-            self.publish("counts", self.statuses, header, counts)
+            publish("counts", statuses, header, counts)
 
     def _show(self, answer: TrafficAnswer, own: NodeParameters) -> None:
         """Draw the image for those who look at it."""
@@ -122,11 +128,13 @@ class TrafficOutputs(Outputs):
 
     def _publish_overlay(self, answer: TrafficAnswer) -> None:
         """Publish the drawn-on image, if anybody looks; the selected vehicle has a white frame."""
-        if not self.is_heard("overlay"):
+        if not self._publishers.is_heard("overlay"):
             return
         frame = answer.frame
         selected = self._vehicles.selected
         if selected is not None:
             frame = np.array(frame, order="C")
             draw_box(frame, selected.box, _SELECTED, 3 * line_width(frame))
-        self.publish("overlay", image_message, answer.header, self._vehicles.drawn(frame))
+        self._publishers.publish(
+            "overlay", image_message, answer.header, self._vehicles.drawn(frame)
+        )
