@@ -42,7 +42,7 @@ from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.ros.node import camera_inputs
-from vehicle_pf_tracker.ros.node.camera_inputs import lens_of_info
+from vehicle_pf_tracker.ros.node.camera_info import lens_of_info
 from vehicle_pf_tracker.ros.replay.answers import Answers
 from vehicle_pf_tracker.trackers.registry import find_variant
 

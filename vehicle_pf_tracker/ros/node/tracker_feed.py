@@ -22,9 +22,9 @@ from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
 from vehicle_pf_tracker.ros.node.answer import Answer, TrackerAnswer
-from vehicle_pf_tracker.ros.node.camera_inputs import StreamLocalisation
 from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
+from vehicle_pf_tracker.ros.node.stream_localisation import StreamLocalisation
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.session import Session, TargetError

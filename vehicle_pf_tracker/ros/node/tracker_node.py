@@ -14,11 +14,12 @@ from sensor_msgs.msg import RegionOfInterest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros import messages
-from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs, StreamLocalisation
+from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
 from vehicle_pf_tracker.ros.node.image_input import image_topic
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
 from vehicle_pf_tracker.ros.node.image_path import ImagePath
 from vehicle_pf_tracker.ros.node.journal import Journal
+from vehicle_pf_tracker.ros.node.stream_localisation import StreamLocalisation
 from vehicle_pf_tracker.ros.node.tracker_feed import TrackerFeed
 from vehicle_pf_tracker.ros.node.tracker_outputs import TrackerOutputs
 from vehicle_pf_tracker.trackers.registry import Variant

@@ -16,7 +16,6 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.ros import messages
 from vehicle_pf_tracker.ros.node.answer import Answer, TrackerAnswer
-from vehicle_pf_tracker.ros.node.camera_inputs import StreamLocalisation
 from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.node.publishers import (
     BEST_EFFORT,
@@ -25,6 +24,7 @@ from vehicle_pf_tracker.ros.node.publishers import (
     in_frame,
     in_pixels,
 )
+from vehicle_pf_tracker.ros.node.stream_localisation import StreamLocalisation
 from vehicle_pf_tracker.showing.drawing import Annotator, draw_target
 from vehicle_pf_tracker.trackers.estimate import Estimate
 
