@@ -53,6 +53,8 @@ class CountedVehicles:
         Decides the vehicles' classes.
     estimates : tuple of TrackEstimate
         Estimates of the last image, with these classes.
+    has_begun_anew : bool
+        True where the session has discarded all vehicles but its `successors` in the last image.
     """
 
     def __init__(self, session: TrafficSession, counter: Counter) -> None:
@@ -62,6 +64,7 @@ class CountedVehicles:
         self._recent = RecentCrossings()
         self.classes = VehicleClasses()
         self.estimates: tuple[TrackEstimate, ...] = ()
+        self.has_begun_anew = False
         self._restarts = session.restarts
 
     def follow(
@@ -81,8 +84,9 @@ class CountedVehicles:
         detector = self.session.detector
         if isinstance(detector, PacedDetector):
             detector.pace(time.perf_counter() - began, self.session.tracker.frame_period)
-        if self.session.restarts != self._restarts:
-            self._begin_anew()
+        self.has_begun_anew = self.session.restarts != self._restarts
+        if self.has_begun_anew:
+            self.begin_anew()
         self.estimates = self.classes.named(self.session.estimates)
         self.trails.add(self.estimates)
         crossings = self.counter.update(self.estimates, stamp_ns)
@@ -127,7 +131,7 @@ class CountedVehicles:
         words = ", ".join(filter(None, (when, learning)))
         return traffic_facts(self.counter, self._recent, self.estimates, words)
 
-    def _begin_anew(self) -> None:
+    def begin_anew(self) -> None:
         """Note that the session has discarded all vehicles but its `successors`."""
         self._restarts = self.session.restarts
         self.counter.forget_vehicles()

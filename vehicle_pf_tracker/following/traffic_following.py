@@ -182,6 +182,9 @@ class TrafficRun(CountedVehicles):
                 raise
             self._note(f"frame {number} was rejected: {error}")
             return None
+        if self.has_begun_anew:
+            kept = self.session.successors
+            self._by_name = {name: kept[old] for name, old in self._by_name.items() if old in kept}
         for event in self.session.events:
             if event not in self._last_events:  # one that lasts is told once
                 self._note(f"frame {number}: {event}")
@@ -196,11 +199,6 @@ class TrafficRun(CountedVehicles):
             self._misfit = self._detections.misfit(size)
         if self._misfit:
             self._note(self._misfit)
-
-    def _begin_anew(self) -> None:
-        super()._begin_anew()
-        kept = self.session.successors
-        self._by_name = {name: kept[old] for name, old in self._by_name.items() if old in kept}
 
     def _add_targets(self, frame: Frame, number: int) -> None:
         """Follow the vehicles given for this frame; a name given again replaces the one before."""

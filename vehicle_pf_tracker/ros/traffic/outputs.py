@@ -123,7 +123,8 @@ class TrafficOutputs:
         if self.page is not None:
             with self._journal.drawing("the live page"):
                 self.page.show(
-                    partial(self._vehicles.shown, answer.frame), self._vehicles.page_facts
+                    partial(self._vehicles.counted.shown, answer.frame),
+                    self._vehicles.counted.page_facts,
                 )
 
     def _publish_overlay(self, answer: TrafficAnswer) -> None:
@@ -136,5 +137,5 @@ class TrafficOutputs:
             frame = np.array(frame, order="C")
             draw_box(frame, selected.box, _SELECTED, 3 * line_width(frame))
         self._publishers.publish(
-            "overlay", image_message, answer.header, self._vehicles.drawn(frame)
+            "overlay", image_message, answer.header, self._vehicles.counted.drawn(frame)
         )

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from vehicle_pf_tracker.core.box import Box, Position, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.counting.counter import Counter
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter
@@ -22,6 +23,7 @@ from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.encodings import LARGEST_SIDE_PX
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 NONE = 0
 """Number that ends a selection; vehicles have numbers from 1."""
@@ -88,7 +90,7 @@ def _contains(box: Box, point: Position) -> bool:
     return box.x <= x < box.x + box.width and box.y <= y < box.y + box.height
 
 
-class Vehicles(CountedVehicles):
+class Vehicles:
     """The vehicles of one stream of images.
 
     Parameters
@@ -98,8 +100,8 @@ class Vehicles(CountedVehicles):
 
     Attributes
     ----------
-    session, counter
-        See `CountedVehicles`.
+    counted : CountedVehicles
+        Follows and counts them.
     latest : dict of str to Crossing
         Last crossing of each place.
     waiting : list of Box
@@ -116,7 +118,7 @@ class Vehicles(CountedVehicles):
     """
 
     def __init__(self, configuration: Configuration) -> None:
-        super().__init__(*session_and_counter(configuration))
+        self.counted = CountedVehicles(*session_and_counter(configuration))
         self._configuration = configuration
         self.latest: dict[str, Crossing] = {}
         self.selection = Selection()
@@ -125,6 +127,21 @@ class Vehicles(CountedVehicles):
         self.waiting: list[Box] = []
         self.given: list[Box] = []
         self._configured: Box | None = configuration.session.target.box
+
+    @property
+    def session(self) -> TrafficSession:
+        """Session of the stream."""
+        return self.counted.session
+
+    @property
+    def counter(self) -> Counter:
+        """Counts at lines and in zones."""
+        return self.counted.counter
+
+    @property
+    def estimates(self) -> tuple[TrackEstimate, ...]:
+        """Estimates of the last image."""
+        return self.counted.estimates
 
     @property
     def selected(self) -> TrackEstimate | None:
@@ -141,7 +158,13 @@ class Vehicles(CountedVehicles):
         InputError
             If the image cannot be used; all vehicles are kept.
         """
-        for crossing in self.follow(image, stamp_ns, detections):
+        crossings = self.counted.follow(image, stamp_ns, detections)
+        if self.counted.has_begun_anew:
+            self.selection.identity = self.session.successors.get(self.selection.identity, NONE)
+            # After an error they are followed where they were; else nothing is known of them.
+            if not self.session.recovered:
+                self._configured = self._configuration.session.target.box
+        for crossing in crossings:
             if not crossing.doubt:
                 self.latest[crossing.place] = crossing
         self._is_shown = True
@@ -192,7 +215,9 @@ class Vehicles(CountedVehicles):
     def reset(self) -> None:
         """Forget vehicles, counts and the images before; begin on the configured target."""
         self.session.reset()
-        self._begin_anew()
+        self.counted.begin_anew()
+        self.selection.identity = NONE
+        self._configured = self._configuration.session.target.box
         self._is_shown = False
         self.waiting.clear()
         self.latest.clear()
@@ -220,12 +245,6 @@ class Vehicles(CountedVehicles):
         counts = {f"vehicles {mode.value}": modes[mode] for mode in TrackMode}
         dropped = self.session.tracker.bad_states
         return {"vehicles": len(self.estimates), **counts, "dropped for a bad state": dropped}
-
-    def _begin_anew(self) -> None:
-        super()._begin_anew()
-        self.selection.identity = self.session.successors.get(self.selection.identity, NONE)
-        if not self.session.recovered:
-            self._configured = self._configuration.session.target.box
 
     def _add_waiting(self) -> list[str]:
         """Follow the targets that waited for an image, and select the configured one."""
