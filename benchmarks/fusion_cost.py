@@ -38,10 +38,17 @@ from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.results.output_files import write_text
 
 SIZES: Mapping[str, tuple[int, int]] = {
-    "VGA": (640, 480), "1080p": (1920, 1080), "4K": (3840, 2160)
-}  # fmt: skip
+    "VGA": (640, 480),
+    "1080p": (1920, 1080),
+    "4K": (3840, 2160),
+}
+"""Width and height in px that a sequence is resampled to."""
 RESAMPLED_FRAMES = 60
-OURS, CSRT = "fusion", "csrt"
+"""Frames of a resampled sequence: two seconds, as the cost of a size does not change with time."""
+OURS = "fusion"
+"""Name of the variant that is measured."""
+CSRT = "csrt"
+"""Name of the baseline."""
 
 
 @dataclass
@@ -78,7 +85,8 @@ def summary(times: Sequence[float]) -> tuple[float, float, float]:
 def beside_csrt(footage: StressFootage, baseline: Baseline, most_frames: int | None) -> Costs:
     """Follow a sequence with both, in turns."""
     followers: dict[str, Follower] = {OURS: Own(OURS, size=None), CSRT: Theirs(baseline)}
-    first, box = footage.frame(0), _first_box(footage)
+    first = footage.frame(0)
+    box = _first_box(footage)
     costs = Costs(footage.source.name, f"{first.shape[1]}x{first.shape[0]}")
     for name, follower in followers.items():
         follower.start(first, box, 0)
@@ -104,7 +112,8 @@ def by_image_size(footage: StressFootage) -> Costs:
             if index:
                 costs.ms[name].append(1e3 * followers[name].step(shown))
             else:
-                across, down = size[0] / frame.shape[1], size[1] / frame.shape[0]
+                across = size[0] / frame.shape[1]
+                down = size[1] / frame.shape[0]
                 scaled = Box(box.x * across, box.y * down, box.width * across, box.height * down)
                 followers[name].start(shown, scaled, 0)
     return costs
@@ -123,36 +132,39 @@ def _first_box(footage: StressFootage) -> Box:
 
 def csrt_table(costs: Sequence[Costs]) -> str:
     """Markdown table of sequences: ours, CSRT's, and how many times as fast."""
-    header = (
-        "sequence", "image, px", "steps", "ours: mean, ms", "median", "least", "slowest",
-        "CSRT: mean, ms", "median", "least", "times as fast: mean", "median", "least",
-    )  # fmt: skip
+    least = ("median", "least")
+    ours = ("ours: mean, ms", *least, "slowest")
+    header = ("sequence", "image, px", "steps", *ours, "CSRT: mean, ms", *least)
+    header += ("times as fast: mean", *least)
     rows = []
     for one in costs:
-        own, csrt = one.ms[OURS], one.ms[CSRT]
-        rows.append([
-            one.sequence, one.size, f"{len(own)}", *(f"{value:.2f}" for value in summary(own)),
-            f"{max(own):.1f}", *(f"{value:.1f}" for value in summary(csrt)),
-            *(f"{ratio:.1f}" for ratio in one.ratios(OURS, CSRT)),
-        ])  # fmt: skip
+        own = one.ms[OURS]
+        cells = [one.sequence, one.size, f"{len(own)}"]
+        cells += [f"{value:.2f}" for value in summary(own)]
+        cells += [f"{max(own):.1f}"]
+        cells += [f"{value:.1f}" for value in summary(one.ms[CSRT])]
+        cells += [f"{ratio:.1f}" for ratio in one.ratios(OURS, CSRT)]
+        rows.append(cells)
     return markdown(header, rows)
 
 
 def size_table(costs: Sequence[Costs]) -> str:
     """Markdown table of image sizes: medians and least, and the ratios to VGA."""
-    header = ("resampled", *(f"{name}: median, least, ms" for name in SIZES),
-              *(f"{name} / VGA: median, least" for name in list(SIZES)[1:]))  # fmt: skip
+    larger = [name for name in SIZES if name != "VGA"]
+    header = ["resampled"]
+    header += [f"{name}: median, least, ms" for name in SIZES]
+    header += [f"{name} / VGA: median, least" for name in larger]
     rows = []
     for one in costs:
         medians = {name: statistics.median(times) for name, times in one.ms.items()}
         least = {name: min(times) for name, times in one.ms.items()}
-        rows.append([
-            one.sequence, *(f"{medians[name]:.2f}, {least[name]:.2f}" for name in SIZES),
-            *(
-                f"{medians[name] / medians['VGA']:.2f}, {least[name] / least['VGA']:.2f}"
-                for name in list(SIZES)[1:]
-            ),
-        ])  # fmt: skip
+        cells = [one.sequence]
+        cells += [f"{medians[name]:.2f}, {least[name]:.2f}" for name in SIZES]
+        cells += [
+            f"{medians[name] / medians['VGA']:.2f}, {least[name] / least['VGA']:.2f}"
+            for name in larger
+        ]
+        rows.append(cells)
     return markdown(header, rows)
 
 
@@ -164,7 +176,8 @@ def _chosen(options: argparse.Namespace, names: Sequence[str]) -> Iterator[Stres
 
 
 def _measure(options: argparse.Namespace) -> tuple[list[Costs], list[Costs]]:
-    beside, sizes = [], []
+    beside = []
+    sizes = []
     with Baseline(CSRT, options.baselines) as baseline:
         for footage in _chosen(options, options.only):
             beside.append(beside_csrt(footage, baseline, options.frames))
@@ -197,8 +210,11 @@ def main() -> int:
     options.output.mkdir(parents=True, exist_ok=True)
     text = csrt_table(beside) + ("\n" + size_table(sizes) if sizes else "")
     write_text(options.output / "cost.md", text)
-    document = {"environment": environment, "sequences": [asdict(one) for one in beside],
-                "sizes": [asdict(one) for one in sizes]}  # fmt: skip
+    document = {
+        "environment": environment,
+        "sequences": [asdict(one) for one in beside],
+        "sizes": [asdict(one) for one in sizes],
+    }
     write_text(options.output / "cost.json", json.dumps(document, indent=1))
     return 0
 

@@ -41,8 +41,12 @@ from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
 COUNTS = (10, 20, 50)
-WIDTH, HEIGHT = 640, 360
+"""Vehicles at once: a road, a dual carriageway, a jam."""
+WIDTH = 640
+HEIGHT = 360
+"""Size of the images in px, the smaller one that traffic cameras send."""
 FRAMES = 200
+"""Images of a scene: 140 of them are timed."""
 SETTLED = 60
 """First frames, in which the background is learnt and vehicles are found; not timed."""
 BEYOND = 45
@@ -50,6 +54,7 @@ BEYOND = 45
 FLOODS = (1500, 50_000)
 """Boxes in an image of a detector that is out of order."""
 BASELINES = ("bytetrack", "ocsort")
+"""Trackers that follow boxes alone, beside which the cost is shown."""
 
 
 def main() -> None:
@@ -67,8 +72,8 @@ def main() -> None:
         resident(read_sequence(args.resident))
         return
     with tempfile.TemporaryDirectory() as folder, TrafficWorker() as worker:
-        counts, frames = args.counts, args.frames
-        sequences = {count: made(count, Path(folder, str(count)), frames) for count in counts}
+        counts = args.counts
+        sequences = {count: made(count, Path(folder, str(count)), args.frames) for count in counts}
         print(
             "| vehicles | traffic, boxes given | traffic, motion | bytetrack | ocsort | followed |"
         )
@@ -146,7 +151,8 @@ def ours(sequence: TrafficSequence, *, motion: bool) -> tuple[float, float]:
         TrafficTracker(TrafficParameters()), MotionDetector if motion else None, frame_rate=30.0
     )
     rows = sequence.detections["good"]
-    seconds, followed = [], []
+    seconds = []
+    followed = []
     for number, frame in enumerate(sequence.frames(), start=1):
         now = rows[rows[:, 0] == number]
         detections = None if motion else Detections.make(now[:, 1:5], now[:, 5])
@@ -160,7 +166,8 @@ def ours(sequence: TrafficSequence, *, motion: bool) -> tuple[float, float]:
 def flood(count: int, frames: int) -> float:
     """Return the mean time in ms of an image with so many boxes, a half of which drive."""
     rng = stream(0, "flood")
-    tracker, image = TrafficTracker(TrafficParameters()), np.zeros((HEIGHT, WIDTH, 3), np.uint8)
+    tracker = TrafficTracker(TrafficParameters())
+    image = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
     driving = rng.uniform((0, 0, 8, 8), (WIDTH, HEIGHT, 40, 40), (count // 2, 4))
     seconds = []
     for _ in range(frames):

@@ -41,7 +41,9 @@ from vehicle_pf_tracker.image.kernels.interface import CHOICES
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 WORKER = Path(__file__).with_name("versus_worker.py")
+"""Program that steps one version; it is of this commit for both, and needs little of either."""
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "vehicle_pf_tracker"
+"""Folder of the other versions' files and compiled kernels, so that the next run is quick."""
 _TOY_FRAMES = 21
 """Frames of a toy: a start and two turns, so that each version is the first to step in one."""
 _TOY_VARIANTS = ("ms", "apf")
@@ -117,8 +119,10 @@ class Worker:
         InputError
             If the version cannot do it; the process has said why on stderr.
         """
-        source, sink = self._process.stdout, self._process.stdin
-        assert source is not None and sink is not None
+        source = self._process.stdout
+        sink = self._process.stdin
+        assert source is not None
+        assert sink is not None
         try:
             sink.write(json.dumps(words) + "\n")
             sink.flush()

@@ -17,10 +17,12 @@ from vehicle_pf_tracker.ros.launching import (
     started,
 )
 
+# Arguments that are the same for all cameras.
 FOR_ALL = {
     **{name: ARGUMENTS[name] for name in ("use_sim_time", "log_level", "large_images")},
     "respawn": ("true", "Start a node again when it ends"),
 }
+# In turns they share what libraries keep in memory, and one failure ends all.
 CONTAINER = {"container": ("false", "Run all nodes in one process, in turns")}
 
 

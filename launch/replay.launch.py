@@ -17,6 +17,7 @@ from vehicle_pf_tracker.ros.replay.launched_replay import queue_depth, replay_wo
 from vehicle_pf_tracker.ros.replay.publishing import recorded_images
 
 _NAMES = ("variant", "params_file", "namespace", "name", "log_level", "rviz", "foxglove")
+# Arguments that go on to the tracker's own launch file.
 PASSED_ON = {
     **{name: ARGUMENTS[name] for name in _NAMES},
     "use_sim_time": ("false", "Follow /clock, which the replay then publishes"),

@@ -27,7 +27,10 @@ from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.showing.drawing import COLOURS, Annotator, write_words
 from vehicle_pf_tracker.trackers.registry import find_variant
 
-SCENE, SEED = "highway", 0
+SCENE = "highway"
+"""Scene in which a bridge, and then a lorry, hide the vehicle."""
+SEED = 0
+"""Seed of the scene and of both trackers, the first: it was not chosen among others."""
 # `pf` has its best sigma, found on other scenes and seeds: `python -m reproduction.demo_sigma`.
 CONTESTANTS: Mapping[str, Mapping[str, Value]] = {
     "fusion": {},
@@ -38,9 +41,10 @@ ROWS = slice(50, 200)
 """Rows of the scene that are shown: the far carriageway, and grass above it for the words."""
 EVERY = 2
 """Every second frame is shown: 15 a second look smooth and halve the file."""
-QUALITY, EFFORT = 40, 6
-"""WebP's quality, at which the boxes' edges are still clean, and its greatest effort, which takes a
-minute: 0.92 MB, where the default effort leaves 1.34 MB."""
+QUALITY = 40
+"""WebP's quality, at which the boxes' edges are still clean."""
+EFFORT = 6
+"""WebP's greatest effort, which takes a minute: 0.92 MB, where the default leaves 1.34 MB."""
 HOLD_MS = 1500
 """Time that the last picture stays, ms."""
 _GAP = 4
@@ -61,9 +65,14 @@ def write_animation(path: Path, shown: Iterable[Frame], frame_ms: float) -> None
     times = [round(frame_ms)] * (len(images) - 1) + [HOLD_MS]
     with replacing(path) as partial:
         images[0].save(
-            partial, save_all=True, append_images=images[1:], duration=times, loop=0,
-            quality=QUALITY, method=EFFORT,
-        )  # fmt: skip
+            partial,
+            save_all=True,
+            append_images=images[1:],
+            duration=times,
+            loop=0,
+            quality=QUALITY,
+            method=EFFORT,
+        )
 
 
 def _annotated(name: str, frames: Sequence[SceneFrame]) -> Iterator[Frame]:

@@ -24,7 +24,10 @@ from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, Variant
 
 ROOT = Path(__file__).resolve().parents[1]
 
-BEGIN, END = "<!-- variants: `make config` writes this table -->\n\n", "\n<!-- variants: end -->"
+BEGIN = "<!-- variants: `make config` writes this table -->\n\n"
+"""Marker before the table of variants in a page, which a reader of the page does not see."""
+END = "\n<!-- variants: end -->"
+"""Marker after it."""
 
 Column = Callable[[Variant], str]
 
@@ -47,7 +50,8 @@ TABLES: Mapping[str, Mapping[str, Column]] = {
 
 def generated_files(root: Path = ROOT) -> dict[Path, str]:
     """Return the text of every generated file; pages keep what stands outside the markers."""
-    variants, nodes = VARIANTS.values(), NODES.values()
+    variants = VARIANTS.values()
+    nodes = NODES.values()
     files = {root / "config" / f"{one.name}.yaml": default_yaml(one) for one in nodes}
     files[root / "config" / "sros2_policy.xml"] = policy(nodes)
     files[root / "config" / "large_images.xml"] = profile(LAUNCHED_SEGMENT)

@@ -24,6 +24,7 @@ FOLDERS = (
     "test",
     "tools",
 )
+"""Folders whose files have the header."""
 
 HEADER = """\
 # Copyright 2026 vehicle_pf_tracker maintainers

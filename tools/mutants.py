@@ -35,6 +35,7 @@ ROOMS = {
 }
 """Modules that are changed, and the tests that have to notice, by the room's name."""
 _NEEDED = "vehicle_pf_tracker", "test", "docs", "config", "conftest.py", "pyproject.toml"
+"""Parts of the repository that the tests need, which are copied."""
 _CONFIGURATION = """[mutmut]
 source_paths=vehicle_pf_tracker
 only_mutate=vehicle_pf_tracker/{modules}

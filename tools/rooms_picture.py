@@ -19,9 +19,10 @@ Point = tuple[float, float]
 Bend = tuple[str, str, int]
 """Room at an arrow's tail, room at its head, and the row in which the arrow passes others."""
 Entry = str | Bend
-"""What stands in a row: a room, or a bend of an arrow that goes on to a lower row."""
+"""Entry of a row: a room, or a bend of an arrow that goes on to a lower row."""
 
-BOX_WIDTH, BOX_HEIGHT = 132.0, 30.0  # px; the longest name, 16 letters, fits at the font's size
+BOX_WIDTH = 132.0  # px; the longest name, 16 letters, fits at the font's size
+BOX_HEIGHT = 30.0  # px; twice the letters'
 BEND_WIDTH = 26.0  # px between an arrow and its neighbours
 GAP = 18.0  # px between entries of a row
 ROW_STEP = 66.0  # px between rows: a box, and room for the arrows' curves
@@ -146,7 +147,8 @@ def _arrow(points: Sequence[Point]) -> str:
 
 
 def _box(room: str, place: Point) -> str:
-    x, y = place[0] - BOX_WIDTH / 2, place[1] - BOX_HEIGHT / 2
+    x = place[0] - BOX_WIDTH / 2
+    y = place[1] - BOX_HEIGHT / 2
     return (
         f'<rect x="{x:g}" y="{y:g}" width="{BOX_WIDTH:g}" height="{BOX_HEIGHT:g}" rx="4" '
         f'fill="#eceff1" stroke="#455a64"/>'

@@ -60,6 +60,7 @@ PERMISSIONS: _Permissions = {
 """Everything that a tracker node has; a test compares it with the ROS graph of running nodes."""
 
 _PUBLISHED, _HEARD, _ANSWERED = PERMISSIONS
+"""The three kinds of permission."""
 
 TRAFFIC_PERMISSIONS: _Permissions = {
     _PUBLISHED: (
@@ -91,6 +92,7 @@ TRAFFIC_PERMISSIONS: _Permissions = {
 }
 """The same of the node that follows many vehicles."""
 
+# Files of SROS 2: the policy, and in it the part of a node.
 _POLICY = """<?xml version="1.0" encoding="UTF-8"?>
 <!-- Permissions that each node needs under SROS 2, and no more; docs/ros_interface.md explains its
      use. Give remapped topics by their new names. `make config` writes this file. -->

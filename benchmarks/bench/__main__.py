@@ -24,7 +24,9 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.kernels.interface import compile_all
 
 OUTPUT = Path("results/bench/bench.json")
+"""Results of a run that counts."""
 TOY_FOLDER = Path("results/bench_toy")
+"""Folder of a run that only shows that everything works; it replaces no page."""
 
 
 def main() -> int:
@@ -127,7 +129,8 @@ def _arguments() -> argparse.Namespace:
     )
     args = parser.parse_args()
     if args.toy is not None:
-        args.output, args.docs = args.toy / OUTPUT.name, args.toy
+        args.output = args.toy / OUTPUT.name
+        args.docs = args.toy
     return args
 
 

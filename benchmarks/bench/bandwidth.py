@@ -28,6 +28,7 @@ MEASURED = (
 )
 """Cases of the kernels that are compared: the default, many particles, and all of `mfpf`."""
 _WINDOW = Window(20, 15)
+"""Window of these cases: the default of 41x31 px."""
 _LARGER_THAN_CACHES = 1 << 28
 """Bytes of the memory that is read by turns: several times the last cache of a large server."""
 _STRIDE = 7 << 20
@@ -56,6 +57,7 @@ def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:
 def touched_bytes(particles: int) -> int:
     """Count the bytes of the frame that the windows of a cloud cover together."""
     first = len(drive().frames) // 2
-    frame, centre = drive().frames[first], drive().boxes[first].centre
+    frame = drive().frames[first]
+    centre = drive().boxes[first].centre
     windows = bounds(frame, clouds(centre, particles, 1)[0], _WINDOW)
     return int(covered_region(frame, windows)[0].size)

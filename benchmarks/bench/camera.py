@@ -23,12 +23,15 @@ from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.transport import image_transport
 
 _TIMEOUT = 20.0
+"""Longest wait for a node, s: a cold start that compiles has ended before."""
 _DEPTH = 10
+"""Images kept for a slow node, ROS's usual depth: what is lost then is lost for users too."""
 _HEARD = 1000
+"""Answers that may wait here: none is lost on this side, or it would count against the node."""
 _SETTLE = 2.0
 """Seconds that late answers have."""
-
 _PERIOD_NS = round(1e9 / FRAME_RATE)
+"""Distance of the images' stamps, ns."""
 
 
 class Camera:

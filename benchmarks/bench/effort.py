@@ -43,6 +43,8 @@ class Effort:
     cases: tuple[str, ...] = ("*",)
 
 
+# `FULL` follows the whole drive of 112 frames, three times; `QUICK` shows within minutes whether a
+# change is worth a full run.
 FULL = Effort(
     case_seconds=2.0,
     frames=112,

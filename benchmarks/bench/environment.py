@@ -14,6 +14,7 @@ from typing import Any
 from vehicle_pf_tracker.results.run_folder import versions
 
 _ROS = "ros-jazzy-rclpy"
+"""Package whose version stands for that of ROS."""
 
 
 def describe() -> dict[str, Any]:

@@ -26,9 +26,14 @@ def steps_figure(results: Results) -> Figure:
     wanted = [(STEPS[name], index) for index, name in enumerate(names) if name in STEPS]
     if wanted:
         axes.plot(
-            *zip(*wanted, strict=True), ls="", marker="|", ms=14, mew=2.5, color=STYLES[1].colour,
+            *zip(*wanted, strict=True),
+            ls="",
+            marker="|",
+            ms=14,
+            mew=2.5,
+            color=STYLES[1].colour,
             label="wanted",
-        )  # fmt: skip
+        )
         axes.legend(frameon=False, loc="lower right")
     axes.set(xlabel="times faster than CSRT")
     axes.grid(axis="x", color="0.9", lw=0.6)

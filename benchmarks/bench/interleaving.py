@@ -18,7 +18,9 @@ _CALLS_FOR = 5e-3
 """CPU seconds that a round repeats its work for, at least: both then run from caches of their own,
 instead of the shorter one paying each time for what the longer one left there."""
 _LEAST_ROUNDS = 9
+"""Rounds at least, also of slow work: quartiles of fewer say nothing."""
 _MOST_ROUNDS = 301
+"""Rounds at most: the median of more moves less than the machine does."""
 
 
 def compare(name: str, ours: Work, baseline: Work, seconds: float) -> Case:

@@ -19,7 +19,9 @@ from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.window import Positions, Window
 
 COUNTS = (50, 200, 1000, 5000)
+"""Particles: 200 are the default."""
 WINDOWS = {"41x31": Window(20, 15), "81x61": Window(40, 30)}
+"""Windows by their sizes in px: the default, and one of four times as many pixels."""
 _VARIETY = 8
 """Frames and clouds that the calls take in turns."""
 

@@ -20,6 +20,7 @@ from vehicle_pf_tracker.ros.executables import main as run
 from vehicle_pf_tracker.trackers.base import BaseTracker
 
 METER = struct.Struct("dd")
+"""Content of the file: CPU seconds of all steps, and their number."""
 
 
 def meter_steps(path: Path) -> None:

@@ -16,6 +16,7 @@ from vehicle_pf_tracker.image.colour import Histogram
 from vehicle_pf_tracker.image.window import Positions, Window
 
 _EDGE_SHARE = 0.3
+"""Least strength of an edge that counts, of the strongest: that of `GradientDirections`."""
 
 
 class ThreeHistograms(NamedTuple):
@@ -79,8 +80,10 @@ def _edge_directions(around: np.ndarray) -> Histogram:
 
 
 def _crop(frame: Frame, x: float, y: float, window: Window, margin: int = 0) -> Frame:
-    column, row = round(x - 0.5), round(y - 0.5)
-    half_width, half_height = window.half_width + margin, window.half_height + margin
+    column = round(x - 0.5)
+    row = round(y - 0.5)
+    half_width = window.half_width + margin
+    half_height = window.half_height + margin
     return frame[
         row - half_height : row + half_height + 1, column - half_width : column + half_width + 1
     ]

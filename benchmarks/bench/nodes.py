@@ -30,10 +30,13 @@ from benchmarks.bench.processes import (
 from benchmarks.bench.resident import proportional_mb
 
 RATE = 30.0
+"""Images per second that one node gets, those of an ordinary camera."""
 FLEET_RATE = 15.0
+"""Images per second that each of several nodes gets: eight of them are to fit two processors."""
 _OUTPUTS = MappingProxyType(
     {"mode": DiagnosticArray, "box": PolygonStamped, "velocity": Vector3Stamped}
 )
+"""Outputs that somebody hears in the case `all_heard`, beside the position."""
 
 
 class _Batch(NamedTuple):
@@ -83,9 +86,11 @@ def _alternate(
             before = floor.cpu_seconds
             camera.batch("/bench/floor", count, RATE)
             of_floor = floor.cpu_seconds - before
-            before, steps = node.cpu_seconds, meter.cpu_seconds
+            before = node.cpu_seconds
+            steps = meter.cpu_seconds
             camera.batch("/bench/node", count, RATE)
-            of_node, of_steps = node.cpu_seconds - before, meter.cpu_seconds - steps
+            of_node = node.cpu_seconds - before
+            of_steps = meter.cpu_seconds - steps
             batches.append(_Batch(of_floor / count, of_node / count, of_steps / count))
         memory = MemoryCase(f"memory/node/{variant}", node.resident_mb, floor.resident_mb)
     return batches[1:], memory  # the first one warms up
@@ -133,7 +138,8 @@ def _delivery(
         nodes = [stack.enter_context(NodeProcess(words)) for words in processes]
         camera = stack.enter_context(Camera(topics))
         camera.wait()
-        sent, answered = dict(camera.sent), dict(camera.answered)
+        sent = dict(camera.sent)
+        answered = dict(camera.answered)
         before = sum(node.cpu_seconds for node in nodes)
         camera.stream(effort.fleet_seconds, FLEET_RATE)
         cpu = sum(node.cpu_seconds for node in nodes) - before

@@ -18,7 +18,9 @@ from benchmarks.bench.turns import BLOCK
 from laboratory.figure_files import save
 
 PAGE = "performance.md"
+"""Name of the page in its folder."""
 IMAGES = "images/performance"
+"""Folder of its figures, beside it."""
 TARGETS_TABLE = "targets.md"
 """Table of the speed targets, written beside the results."""
 _HEAD = """# Performance
@@ -210,10 +212,15 @@ def _dearer(results: Results, last: str) -> str:
 
 def _bandwidth(results: Results) -> str:
     rows = [
-        (f"`{case.name.removeprefix('bandwidth/')}`", _digits(case.baseline_ms),
-         _digits(case.ours_ms), f"{100 * case.ratio:.1f} %")
-        for case in results.cases if case.name.startswith("bandwidth/")
-    ]  # fmt: skip
+        (
+            f"`{case.name.removeprefix('bandwidth/')}`",
+            _digits(case.baseline_ms),
+            _digits(case.ours_ms),
+            f"{100 * case.ratio:.1f} %",
+        )
+        for case in results.cases
+        if case.name.startswith("bandwidth/")
+    ]
     return table(("kernel", "reading, ms", "kernel, ms", "share"), rows)
 
 

@@ -23,7 +23,9 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.following.processes import wait_or_kill
 
 _READY = "ready:"
+"""Beginning of the line in which a node says that it is ready."""
 _SIDES = ("x", "y", "width", "height")
+"""Parameters of a target."""
 
 
 class NodeProcess:

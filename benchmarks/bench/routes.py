@@ -20,6 +20,7 @@ from vehicle_pf_tracker.image.textures import Cooccurrence
 from vehicle_pf_tracker.image.window import Positions, Window
 
 _THREE = RgbMarginals(), GradientDirections(), Cooccurrence()
+"""The three features of `mfpf`."""
 
 
 class Route(NamedTuple):

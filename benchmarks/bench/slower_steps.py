@@ -14,7 +14,9 @@ SLOWER = 1.1
 """A step that takes more than this many times as long is reported: less is within what two runs on
 one idle machine differ by."""
 _HEAD = "| step | ms | "
+"""Beginning of the heading of the table of steps on the page."""
 _RATIO = re.compile(r"([\d.e+]+) ± ")
+"""A ratio in that table."""
 
 
 def last_ratios(page: str) -> dict[str, float]:

@@ -16,6 +16,7 @@ from benchmarks.bench.effort import Effort
 from benchmarks.bench.processes import NodeProcess, floor_words, tracker_words
 
 _IMAGE = "/bench/nothing"
+"""A topic without images: only the start is measured."""
 
 
 def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:

@@ -16,6 +16,7 @@ from vehicle_pf_tracker.evaluation.baselines import Baseline
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 BASELINES = ("csrt", "kcf", "mil")
+"""OpenCV's trackers that need no network."""
 
 
 def measure(

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the nodes that are measured are started with."""
+"""Words that the measured nodes are started with."""
 
 import ast
 import importlib
