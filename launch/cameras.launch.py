@@ -8,12 +8,12 @@ from launch.actions import DeclareLaunchArgument, GroupAction, OpaqueFunction
 from launch_ros.parameter_descriptions import Parameter
 from launch_ros.substitutions import FindPackageShare
 
+from vehicle_pf_tracker.ros.camera_file import read_cameras
 from vehicle_pf_tracker.ros.launching import (
     ARGUMENTS,
     declared,
     included_tracker,
     is_true,
-    read_cameras,
     started,
 )
 

@@ -19,8 +19,9 @@ from vehicle_pf_tracker.cli.replay import Request
 from vehicle_pf_tracker.cli.requests import request_of
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml
+from vehicle_pf_tracker.ros.camera_file import read_cameras
 from vehicle_pf_tracker.ros.launching import ARGUMENTS as NODE
-from vehicle_pf_tracker.ros.launching import parameter_file, read_cameras
+from vehicle_pf_tracker.ros.launching import parameter_file
 from vehicle_pf_tracker.ros.replay.launched_replay import ARGUMENTS as REPLAY
 from vehicle_pf_tracker.ros.replay.launched_replay import queue_depth, replay_words
 from vehicle_pf_tracker.ros.replay.publishing import recorded_images
@@ -163,7 +164,7 @@ def test_the_written_files_are_those_that_nodes_read(tmp_path):
 
 LAUNCH = """
 import sys, tempfile
-from vehicle_pf_tracker.ros.launching import read_cameras
+from vehicle_pf_tracker.ros.camera_file import read_cameras
 written = [c.write_parameters() for c in read_cameras(sys.argv[1]) * 2]
 assert len(set(written)) == 2
 print(*written, sep="\\n", flush=True)

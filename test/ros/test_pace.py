@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("rclpy")
 
 from vehicle_pf_tracker.ros.video_source.outage import Outage
-from vehicle_pf_tracker.ros.video_source.pace import Pace
+from vehicle_pf_tracker.ros.video_source.pace import SourcePace
 
 MS = 1_000_000
 
@@ -25,7 +25,7 @@ class Clock:
 
 
 def test_a_file_keeps_its_intervals_and_is_not_early():
-    pace = Pace(Clock(5_000 * MS), threading.Event())
+    pace = SourcePace(Clock(5_000 * MS), threading.Event())
     pace.begin(is_live=False)
     began = time.monotonic()
     stamps = [pace.stamp(ms * MS) for ms in (1000, 1040, 1120)]
@@ -34,7 +34,7 @@ def test_a_file_keeps_its_intervals_and_is_not_early():
 
 
 def test_a_new_pass_begins_at_the_clock_and_never_before_the_last_stamp():
-    pace = Pace(Clock(5_000 * MS, 5_500 * MS, 4_000 * MS), threading.Event())
+    pace = SourcePace(Clock(5_000 * MS, 5_500 * MS, 4_000 * MS), threading.Event())
     stamps = []
     for _ in range(3):
         pace.begin(is_live=False)
@@ -43,7 +43,7 @@ def test_a_new_pass_begins_at_the_clock_and_never_before_the_last_stamp():
 
 
 def test_live_images_have_the_clock_but_each_a_time_of_its_own():
-    pace = Pace(Clock(7, 7, 5, 100), threading.Event())
+    pace = SourcePace(Clock(7, 7, 5, 100), threading.Event())
     pace.begin(is_live=True)
     assert [pace.stamp(0) for _ in range(4)] == [7, 8, 9, 100]
 
@@ -51,7 +51,7 @@ def test_live_images_have_the_clock_but_each_a_time_of_its_own():
 def test_the_end_of_the_process_ends_waits():
     stop = threading.Event()
     stop.set()
-    pace = Pace(Clock(0), stop)
+    pace = SourcePace(Clock(0), stop)
     pace.begin(is_live=False)
     began = time.monotonic()
     pace.stamp(0)

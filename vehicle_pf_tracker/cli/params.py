@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.cli.requests import Names, VerbRequest, positional
+from vehicle_pf_tracker.cli.requests import NameChoices, VerbRequest, positional
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.trackers.registry import NODES, Variant, find_node
@@ -17,7 +17,7 @@ from vehicle_pf_tracker.trackers.registry import NODES, Variant, find_node
 class Request(VerbRequest):
     """Request of `params`."""
 
-    variant: str = positional(choices=Names(NODES), metavar="VARIANT", help=", ".join(NODES))
+    variant: str = positional(choices=NameChoices(NODES), metavar="VARIANT", help=", ".join(NODES))
 
 
 def run(request: Request) -> int:

@@ -55,7 +55,7 @@ def switch(*flags: str, help: str) -> Any:  # noqa: A002 - as in argparse
     return option(*flags, action="store_true", help=help)
 
 
-class Names(tuple[str, ...]):
+class NameChoices(tuple[str, ...]):
     """Choices that a shell completes; of other names the verb says more than argparse."""
 
     __slots__ = ()

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, counting, print_rows, tell_notices
 from vehicle_pf_tracker.cli.many_sources import follow_each
-from vehicle_pf_tracker.cli.requests import MaxDiffOption, Names, TruthOptions, option, switch
+from vehicle_pf_tracker.cli.requests import MaxDiffOption, NameChoices, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.serving import served
 from vehicle_pf_tracker.cli.source_lists import SeveralSources
 from vehicle_pf_tracker.cli.stopping import Stop, cut_short, numbered_part, stopping
@@ -47,7 +47,7 @@ class Request(SeveralSources, MaxDiffOption, TruthOptions):
     """Request of `run`."""
 
     variant: str = option(
-        default="fusion", choices=Names(VARIANTS), metavar="NAME",
+        default="fusion", choices=NameChoices(VARIANTS), metavar="NAME",
         help=f"one of: {', '.join(VARIANTS)}, or a plug-in (default: fusion)",
     )  # fmt: skip
     output: Path | None = option(

@@ -10,7 +10,7 @@ from dataclasses import astuple, dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import UsageError, counting
-from vehicle_pf_tracker.cli.requests import Names, OverwriteOption, option, positional, switch
+from vehicle_pf_tracker.cli.requests import NameChoices, OverwriteOption, option, positional, switch
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.parameters.table import specs
@@ -26,7 +26,7 @@ class Request(OverwriteOption):
     """Request of `synth`."""
 
     scene: str | None = positional(
-        nargs="?", choices=Names(tuple(SCENES)), metavar="SCENE",
+        nargs="?", choices=NameChoices(tuple(SCENES)), metavar="SCENE",
         help=f"one of: {', '.join(SCENES)}",
     )  # fmt: skip
     out: Path | None = positional(

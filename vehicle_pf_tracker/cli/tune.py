@@ -20,7 +20,7 @@ from vehicle_pf_tracker.cli.console import (
 )
 from vehicle_pf_tracker.cli.requests import (
     MaxDiffOption,
-    Names,
+    NameChoices,
     SchedulerOption,
     TopicOption,
     option,
@@ -68,7 +68,7 @@ class Request(StartOptions, TopicOption, MaxDiffOption, SchedulerOption):
         nargs="+", metavar="REC", help="recordings with truth to tune on, or a folder"
     )
     variant: str = option(
-        required=True, choices=Names(VARIANTS), metavar="NAME",
+        required=True, choices=NameChoices(VARIANTS), metavar="NAME",
         help=f"one of: {', '.join(VARIANTS)}",
     )  # fmt: skip
     output: Path = option(

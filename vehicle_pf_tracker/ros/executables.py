@@ -97,7 +97,7 @@ def _run_cameras(words: Sequence[str]) -> int:
 
     if words[:1] != ["--cameras"] or len(words) < 2:
         return answer_usage(f"{_ANY}_tracker", words, _USAGE)
-    from vehicle_pf_tracker.ros.launching import read_cameras  # noqa: PLC0415
+    from vehicle_pf_tracker.ros.camera_file import read_cameras  # noqa: PLC0415
     from vehicle_pf_tracker.ros.process import run_nodes  # noqa: PLC0415
     from vehicle_pf_tracker.trackers.registry import find_node  # noqa: PLC0415
 

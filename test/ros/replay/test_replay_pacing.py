@@ -5,7 +5,7 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from vehicle_pf_tracker.ros.replay.pace import Pace
+from vehicle_pf_tracker.ros.replay.pace import ReplayPace
 from vehicle_pf_tracker.ros.replay.starting_target import nearest_frame
 
 
@@ -20,14 +20,14 @@ class Watch:
 
 @pytest.mark.parametrize(("rate", "due"), [(1.0, 103.0), (2.0, 101.5), (0.5, 106.0)])
 def test_messages_are_due_at_their_distance_over_the_rate(rate, due):
-    pace = Pace(rate, Watch())
+    pace = ReplayPace(rate, Watch())
     assert pace.due(7_000_000_000) == 100.0
     assert pace.due(10_000_000_000) == due
 
 
 def test_without_a_rate_everything_is_due_now():
     watch = Watch()
-    pace = Pace(None, watch)
+    pace = ReplayPace(None, watch)
     assert pace.due(0) == 100.0
     watch.now = 100.5
     assert pace.due(10**12) == 100.5
@@ -36,7 +36,7 @@ def test_without_a_rate_everything_is_due_now():
 
 def test_log_time_runs_with_the_rate_up_to_the_next_message():
     watch = Watch()
-    pace = Pace(2.0, watch)
+    pace = ReplayPace(2.0, watch)
     assert pace.log_time_ns() is None
     pace.due(1_000_000_000)
     pace.due(4_000_000_000)
@@ -48,7 +48,7 @@ def test_log_time_runs_with_the_rate_up_to_the_next_message():
 
 def test_a_loop_takes_the_first_log_time_as_now_again():
     watch = Watch()
-    pace = Pace(1.0, watch)
+    pace = ReplayPace(1.0, watch)
     pace.due(0)
     pace.due(5_000_000_000)
     watch.now = 105.0

@@ -17,7 +17,7 @@ from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell, Plan
-from vehicle_pf_tracker.evaluation.grid.sources import Footage, footage
+from vehicle_pf_tracker.evaluation.grid.sources import SourceFootage, footage
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.systems import BASELINE
@@ -66,7 +66,7 @@ def run_cell(cell: GridCell) -> CellResult:
         return CellResult(reason=f"it ended with an internal error: {error!r}")
 
 
-def _run_variant(cell: GridCell, seen: Footage) -> tuple[list[EstimateRow], dict[str, Any]]:
+def _run_variant(cell: GridCell, seen: SourceFootage) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a variant and its `run.json`."""
     system = cell.system
     tracker = OfflineTracker(
@@ -82,7 +82,7 @@ def _run_variant(cell: GridCell, seen: Footage) -> tuple[list[EstimateRow], dict
     return rows, run_folder.describe_run(tracker.session, tracker.start_frame, [], *source)
 
 
-def _run_baseline(cell: GridCell, seen: Footage) -> tuple[list[EstimateRow], dict[str, Any]]:
+def _run_baseline(cell: GridCell, seen: SourceFootage) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a baseline and its `run.json`."""
     system = cell.system
     name = cell.system.kind.removeprefix(BASELINE)

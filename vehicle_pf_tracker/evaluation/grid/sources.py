@@ -16,7 +16,7 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
-from vehicle_pf_tracker.recordings.footage import Footage as RecordedFootage
+from vehicle_pf_tracker.recordings.footage import Footage
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder, image_files
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.recording_names import is_recording, is_url
@@ -58,12 +58,12 @@ _BLOCK = 1 << 22
 """Bytes of a file that are digested at once, so that a recording of gigabytes needs no memory."""
 
 
-class Footage:
+class SourceFootage:
     """A local recording or folder of images: its truth, and its frames, readable repeatedly.
 
     Attributes
     ----------
-    recording : Recording or Footage of a folder
+    recording : Recording or Footage
         Source of the frames.
     truth : tuple of Truth
         True states of the vehicle, in order.
@@ -86,11 +86,11 @@ class Footage:
         return ((image.stamp_ns, image.frame) for image in self.recording.frames())
 
 
-HELD: dict[Source, Footage] = {}
+HELD: dict[Source, SourceFootage] = {}
 """The footage that was used last, at most one."""
 
 
-def footage(source: Source) -> Footage:
+def footage(source: Source) -> SourceFootage:
     """Return the footage of `source`, decoded once while it is asked for in a row.
 
     Raises
@@ -100,7 +100,7 @@ def footage(source: Source) -> Footage:
     """
     if source not in HELD:
         HELD.clear()  # so that two are never in memory
-        HELD[source] = Footage(source)
+        HELD[source] = SourceFootage(source)
     return HELD[source]
 
 
@@ -145,7 +145,7 @@ def describe(
     return described
 
 
-def _stamps(recording: Recording | RecordedFootage) -> list[int]:
+def _stamps(recording: Recording | Footage) -> list[int]:
     """Return the stamps of the images without decoding them."""
     if isinstance(recording, FrameFolder):
         return recording.stamps
@@ -156,7 +156,7 @@ def _stamps(recording: Recording | RecordedFootage) -> list[int]:
     ]
 
 
-def _size(recording: Recording | RecordedFootage, location: str) -> tuple[int, int]:
+def _size(recording: Recording | Footage, location: str) -> tuple[int, int]:
     frames = (image.frame for image in recording.frames())
     first = next((frame for frame in frames if frame is not None), None)
     if first is None:
@@ -164,7 +164,7 @@ def _size(recording: Recording | RecordedFootage, location: str) -> tuple[int, i
     return frame_size(first)
 
 
-def _digest(recording: Recording | RecordedFootage, path: Path) -> str:
+def _digest(recording: Recording | Footage, path: Path) -> str:
     """Digest the names and the bytes of the files of a recording, and the truth of a folder."""
     digest = hashlib.sha256()
     is_folder = isinstance(recording, FrameFolder)

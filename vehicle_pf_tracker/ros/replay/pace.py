@@ -14,7 +14,7 @@ from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 
 
-class Pace:
+class ReplayPace:
     """Maps log times to the monotonic clock.
 
     Parameters
@@ -64,13 +64,13 @@ class PlaybackClock:
     ----------
     node : Node
         The player's own node.
-    pace : Pace
+    pace : ReplayPace
         Tells the log time.
     frequency : float
         Messages per second.
     """
 
-    def __init__(self, node: Node, pace: Pace, frequency: float) -> None:
+    def __init__(self, node: Node, pace: ReplayPace, frequency: float) -> None:
         self._pace = pace
         self._publisher = node.create_publisher(Clock, "/clock", 10)
         steady = RosClock(clock_type=ClockType.STEADY_TIME)

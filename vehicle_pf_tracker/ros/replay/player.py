@@ -14,7 +14,7 @@ from rclpy.node import Node
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Spinner
-from vehicle_pf_tracker.ros.replay.pace import Pace, PlaybackClock
+from vehicle_pf_tracker.ros.replay.pace import PlaybackClock, ReplayPace
 from vehicle_pf_tracker.ros.replay.publishing import make_publishers
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, ReplayReport
 from vehicle_pf_tracker.ros.replay.starting_target import Targets, played, starting_target
@@ -65,7 +65,7 @@ class Player:
         self._frames = 0  # in all passes
         self._frame = 0  # in this pass
         self._skipped: list[str] = []
-        self._pace = Pace(options.rate or (None if options.lockstep else 1.0))
+        self._pace = ReplayPace(options.rate or (None if options.lockstep else 1.0))
         self._clock = PlaybackClock(node, self._pace, options.clock) if options.clock else None
 
     def run(self) -> ReplayReport:

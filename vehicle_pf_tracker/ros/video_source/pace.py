@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Pace of a source: when each of its images is due, and the stamp that it gets."""
+"""SourcePace of a source: when each of its images is due, and the stamp that it gets."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable
 
 
-class Pace:
+class SourcePace:
     """Stamps for the images of one pass through a source.
 
     Images of a file keep the intervals that it states: the first is stamped by the clock, and the

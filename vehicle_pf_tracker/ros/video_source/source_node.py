@@ -25,7 +25,7 @@ from vehicle_pf_tracker.recordings.video import Camera, open_footage
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
 from vehicle_pf_tracker.ros.video_source.outage import Outage
-from vehicle_pf_tracker.ros.video_source.pace import Pace
+from vehicle_pf_tracker.ros.video_source.pace import SourcePace
 
 NAME = "video_source"
 _DEPTH = 5
@@ -101,7 +101,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         self._is_live = False
         self._goes_on = False
         self._stop = threading.Event()
-        self._pace = Pace(self._now, self._stop)
+        self._pace = SourcePace(self._now, self._stop)
         self._outage = Outage(self._stop)
         self._shown = 0
         self._told: set[str] = set()
