@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Mutation testing of a room: what its own tests do not notice when the code is changed.
+"""Mutation testing of a room: changes of its code that its own tests do not notice.
 
 `python -m tools.mutants ROOM...` copies the repository into a scratch folder, lets mutmut change
 the room's modules one place at a time, and runs on each change those tests of that room that reach

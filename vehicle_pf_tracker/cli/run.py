@@ -108,7 +108,7 @@ def _track(
         for name, tracker in trackers.items()
         for sentence in tracker.notices
     ]
-    pictures.write_sheet()
+    pictures.write_sheet()  # before the notices, which say whether it failed
     side = pictures.side
     notices = [*source.notices, *of_trackers, *side.notices, *ended]
     tell_notices(notices)
@@ -165,7 +165,7 @@ def _follow(
 
 
 def _recording_of(request: Request) -> str:
-    """Return what sentences call the recording of the run."""
+    """Name the recording of the run, for sentences."""
     return f"the recording {request.recording}"
 
 

@@ -263,7 +263,7 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class ServeAddress:
-    """Where a page is served.
+    """Address at which a page is served.
 
     Attributes
     ----------

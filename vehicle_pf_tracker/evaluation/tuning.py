@@ -57,7 +57,7 @@ Space = Mapping[str, BaseDistribution]
 
 
 def search_space(variant: Variant, values: Mapping[str, Value], words: Sequence[str]) -> Space:
-    """Return what is searched.
+    """Return the space of a search.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ memory, and its steps timed beside each other."""
 
 
 def fingerprint() -> dict[str, str]:
-    """Return what decides the numbers on this machine: versions, and a digest of our code."""
+    """Return versions and a digest of our code, which decide the numbers on this machine."""
     digest = hashlib.sha256()
     for path in sorted(_PACKAGE.rglob("*.py")):
         digest.update(path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + path.read_bytes())

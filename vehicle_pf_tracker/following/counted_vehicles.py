@@ -85,7 +85,7 @@ class CountedVehicles:
         if isinstance(detector, PacedDetector):
             detector.pace(time.perf_counter() - began, self.session.tracker.frame_period)
         self.has_begun_anew = self.session.restarts != self._restarts
-        if self.has_begun_anew:
+        if self.has_begun_anew:  # first: nothing of discarded vehicles is counted with this image
             self.begin_anew()
         self.estimates = self.classes.named(self.session.estimates)
         self.trails.add(self.estimates)
@@ -157,7 +157,7 @@ class _PacedMaker:
 def session_and_counter(
     configuration: Configuration, run: Run = call, progress: Progress = silent
 ) -> tuple[TrafficSession, Counter]:
-    """Make what parameters of `TRAFFIC` ask for.
+    """Make the session and the counter that parameters of `TRAFFIC` ask for.
 
     Parameters
     ----------

@@ -26,13 +26,13 @@ class RecentCrossings:
         self._of: deque[Crossing] = deque()
 
     def add(self, crossings: Iterable[Crossing], stamp_ns: int) -> None:
-        """Take the plausible ones of the next image."""
+        """Take the plausible crossings of the next image."""
         self._of.extend(one for one in crossings if not one.doubt)
         while self._of and not 0 <= stamp_ns - self._of[0].stamp_ns < _MINUTE_NS:
             self._of.popleft()
 
     def at(self, place: str, direction: str) -> list[Crossing]:
-        """Return those at a place in a direction."""
+        """Return the recent crossings at a place in a direction."""
         return [one for one in self._of if (one.place, one.direction) == (place, direction)]
 
 

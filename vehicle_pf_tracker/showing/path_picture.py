@@ -38,7 +38,7 @@ _LANE_OPACITY = 0.85
 
 
 class Lanes:
-    """Adds up the paths of all vehicles by their heading: how many passed a pixel, and whither.
+    """Sums of all vehicles' paths: how many passed a pixel, and in which direction.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Lanes:
         part[mask > 0] += np.array([*heading, 1.0], np.float32)
 
     def draw(self, picture: Frame) -> None:
-        """Colour the picture by heading, the more the more vehicles passed."""
+        """Colour the picture by heading, stronger where more vehicles passed."""
         count = self._sums[:, :, 2]
         angle = np.arctan2(self._sums[:, :, 1], self._sums[:, :, 0])
         hue = ((angle / (2 * np.pi) % 1.0) * 180).astype(np.uint8)

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Side products of a run: what can fail without costing the estimates."""
+"""Side products of a run, which may fail without costing the estimates."""
 
 from __future__ import annotations
 

@@ -122,7 +122,7 @@ class ImagePath:
         """Take an image, with its detections where it has some; answer it with one `~/mode`."""
         header = message.header
         if self.incidents is not None:
-            self.incidents.keep(message)
+            self.incidents.keep(message)  # first: an image that fails belongs to the last seconds
         try:
             answer = self._feed.take(read_image(message), header, detections)
         except InputError as error:
