@@ -13,7 +13,8 @@ from vehicle_pf_tracker.counting.counter import Counter
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan, CountingZone
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.showing import drawing
-from vehicle_pf_tracker.showing.drawing import draw_box, draw_pixel_grid, write_labels
+from vehicle_pf_tracker.showing.drawing import draw_box, write_labels
+from vehicle_pf_tracker.showing.grids import draw_pixel_grid
 from vehicle_pf_tracker.showing.traffic_drawing import (
     Trails,
     annotated,

@@ -34,7 +34,7 @@ from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import ImageSource, frame_at
 from vehicle_pf_tracker.results.output_files import write_picture, write_text
 from vehicle_pf_tracker.road.plane import Pair
-from vehicle_pf_tracker.showing.drawing import draw_pixel_grid
+from vehicle_pf_tracker.showing.grids import draw_pixel_grid
 from vehicle_pf_tracker.showing.page_server import Content, PageHandler, PageServer
 
 Document: TypeAlias = dict[str, Any]

@@ -34,7 +34,7 @@ from vehicle_pf_tracker.road.homography import LEAST_PAIRS
 from vehicle_pf_tracker.road.lens import LENS_MODELS
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane, residuals
 from vehicle_pf_tracker.road.suspects import disagreement
-from vehicle_pf_tracker.showing.drawing import draw_road_grid
+from vehicle_pf_tracker.showing.grids import draw_road_grid
 
 _TITLE = "Road. Written by `vehicle-pf-tracker road calibrate`."
 """First line of the file."""
