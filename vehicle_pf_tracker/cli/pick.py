@@ -23,7 +23,7 @@ import yaml
 
 from vehicle_pf_tracker.cli.console import UsageError, counting
 from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, option, positive, switch
-from vehicle_pf_tracker.cli.tracking_options import TARGET_FORM, list_in, target_of
+from vehicle_pf_tracker.cli.target_options import TARGET_FORM, list_in, target_of
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.image.compressed_image import jpeg

@@ -22,7 +22,7 @@ from vehicle_pf_tracker.cli.requests import (
     positive_number,
     switch,
 )
-from vehicle_pf_tracker.cli.tracking_options import parse_box
+from vehicle_pf_tracker.cli.target_options import parse_box
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed

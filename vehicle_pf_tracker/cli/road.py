@@ -21,7 +21,7 @@ from vehicle_pf_tracker.cli.requests import (
     positional,
     positive,
 )
-from vehicle_pf_tracker.cli.tracking_options import read_list
+from vehicle_pf_tracker.cli.target_options import read_list
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.parameters.configuration import SessionParameters

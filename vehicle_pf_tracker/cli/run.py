@@ -15,8 +15,10 @@ from vehicle_pf_tracker.cli.many_sources import follow_each
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, NameChoices, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.serving import served
 from vehicle_pf_tracker.cli.source_lists import SeveralSources
-from vehicle_pf_tracker.cli.stopping import Stop, cut_short, numbered_part, stopping
-from vehicle_pf_tracker.cli.tracking_options import by_name, chosen
+from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
+from vehicle_pf_tracker.cli.stopping import Stop, stopping
+from vehicle_pf_tracker.cli.target_options import by_name
+from vehicle_pf_tracker.cli.tracking_options import chosen
 from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.association import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.requests import RosOptions, positional
-from vehicle_pf_tracker.cli.tracking_options import parse_box
+from vehicle_pf_tracker.cli.target_options import parse_box
 from vehicle_pf_tracker.core.box import Box
 
 

@@ -1,27 +1,30 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Options of the verbs that track: parameters, targets, and what they are to show."""
+"""Options of the verbs that track: where they start from, and what they are to show."""
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
 
 from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, VerbRequest, option
-from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.cli.source_part import Moment
+from vehicle_pf_tracker.cli.target_options import (
+    TARGET_FORM,
+    TargetOption,
+    parse_target,
+    read_list,
+    target_of,
+)
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
-from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
+from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.parameters.table import Value, parse_assignments, specs, unknown_name
 from vehicle_pf_tracker.showing.page_server import LOCAL
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
-
-EntryT = TypeVar("EntryT")
 
 # A node's parameter file may be given to `run`, which passes over what is ROS's alone.
 _OF_ROS = ("use_sim_time", "start_type_description_service")
@@ -39,17 +42,6 @@ class StartOptions(VerbRequest):
         "--set", action="append", default=[], metavar="NAME=VALUE",
         help="set a parameter, over the file; repeatable",
     )  # fmt: skip
-
-
-def parse_box(text: str) -> Box:
-    """Read ``x,y,w,h`` of a command line."""
-    try:
-        x, y, width, height = map(float, text.split(","))
-    except ValueError:
-        raise InputError(f"{text!r} is not x,y,w,h in px") from None
-    if not all(map(math.isfinite, (x, y, width, height))):
-        raise InputError(f"{text!r} has a number that is not finite")
-    return Box(x, y, width, height)
 
 
 def chosen(variant: Variant, request: TrackingRequest) -> Configuration:
@@ -109,156 +101,6 @@ def with_file(configuration: Configuration, variant: Variant, path: Path) -> Con
 def _variants_with(names: Iterable[str], kind: type[Configuration]) -> list[str]:
     """Return the variants that have all these parameters."""
     return [one.name for one in VARIANTS.values() if set(names) <= set(kind.of(one).specs())]
-
-
-TARGET_FORM = "{name: van, frame: 1, box: [310, 202, 40, 30]}"
-"""Form of a target in a file, for errors."""
-# A target on the command line, as `van@1:310,202,40,30`: name and frame may be left out. Nine
-# digits of a frame are years of video, and fit every integer.
-_WORDS = re.compile(r"(?:(?P<name>[A-Za-z0-9_-]*)(?:@(?P<frame>[0-9]{1,9}))?:)?(?P<box>[^:@]*)")
-
-
-@dataclass(frozen=True, slots=True)
-class TargetOption:
-    """A target as it was given.
-
-    Attributes
-    ----------
-    box : Box
-        Box of the vehicle in px.
-    name : str
-        Name of the vehicle; empty for the next free number.
-    frame : int or None
-        Number of the frame, from 1; None is the first of the part that is tracked.
-    """
-
-    box: Box
-    name: str = ""
-    frame: int | None = None
-
-
-def parse_target(text: str) -> TargetOption:
-    """Read ``[NAME][@FRAME:]x,y,w,h`` of a command line."""
-    found = _WORDS.fullmatch(text)
-    if found is None:
-        raise InputError(
-            f"{text!r} is not [NAME][@FRAME:]x,y,w,h, as 310,202,40,30 or van@130:310,202,40,30"
-        )
-    frame = int(found["frame"]) if found["frame"] else None
-    if frame == 0:
-        raise InputError(f"{text!r} has frame 0; frames are counted from 1")
-    return TargetOption(parse_box(found["box"]), found["name"] or "", frame)
-
-
-def target_of(entry: Mapping[str, Any]) -> TargetOption:
-    """Read a target of a file, as `TARGET_FORM` shows one."""
-    numbers = entry["box"]
-    name = str(entry.get("name", ""))
-    if not isinstance(numbers, list):
-        raise TypeError(numbers)
-    return parse_target(f"{name}@{entry.get('frame', 1)}:{','.join(map(str, numbers))}")
-
-
-def read_list(path: Path, key: str, example: str, read: Callable[[Any], EntryT]) -> list[EntryT]:
-    """Read the list that a YAML file has under `key`.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or an entry is not as `list_in` expects it.
-    """
-    return list_in(read_yaml_file(path, key), str(path), key, example, read)
-
-
-def list_in(
-    document: Any, where: str, key: str, example: str, read: Callable[[Any], EntryT]
-) -> list[EntryT]:
-    """Read the list that `document` has under `key`, with `example` for a user to follow.
-
-    Raises
-    ------
-    InputError
-        If there is none, or `read` does not take an entry.
-    """
-    try:
-        return [read(entry) for entry in document[key]]
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from error
-    except (ValueError, KeyError, TypeError, AttributeError):
-        raise InputError(f"{where} holds no {key}; it must read {key}: [{example}]") from None
-
-
-def by_name(targets: Iterable[TargetOption], first: int) -> dict[str, dict[int, Box]]:
-    """Group targets: for each name the boxes by frame.
-
-    Targets without a name are named 1, 2, ...; a name that comes again is given to the tracker anew
-    at that frame.
-
-    Parameters
-    ----------
-    targets : iterable of TargetOption
-        The targets in the order given.
-    first : int
-        Number of the first frame tracked, for targets without one.
-
-    Raises
-    ------
-    InputError
-        If a box is smaller than a pixel, a name has two in one frame, or a frame lies before the
-        first.
-    """
-    groups: dict[str, dict[int, Box]] = {}
-    for target in targets:
-        name = target.name or next(n for n in map(str, range(1, 10**6)) if n not in groups)
-        frame = first if target.frame is None else target.frame
-        if target.box.width < 1 or target.box.height < 1:
-            raise InputError(f"the target {target.box} is smaller than one pixel")
-        boxes = groups.setdefault(name, {})
-        if frame in boxes:
-            raise InputError(f"the target {name} has two boxes in frame {frame}")
-        if frame < first:
-            raise InputError(f"the target {name} is in frame {frame}; tracking begins at {first}")
-        boxes[frame] = target.box
-    return groups
-
-
-@dataclass(frozen=True, slots=True)
-class Moment:
-    """A point in a source.
-
-    Attributes
-    ----------
-    value : float
-        Number of a frame, from 1, or time after the first one in s, by the stamps.
-    is_time : bool
-        True for a time.
-    """
-
-    value: float
-    is_time: bool
-
-    @classmethod
-    def parse(cls, text: str) -> Moment:
-        """Read ``130`` as a frame, and ``4.3s`` as a time.
-
-        Raises
-        ------
-        InputError
-            If it is neither.
-        """
-        found = re.fullmatch(r"0*([1-9]\d{0,8})|(\d{1,9}\.?\d*|\.\d+)s", text, re.ASCII)
-        if found is None:
-            raise InputError(
-                f"{text!r} is neither a frame (an integer >= 1) nor a time in seconds, as 4.3s"
-            )
-        return cls(float(found[1] or found[2]), found[1] is None)
-
-    def after(self, number: int, elapsed: float) -> float:
-        """Return by how much the moment is later than frame `number`, `elapsed` s from the first.
-
-        The result is negative where it is earlier, and its unit is the moment's own.
-        """
-        return round(self.value - (elapsed if self.is_time else number), 9)  # a stamp's rounding
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,8 +17,10 @@ from vehicle_pf_tracker.cli.many_sources import follow_each
 from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.serving import served
 from vehicle_pf_tracker.cli.source_lists import SeveralSources
-from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, cut_short, numbered_part, stopping
-from vehicle_pf_tracker.cli.tracking_options import ServeAddress, by_name, chosen
+from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
+from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
+from vehicle_pf_tracker.cli.target_options import by_name
+from vehicle_pf_tracker.cli.tracking_options import ServeAddress, chosen
 from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
