@@ -58,6 +58,7 @@ class CameraInputs:
         # only while the camera turns.
         self.poses = PoseTree()
         self._asked: tuple[bool, bool, bool] | None = None
+        self._rectified = False
         self._subscriptions: list[Subscription] = []
 
     def open(self, road: RoadParameters) -> None:
@@ -86,7 +87,8 @@ class CameraInputs:
         """Destroy the subscriptions."""
         while self._subscriptions:
             self._node.destroy_subscription(self._subscriptions.pop())
-        self._asked = self.lens = None
+        self._asked = None
+        self.lens = None
 
     def _on_info(self, message: CameraInfo) -> None:
         try:

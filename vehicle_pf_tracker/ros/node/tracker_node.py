@@ -56,6 +56,7 @@ class TrackerNode(ImageNode):
         super().__init__(f"{variant.name}_tracker", **options)
         self._variant = variant
         self._cameras = CameraInputs(self)
+        self._has_logged_ready = False
         self.begin(Configuration.of(variant))
 
     def prepare(self) -> None:

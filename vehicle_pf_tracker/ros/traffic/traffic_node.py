@@ -62,6 +62,7 @@ class TrafficNode(ImageNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(TRAFFIC.executable, **options)
+        self._queue: DetectionQueue | None = None
         self.begin(Configuration.of(TRAFFIC))
 
     def prepare(self) -> None:
@@ -80,7 +81,7 @@ class TrafficNode(ImageNode):
         self.outputs = self._open_outputs(configuration, self.feed.vehicles, journal)
         self.path = ImagePath(self, configuration, self.feed, self.outputs, journal)
         self.accept = self.path.take
-        self._queue: DetectionQueue | None = None
+        self._queue = None
         if configuration.tracker.detector.kind == TOPIC:
             self._queue = DetectionQueue(
                 waiting,
