@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.counting.counter import Counter
-from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, Region
+from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan, Region
 from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.showing import drawing
 from vehicle_pf_tracker.showing.heat_picture import HeatPicture
@@ -32,14 +32,15 @@ NOWHERE = Counter(CountingPlan())
 
 def estimate(identity, mode, box=None, label=""):
     hider = BORDER if mode == "B" else None
+    box = box or Box(0, 0, 9, 9)
     return TrackEstimate(
-        identity, box or Box(0, 0, 9, 9), (0, 0), MODES[mode], 0.9, label, 0.5, 1.0, hider
+        identity, box, (0, 0), MODES[mode], 0.9, label, 0.5, 1.0, hider, serial=identity
     )
 
 
 def summed(*lives):
     """Add the lives of vehicles 1, 2, ...: a letter per frame, - where it is not followed."""
-    summary = TrafficSummary()
+    summary = TrafficSummary(NOWHERE)
     for modes in zip(*lives, strict=True):
         found = [estimate(k, mode) for k, mode in enumerate(modes, start=1) if mode != "-"]
         summary.add(found)
@@ -63,21 +64,21 @@ def test_leaving_is_no_occlusion_and_ends_none():
 def test_a_vehicle_that_is_never_confirmed_is_none():
     summary = summed("ttttt-----")
     assert summary.vehicles == {}
-    assert summary.to_json(NOWHERE)["vehicles"] == 0
+    assert summary.to_json()["vehicles"] == 0
 
 
 def test_a_late_class_counts():
-    summary = TrafficSummary()
+    summary = TrafficSummary(NOWHERE)
     summary.add([estimate(1, "T")])
     summary.add([estimate(1, "T", label="bus")])
-    assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences(NOWHERE)
+    assert "1 vehicle in 2 frames, at most 1 at once (1 bus)" in summary.sentences()
 
 
 def test_a_lorry_that_is_a_car_from_far_away_is_a_lorry():
-    summary = TrafficSummary()
+    summary = TrafficSummary(NOWHERE)
     for label in ("car", "truck", "", "truck", "truck", "car"):
         summary.add([estimate(1, "T", label=label)])
-    assert "(1 truck)" in summary.sentences(NOWHERE)[0]
+    assert "(1 truck)" in summary.sentences()[0]
 
 
 def drive(picture, count=30, width=320):
@@ -183,9 +184,49 @@ def test_driving_out_of_a_region_of_interest_is_leaving():
     region = Region(((0.0, 0.0), (200.0, 0.0), (200.0, 100.0), (0.0, 100.0)), is_inside=True)
     ended = []
     for last_seen in (190.0, 100.0):  # its front reaches over the edge; in the middle
-        summary = TrafficSummary([region])
+        summary = TrafficSummary(Counter(CountingPlan(regions=(region,))))
         for x in np.arange(0.0, 240.0, 10.0):
             one = estimate(1, "T" if x <= last_seen else "O", Box(x - 15, 40, 30, 20))
             summary.add([replace(one, velocity=(10.0, 0.0))])
         ended.append(summary.ended_hidden)
     assert ended == [0, 1]
+
+
+def test_where_vehicles_went_is_told_apart():
+    summary = TrafficSummary(NOWHERE)
+    for size, mode in ((40, "TTTT"), (20, "TTTT"), (12, "TTTT"), (12, "TBOO")):
+        crossing = estimate(1, mode[0])
+        leaves = estimate(2, mode[1], Box(300, 60, size, 9))
+        recedes = estimate(3, mode[2], Box(100, 60, size, 9))  # to less than half of its size
+        hidden = estimate(4, mode[3], Box(20, 60, 40, 9))
+        summary.add([crossing, leaves, recedes, hidden])
+    assert summary.to_json()["ended"] == {
+        "in_view": 1, "border": 1, "roi": 0, "far": 1, "hidden": 1,
+    }  # fmt: skip
+    assert summary.ended_hidden == 1
+    _, occlusions, ends, far = summary.sentences()
+    assert "1 vehicle not seen again" in occlusions
+    assert ends == "1 left over the border, 1 too far away; 1 in view at the end"
+    assert far.startswith("vehicles were followed down to 12 px")
+
+
+def test_two_wheelers_have_counts_of_their_own():
+    line = CountingLine("line", (0.0, 50.0), (320.0, 50.0))
+    counter = Counter(CountingPlan(lines=(line,)), apart={"bicycle"})
+    summary = TrafficSummary(counter)
+    for index in range(20):
+        found = [
+            estimate(k, "T", Box(40 * k, 6 * index, 20, 10), label)
+            for k, label in enumerate(("car", "bicycle", ""), start=1)
+        ]
+        counter.update(found, index * 40_000_000)
+        summary.add(found)
+    assert counter.count("line", "in") == 2
+    first, *_, last = summary.sentences()
+    assert first == "2 vehicles in 20 frames, at most 2 at once (1 car) besides 1 bicycle"
+    assert last == "line line: 2 in (1 car) besides 1 bicycle, 0 out"
+    document = summary.to_json()
+    assert (document["vehicles"], document["counted_apart"]) == (2, {"bicycle": 1})
+    assert {"place": "line", "direction": "in", "class": "bicycle", "count": 1} in document[
+        "counts"
+    ]

@@ -14,6 +14,7 @@ from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.many_sources import follow_each
+from vehicle_pf_tracker.cli.network_advice import network_advice
 from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.serving import served
 from vehicle_pf_tracker.cli.source_lists import SeveralSources
@@ -102,7 +103,10 @@ def run_one(request: Request) -> int:
         tell_notices(notices)
         document = _document(request, configuration, tracking, source.image_topic, notices)
         write_json(folder / RUN, document)
-    for sentence in tracking.sentences(document["detector"]):
+    sentences = tracking.sentences(document["detector"])
+    if document["detector"] == MOTION:
+        sentences += network_advice(request.command, folder, tracking.session.found)
+    for sentence in sentences:
         print(sentence)
     print(f"results are in {folder}{f'; {PATHS} shows all paths' if has_paths else ''}")
     if pictures.has_video:
@@ -167,7 +171,7 @@ def _document(
         "detector": str(request.detections or kind),
         "images_with_detections": tracking.session.found.images,
         "images_with_ambiguous_blobs": tracking.session.found.ambiguous,
-        "summary": tracking.summary.to_json(tracking.counter),
+        "summary": tracking.summary.to_json(),
     }
     document = describe(request.command, request.source, topic, notices, **facts)
     if kind == MODEL:

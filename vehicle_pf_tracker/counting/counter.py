@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter as Tally
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 
 from vehicle_pf_tracker.counting.crossing import Crossing
@@ -94,6 +94,8 @@ class Counter:
         Lines and zones.
     plane : RoadPlane or None
         Road, for speeds in km/h.
+    apart : set of str
+        Classes that have totals of their own, and are in no total of vehicles.
 
     Attributes
     ----------
@@ -103,8 +105,14 @@ class Counter:
         The road, for vehicles that come from now on.
     """
 
-    def __init__(self, plan: CountingPlan, plane: RoadPlane | None = None) -> None:
+    def __init__(
+        self,
+        plan: CountingPlan,
+        plane: RoadPlane | None = None,
+        apart: Set[str] = frozenset(),
+    ) -> None:
         self.plan = plan
+        self._apart = apart
         self._lines = [LineEdge(line) for line in plan.lines]
         self._zones = [ZoneEdge(zone) for zone in plan.zones]
         self.totals: Tally[tuple[str, str, str]] = Tally()
@@ -126,11 +134,19 @@ class Counter:
         """Confirmed vehicles in each zone in the last image, by its name."""
         return self._occupancy
 
+    def is_vehicle(self, label: str) -> bool:
+        """Tell whether this class, "" where it is unknown, belongs to the totals of vehicles."""
+        return label not in self._apart
+
+    def by_class(self, place: str, direction: str) -> Tally[str]:
+        """Return the crossings at a place in a direction by class, those apart included."""
+        here = place, direction
+        return Tally({label: n for (*at, label), n in self.totals.items() if tuple(at) == here})
+
     def count(self, place: str, direction: str) -> int:
-        """Return the crossings of all classes at a place in a direction."""
-        return sum(
-            number for (at, to, _), number in self.totals.items() if (at, to) == (place, direction)
-        )
+        """Return the crossings of vehicles at a place in a direction."""
+        classes = self.by_class(place, direction).items()
+        return sum(number for label, number in classes if self.is_vehicle(label))
 
     def speed_kmh(self, serial: int) -> float | None:
         """Return the speed of the vehicle with this track; None where it is not known."""
@@ -197,7 +213,8 @@ class Counter:
         if not vehicle.is_confirmed:
             return []
         for zone in vehicle.zones:
-            self._occupancy[zone.zone.name] += zone.is_inside
+            is_one_more = zone.is_inside and self.is_vehicle(estimate.label)
+            self._occupancy[zone.zone.name] += is_one_more
         counted = vehicle.waiting
         vehicle.waiting = []
         vehicle.counted.update((one.place, one.direction) for one in counted)

@@ -30,9 +30,15 @@ class DetectorParameters:
         read_only=True,
     )  # fmt: skip
     classes: str = parameter(
-        "car,motorcycle,bus,truck",
-        "Classes of the network that are vehicles, by name or number, apart by commas; empty takes "
+        "car,bus,truck,motorcycle,bicycle",
+        "Classes of the network that are followed, by name or number, apart by commas; empty takes "
         "all.",
+        read_only=True,
+    )
+    apart: str = parameter(
+        "motorcycle,bicycle",
+        "Classes that have counts of their own and are in no total of vehicles, by name, apart by "
+        "commas; empty: all are vehicles.",
         read_only=True,
     )
     names: str = parameter(
@@ -67,6 +73,11 @@ class DetectorParameters:
         "depends on the machine.",
         bounds=(0, 1000), unit="images",
     )  # fmt: skip
+
+    @property
+    def classes_apart(self) -> frozenset[str]:
+        """Names of the classes that are in no total of vehicles."""
+        return frozenset(word.strip() for word in self.apart.split(",")) - {""}
 
     def validate(self) -> None:
         """Refuse a network without its file."""

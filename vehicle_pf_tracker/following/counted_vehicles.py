@@ -29,7 +29,7 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMod
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
 
-_LEARNING = "learning what stands"
+_LEARNING = "learning the background"
 """Said in motion's first second, in which there are no vehicles yet, however many drive."""
 
 
@@ -102,7 +102,7 @@ class CountedVehicles:
 
     def drawn(self, frame: Frame, head: str = "") -> Frame:
         """Return a copy of the last image with vehicles, counts, `head` and their number."""
-        modes = Tally(one.mode for one in self.estimates)
+        modes = Tally(one.mode for one in self.estimates if self.counter.is_vehicle(one.label))
         hidden = f", {modes[TrackMode.OCCLUDED]} hidden" if modes[TrackMode.OCCLUDED] else ""
         count = f"{sum(modes[mode] for mode in CONFIRMED)} vehicles{hidden}"
         words = f"{head}{_LEARNING if self.is_learning else count}"
@@ -116,7 +116,9 @@ class CountedVehicles:
         """Return the number of vehicles, and what was counted, by name."""
         counter = self.counter
         return {
-            "vehicles": sum(estimate.mode in CONFIRMED for estimate in self.estimates),
+            "vehicles": sum(
+                one.mode in CONFIRMED and counter.is_vehicle(one.label) for one in self.estimates
+            ),
             **{f"{zone}: inside": there for zone, there in counter.occupancy.items()},
             **{
                 f"{place}: {to}": counter.count(place, to)
@@ -186,4 +188,4 @@ def session_and_counter(
         reset_on_time_jump=configuration.session.reset_on_time_jump,
         regions=plan.regions,
     )
-    return session, Counter(plan, plane)
+    return session, Counter(plan, plane, parameters.detector.classes_apart)

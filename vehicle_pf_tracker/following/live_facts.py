@@ -64,7 +64,7 @@ def traffic_facts(
             line.name,
             to,
             counter.count(line.name, to),
-            len(last := recent.at(line.name, to)),
+            len(last := [one for one in recent.at(line.name, to) if counter.is_vehicle(one.label)]),
             _mean([one.speed_kmh for one in last]),
         )
         for line in counter.plan.lines
@@ -80,10 +80,11 @@ def traffic_facts(
     ]
     if zones:
         tables.append(_table("zones", ("zone", "inside", "entered", "left"), zones))
-    words = [when, f"{len(confirmed)} vehicles in view"]
+    vehicles = sum(counter.is_vehicle(one.label) for one in confirmed)
+    words = [when, f"{vehicles} vehicles in view"]
     words += [f"{hidden} hidden"] if hidden else []
     words += [f"mean {fmean(speeds):.0f} km/h"] if speeds else []
-    return {"vehicles": len(confirmed), "summary": ", ".join(filter(None, words)), "tables": tables}
+    return {"vehicles": vehicles, "summary": ", ".join(filter(None, words)), "tables": tables}
 
 
 def target_facts(rows: Mapping[str, EstimateRow], elapsed_ns: int) -> dict[str, object]:

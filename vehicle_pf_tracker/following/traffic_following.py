@@ -54,7 +54,7 @@ class TrafficRun(CountedVehicles):
         self, session: TrafficSession, counter: Counter, detections: DetectionFile | None = None
     ) -> None:
         super().__init__(session, counter)
-        self.summary = TrafficSummary(counter.plan.regions)
+        self.summary = TrafficSummary(counter)
         self._notices = list(detections.notices) if detections is not None else []
         self._more_notices = 0
         self._last_events: list[str] = []
@@ -142,7 +142,7 @@ class TrafficRun(CountedVehicles):
             Kind of the detector, or the file of detections.
         """
         if self.summary.vehicles:
-            return self.summary.sentences(self.counter)
+            return self.summary.sentences()
         frames = self.summary.frames
         found = self.session.found
         inside = found.boxes - found.outside

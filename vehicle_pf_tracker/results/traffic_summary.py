@@ -7,43 +7,19 @@ from __future__ import annotations
 
 import math
 from collections import Counter as Tally
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from statistics import median
 from typing import Any
 
 from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
 from vehicle_pf_tracker.counting.zone_watch import ZONE_ENTRY, ZONE_EXIT
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.parameters.counting_plan import Region
-from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate, TrackMode
+from vehicle_pf_tracker.results.vehicle_log import VehicleLog, Whereabouts
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
-
-@dataclass(slots=True)
-class VehicleLog:
-    """Life of one vehicle in a run.
-
-    Attributes
-    ----------
-    labels : Counter of str
-        Frames in which it was visible as each class.
-    survived : int
-        Occlusions after which it was visible under the same number.
-    is_hidden : bool
-        True from the beginning of an occlusion until it is visible again; leaving is none.
-    is_at_edge : bool
-        True where it was about to drive out of the regions of interest when it was last visible.
-    """
-
-    labels: Tally[str] = field(default_factory=Tally)
-    survived: int = 0
-    is_hidden: bool = False
-    is_at_edge: bool = False
-
-    @property
-    def label(self) -> str:
-        """Class of most frames: a lorry far away looks like a car; "" where it is unknown."""
-        return max(self.labels, key=self.labels.__getitem__, default="")
+_GONE = (Whereabouts.BORDER, Whereabouts.ROI, Whereabouts.FAR)
+"""Ends that the summary tells in a line of their own."""
 
 
 class TrafficSummary:
@@ -51,8 +27,8 @@ class TrafficSummary:
 
     Parameters
     ----------
-    regions : sequence of Region
-        Regions of interest: a vehicle that drives out of them leaves.
+    counter : Counter
+        Counts, of a plan with regions of interest: a vehicle that drives out of them leaves.
 
     Attributes
     ----------
@@ -61,11 +37,12 @@ class TrafficSummary:
     most_at_once : int
         Largest number of confirmed vehicles in a frame.
     vehicles : dict of int to VehicleLog
-        Every vehicle that was visible and confirmed, by its number.
+        Every vehicle that was visible and confirmed, by its number, those of classes that are
+        counted apart included.
     """
 
-    def __init__(self, regions: Sequence[Region] = ()) -> None:
-        self.regions = tuple(regions)
+    def __init__(self, counter: Counter) -> None:
+        self.counter = counter
         self.frames = 0
         self.most_at_once = 0
         self.vehicles: dict[int, VehicleLog] = {}
@@ -76,27 +53,23 @@ class TrafficSummary:
         confirmed = [one for one in estimates if one.mode in (*CONFIRMED, TrackMode.LOST)]
         for one in confirmed:
             self._follow(one)
-        present = sum(one.mode is not TrackMode.LOST for one in confirmed)
+        vehicles = [one for one in confirmed if self.counter.is_vehicle(one.label)]
+        present = sum(one.mode is not TrackMode.LOST for one in vehicles)
         self.most_at_once = max(self.most_at_once, present)
 
     def _follow(self, one: TrackEstimate) -> None:
         if one.mode is TrackMode.TRACKING:
             vehicle = self.vehicles.setdefault(one.identity, VehicleLog())
-            vehicle.survived += vehicle.is_hidden
-            vehicle.labels.update([one.label] * bool(one.label))
-            vehicle.is_hidden = False
-            vehicle.is_at_edge = self._is_outside(_ahead(one))
+            vehicle.see(one, is_at_edge=self._is_outside(_ahead(one)))
         elif one.identity in self.vehicles:
-            vehicle = self.vehicles[one.identity]
-            is_out = not vehicle.is_hidden and self._is_outside(one.position)
-            has_left = one.hidden_by == BORDER or vehicle.is_at_edge or is_out
-            vehicle.is_hidden = vehicle.is_hidden or not has_left
+            self.vehicles[one.identity].miss(one, is_outside=self._is_outside(one.position))
 
     def _is_outside(self, point: Position) -> bool:
         """Tell whether a point lies outside the regions."""
-        if not self.regions:
+        regions = self.counter.plan.regions
+        if not regions:
             return False
-        return not len(Detections.make([[*point, 0.0, 0.0]], None).within(self.regions))
+        return not len(Detections.make([[*point, 0.0, 0.0]], None).within(regions))
 
     @property
     def survived(self) -> int:
@@ -106,17 +79,44 @@ class TrafficSummary:
     @property
     def ended_hidden(self) -> int:
         """Vehicles that stayed invisible after their last occlusion."""
-        return sum(one.is_hidden for one in self.vehicles.values())
+        return self.ends[Whereabouts.HIDDEN]
 
-    def sentences(self, counter: Counter) -> list[str]:
+    @property
+    def ends(self) -> Tally[Whereabouts]:
+        """Vehicles by where they are in the end."""
+        return Tally(one.whereabouts for one in self.vehicles.values())
+
+    @property
+    def least_size(self) -> float | None:
+        """Longer side, px, below which vehicles are too far; None where none drove there."""
+        sizes = [size for one in self.vehicles.values() for size in one.far_sizes]
+        return median(sizes) if sizes else None
+
+    def _numbers(self) -> tuple[int, Tally[str], Tally[str]]:
+        """Count vehicles, those of each class, and what is counted apart by class."""
+        labels = Tally(one.label for one in self.vehicles.values())
+        apart = Tally({name: n for name, n in labels.items() if not self.counter.is_vehicle(name)})
+        vehicles = labels - apart
+        return vehicles.total(), vehicles, apart
+
+    def sentences(self) -> list[str]:
         """Return the summary, a line for each fact."""
-        classes = Tally(one.label for one in self.vehicles.values() if one.label)
+        counter = self.counter
+        total, classes, apart = self._numbers()
         found = [
-            f"{_number(len(self.vehicles), 'vehicle')} in {self.frames} frames, at most "
-            f"{self.most_at_once} at once{_listed(classes)}",
+            f"{_number(total, 'vehicle')} in {self.frames} frames, at most "
+            f"{self.most_at_once} at once{_listed(classes)}{_besides(apart)}",
             f"{_number(self.survived, 'occlusion')} survived under the same number; "
             f"{_number(self.ended_hidden, 'vehicle')} not seen again after an occlusion",
         ]
+        ends = [f"{self.ends[where]} {where.value}" for where in _GONE if self.ends[where]]
+        if ends:
+            found.append(f"{', '.join(ends)}; {self.ends[Whereabouts.IN_VIEW]} in view at the end")
+        if self.least_size is not None:
+            found.append(
+                f"vehicles were followed down to {self.least_size:.0f} px, as they are far away; "
+                "smaller ones are not counted"
+            )
         lines = [
             f"line {line.name}: "
             + ", ".join(_direction(counter, line.name, to) for to in line.directions)
@@ -129,32 +129,46 @@ class TrafficSummary:
         ]
         return [*found, *lines, *zones]
 
-    def to_json(self, counter: Counter) -> dict[str, Any]:
+    def to_json(self) -> dict[str, Any]:
         """Return the summary for `run.json`."""
+        total, _, apart = self._numbers()
         return {
             "frames": self.frames,
-            "vehicles": len(self.vehicles),
+            "vehicles": total,
+            "counted_apart": dict(sorted(apart.items())),
             "most_at_once": self.most_at_once,
             "occlusions_survived": self.survived,
             "ended_occluded": self.ended_hidden,
+            "ended": {where.name.lower(): self.ends[where] for where in Whereabouts},
+            "least_size_px": self.least_size,
             "counts": [
                 {"place": place, "direction": direction, "class": label, "count": count}
-                for (place, direction, label), count in sorted(counter.totals.items())
+                for (place, direction, label), count in sorted(self.counter.totals.items())
             ],
         }
 
 
 def _direction(counter: Counter, place: str, direction: str) -> str:
-    both = [place, direction]
-    totals = counter.totals.items()
-    classes = Tally({label: count for (*at, label), count in totals if at == both and label})
-    return f"{counter.count(place, direction)} {direction}{_listed(classes)}"
+    known = Tally({name: n for name, n in counter.by_class(place, direction).items() if name})
+    apart = Tally({name: n for name, n in known.items() if not counter.is_vehicle(name)})
+    count = counter.count(place, direction)
+    return f"{count} {direction}{_listed(known - apart)}{_besides(apart)}"
 
 
 def _listed(classes: Tally[str]) -> str:
     """Return the classes in brackets, the most frequent first; empty where none is known."""
-    words = ", ".join(f"{count} {label}" for label, count in classes.most_common())
+    words = _words(classes)
     return f" ({words})" if words else ""
+
+
+def _besides(apart: Tally[str]) -> str:
+    """Return the classes that are counted apart; empty where there are none."""
+    words = _words(apart)
+    return f" besides {words}" if words else ""
+
+
+def _words(classes: Tally[str]) -> str:
+    return ", ".join(f"{count} {label}" for label, count in classes.most_common() if label)
 
 
 def _number(count: int, noun: str) -> str:
