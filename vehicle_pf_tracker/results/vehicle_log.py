@@ -11,7 +11,7 @@ from enum import Enum
 
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate
 
-_FAR = 32.0
+_SMALLEST_NEAR = 32.0
 """Longer side in px above which a vehicle is not too far: four of the finest cells of a network,
 and twice what motion needs."""
 _RECEDED = 0.5
@@ -89,4 +89,4 @@ class VehicleLog:
             self.whereabouts = Whereabouts.FAR if is_far else Whereabouts.HIDDEN
 
     def _was_far(self, size: float) -> bool:
-        return size < min(_FAR, _RECEDED * self.largest)
+        return size < min(_SMALLEST_NEAR, _RECEDED * self.largest)
