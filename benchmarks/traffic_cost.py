@@ -32,9 +32,10 @@ from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.motion_detector import MotionDetector
 from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
-from vehicle_pf_tracker.scenes.compositing import stream
-from vehicle_pf_tracker.scenes.roads import Carriageway, any_car, countryside
-from vehicle_pf_tracker.scenes.scene import Camera
+from vehicle_pf_tracker.scenes.cameras import Camera
+from vehicle_pf_tracker.scenes.lane_traffic import any_car
+from vehicle_pf_tracker.scenes.random_streams import stream
+from vehicle_pf_tracker.scenes.roads import Carriageway, countryside
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession

@@ -39,7 +39,7 @@ from vehicle_pf_tracker.recordings.video import open_footage
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.results.output_files import write_text
 from vehicle_pf_tracker.results.traffic_results import TRACKS
-from vehicle_pf_tracker.scenes.roads import PAINTS, Lane, convoy
+from vehicle_pf_tracker.scenes.lane_traffic import PAINTS, Lane, convoy
 from vehicle_pf_tracker.scenes.vehicles import saloon
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 

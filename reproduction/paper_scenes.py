@@ -24,7 +24,7 @@ from vehicle_pf_tracker.core.truth import TOTAL_BELOW
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes import catalogue
 from vehicle_pf_tracker.scenes.catalogue import SceneKind
-from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.courses import Pace
 from vehicle_pf_tracker.scenes.drive import LANE, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.drives import (
     bridge_at,
@@ -33,7 +33,8 @@ from vehicle_pf_tracker.scenes.drives import (
     hiding_width,
     trees_at,
 )
-from vehicle_pf_tracker.scenes.models import Model, Pace
+from vehicle_pf_tracker.scenes.models import Model
+from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.scenery import pillar, tree
 from vehicle_pf_tracker.scenes.solids import ELEVATION, Face

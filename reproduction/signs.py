@@ -9,9 +9,10 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.compositing import Colour, stream
+from vehicle_pf_tracker.scenes.compositing import Colour
 from vehicle_pf_tracker.scenes.drive import Drive
 from vehicle_pf_tracker.scenes.drives import hiding_width
+from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.scenery import opaque, post
 

@@ -18,7 +18,7 @@ import numpy as np
 from laboratory.scenes.traffic_scene import VehicleTruth
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.random_streams import stream
 
 Truths: TypeAlias = Sequence[VehicleTruth]
 Condition: TypeAlias = Callable[[Frame, int, Truths, Truths], Frame]

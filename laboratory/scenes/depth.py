@@ -12,10 +12,14 @@ from itertools import pairwise
 import numpy as np
 
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.compositing import Image, cells_inside, stream
+from vehicle_pf_tracker.scenes.cameras import DISTURBANCES, MARGIN, OutdoorCamera
+from vehicle_pf_tracker.scenes.compositing import Image
+from vehicle_pf_tracker.scenes.courses import Pose
 from vehicle_pf_tracker.scenes.drive import SIZES, DriveParameters, target_faces
-from vehicle_pf_tracker.scenes.models import Model, Pose
-from vehicle_pf_tracker.scenes.scene import DISTURBANCES, MARGIN, OutdoorCamera, Scene
+from vehicle_pf_tracker.scenes.models import Model
+from vehicle_pf_tracker.scenes.polygons import cells_inside
+from vehicle_pf_tracker.scenes.random_streams import stream
+from vehicle_pf_tracker.scenes.scene import Scene
 from vehicle_pf_tracker.scenes.scenery import asphalt, grass
 
 FOCAL = 600.0

@@ -13,11 +13,14 @@ import numpy as np
 from laboratory.scenes.turns import side_road
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, stream
+from vehicle_pf_tracker.scenes.cameras import DISTURBANCES, OutdoorCamera
+from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite
+from vehicle_pf_tracker.scenes.courses import Pace, Pose, standing, straight
 from vehicle_pf_tracker.scenes.drive import LANE, PAINTS, Drive, DriveParameters
-from vehicle_pf_tracker.scenes.models import Model, Pace, Pose, standing, straight
-from vehicle_pf_tracker.scenes.roads import convoy
-from vehicle_pf_tracker.scenes.scene import DISTURBANCES, Actor, OutdoorCamera, Scene
+from vehicle_pf_tracker.scenes.lane_traffic import convoy
+from vehicle_pf_tracker.scenes.models import Model
+from vehicle_pf_tracker.scenes.random_streams import stream
+from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.scenery import value_noise
 from vehicle_pf_tracker.scenes.solids import ELEVATION, SHADE
 from vehicle_pf_tracker.scenes.vehicles import car, coach, saloon, suv, van

@@ -20,7 +20,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import whole_folder
 from vehicle_pf_tracker.image.compressed_image import jpeg
-from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.random_streams import stream
 
 _BLIND, _SURE = 0.25, 0.75
 """Visible shares below which a vehicle is never detected, and above which like a free one."""

@@ -22,8 +22,9 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.road.poses import Pose
-from vehicle_pf_tracker.scenes.compositing import Image, Sprite, cells_inside
+from vehicle_pf_tracker.scenes.compositing import Image, Sprite
 from vehicle_pf_tracker.scenes.models import SHADOW_OPACITY, all_round, turned
+from vehicle_pf_tracker.scenes.polygons import cells_inside
 from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.scenery import asphalt, grass
 from vehicle_pf_tracker.scenes.solids import SAME_PLACE, Face, lit, shadow

@@ -23,9 +23,10 @@ from laboratory.scenes.perspective import (
 )
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.lens import Lens
-from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.drive import PAINTS
-from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene
+from vehicle_pf_tracker.scenes.random_streams import stream
+from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.vehicles import car, saloon, suv
 
 WIDTH, HEIGHT = 640, 480

@@ -26,8 +26,9 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.lens import Lens
-from vehicle_pf_tracker.scenes.compositing import Image, stream
-from vehicle_pf_tracker.scenes.scene import MARGIN, Disturbance, OutdoorCamera
+from vehicle_pf_tracker.scenes.cameras import MARGIN, Disturbance, OutdoorCamera
+from vehicle_pf_tracker.scenes.compositing import Image
+from vehicle_pf_tracker.scenes.random_streams import stream
 
 WIDTH, HEIGHT = 384, 256
 _FIELD = math.radians(44)

@@ -29,9 +29,10 @@ from vehicle_pf_tracker.parameters.road import format_pairs
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
-from vehicle_pf_tracker.scenes.compositing import stream
-from vehicle_pf_tracker.scenes.roads import PAINTS
-from vehicle_pf_tracker.scenes.scene import Actor, Camera
+from vehicle_pf_tracker.scenes.cameras import Camera
+from vehicle_pf_tracker.scenes.lane_traffic import PAINTS
+from vehicle_pf_tracker.scenes.random_streams import stream
+from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.solids import Face
 from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon, tinted, van
 

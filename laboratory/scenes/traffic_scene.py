@@ -14,9 +14,12 @@ from laboratory.scenes.flow import TrafficSceneParameters, draw_lorries, drive
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.scenes.compositing import PixelWindow, stream
-from vehicle_pf_tracker.scenes.roads import PAINTS, Carriageway, Lane, Vehicle, any_car, countryside
-from vehicle_pf_tracker.scenes.scene import Actor, Camera, Path, Stage
+from vehicle_pf_tracker.scenes.cameras import Camera
+from vehicle_pf_tracker.scenes.compositing import PixelWindow
+from vehicle_pf_tracker.scenes.lane_traffic import PAINTS, Lane, Vehicle, any_car
+from vehicle_pf_tracker.scenes.random_streams import stream
+from vehicle_pf_tracker.scenes.roads import Carriageway, countryside
+from vehicle_pf_tracker.scenes.scene import Actor, Path, Stage
 from vehicle_pf_tracker.scenes.scenery import bridge
 from vehicle_pf_tracker.scenes.vehicles import lorry
 

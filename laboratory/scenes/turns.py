@@ -11,10 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.compositing import Colour, Image, cells_inside, stream
+from vehicle_pf_tracker.scenes.cameras import MARGIN
+from vehicle_pf_tracker.scenes.compositing import Colour, Image
+from vehicle_pf_tracker.scenes.courses import Course, Pace, Pose
 from vehicle_pf_tracker.scenes.drive import FREE, LANE, Drive, DriveParameters
-from vehicle_pf_tracker.scenes.models import Course, Pace, Pose
-from vehicle_pf_tracker.scenes.scene import MARGIN, Actor, Scene
+from vehicle_pf_tracker.scenes.polygons import cells_inside
+from vehicle_pf_tracker.scenes.random_streams import stream
+from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.scenery import asphalt, concrete, opaque
 from vehicle_pf_tracker.scenes.solids import ELEVATION
 

@@ -15,7 +15,7 @@ from laboratory.stress.kinds import KINDS, Kind, case_seed
 from laboratory.stress.placing import LEAST_LEAD
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.random_streams import stream
 
 QUICK_PER_SEQUENCE = 8
 QUICK_FRAMES = 150

@@ -15,7 +15,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings.footage import stamp_of
-from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.random_streams import stream
 
 
 @dataclass(frozen=True, slots=True)

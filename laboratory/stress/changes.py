@@ -18,7 +18,7 @@ from laboratory.stress.footage import StressFootage, is_grey
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.random_streams import stream
 
 Size: TypeAlias = tuple[int, int]
 """Width and height of an image in px."""

@@ -23,7 +23,7 @@ from laboratory.stress.footage import StressFootage, StressSource, open_footage
 from laboratory.stress.occluder import Occluder
 from laboratory.stress.painting import LORRY, POLE, WALL
 from laboratory.stress.placing import OcclusionSpec, Placed, Placer
-from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.random_streams import stream
 
 DURATIONS = (5, 10, 20, 40)
 """Totally hidden frames that are aimed at; what came out is in the case's labels."""

@@ -19,7 +19,7 @@ from laboratory.stress.occluder import Motion, Occluder, similarities
 from laboratory.stress.painting import LORRY, POLE, Texture
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import TOTAL_BELOW, Occlusion, Truth
-from vehicle_pf_tracker.scenes.compositing import stream
+from vehicle_pf_tracker.scenes.random_streams import stream
 
 LEAD, LEAST_LEAD = 40, 8
 """Frames in full view before an occluder touches the vehicle: as many as there are, up to a

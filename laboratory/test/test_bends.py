@@ -8,7 +8,7 @@ import math
 import pytest
 
 from laboratory.scenes.turns import Bend
-from vehicle_pf_tracker.scenes.models import Pace, Pose
+from vehicle_pf_tracker.scenes.courses import Pace, Pose
 from vehicle_pf_tracker.scenes.solids import ELEVATION
 
 START = Pose(100.0, 200.0, 0.0, 10.0)

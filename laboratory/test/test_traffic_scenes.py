@@ -25,9 +25,10 @@ from vehicle_pf_tracker.evaluation.traffic.scoring import matches
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 from vehicle_pf_tracker.parameters.road import parse_pairs
 from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import Sprite
-from vehicle_pf_tracker.scenes.models import standing
-from vehicle_pf_tracker.scenes.scene import Actor, Camera
+from vehicle_pf_tracker.scenes.courses import standing
+from vehicle_pf_tracker.scenes.scene import Actor
 
 
 def block(box, colour=(200, 0, 0)):

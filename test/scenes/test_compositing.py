@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.compositing import PixelWindow, Sprite, cells_inside
-from vehicle_pf_tracker.scenes.models import standing
+from vehicle_pf_tracker.scenes.compositing import PixelWindow, Sprite
+from vehicle_pf_tracker.scenes.courses import standing
+from vehicle_pf_tracker.scenes.polygons import cells_inside
 from vehicle_pf_tracker.scenes.scene import Actor
 
 WHITE = Sprite.plain((255.0, 255.0, 255.0))

@@ -10,15 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.models import (
-    Model,
-    Pace,
-    Pose,
-    moving,
-    straight,
-    swaying,
-    wave,
-)
+from vehicle_pf_tracker.scenes.courses import Pace, Pose, moving, straight, swaying, wave
+from vehicle_pf_tracker.scenes.models import Model
 from vehicle_pf_tracker.scenes.solids import ELEVATION
 from vehicle_pf_tracker.scenes.vehicles import car
 

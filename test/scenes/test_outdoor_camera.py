@@ -12,7 +12,7 @@ import pytest
 from laboratory.scenes import make_scene
 from laboratory.scenes.drives import Cloud, CloudyCamera
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.scene import MARGIN, Disturbance, OutdoorCamera
+from vehicle_pf_tracker.scenes.cameras import MARGIN, Disturbance, OutdoorCamera
 
 CALM = Disturbance(0.0, 0.0, 0.0)
 SHAKY = Disturbance(0.0, 3.0, 0.0)

@@ -8,9 +8,10 @@ import pytest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion
+from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import Sprite
-from vehicle_pf_tracker.scenes.models import moving, standing
-from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene
+from vehicle_pf_tracker.scenes.courses import moving, standing
+from vehicle_pf_tracker.scenes.scene import Actor, Scene
 
 RED, BLUE, BLACK = (Sprite.plain(c) for c in ((200.0, 0, 0), (0, 0, 200.0), (0, 0, 0)))
 

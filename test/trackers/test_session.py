@@ -12,8 +12,8 @@ from vehicle_pf_tracker.core.clock import StampEvent
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.trackers.continuity import PATIENCE, StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Mode
-from vehicle_pf_tracker.trackers.image_stream import PATIENCE, StrayImageError
 from vehicle_pf_tracker.trackers.papers.apf import ApfParameters
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.session import Session

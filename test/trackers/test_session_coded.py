@@ -9,7 +9,7 @@ from street import Street
 from test_session import PERIOD_NS, session
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.trackers.image_stream import StrayImageError
+from vehicle_pf_tracker.trackers.continuity import StrayImageError
 
 
 class Coded:

@@ -12,8 +12,6 @@ around it. Each training step solves
 
 for one image by a few steps of the alternating direction method of multipliers (ADMM); `x` are the
 feature channels, `*` is correlation, and `y` a narrow Gaussian at the target's centre.
-
-Beside it stands a search on a map: the best position close to each of some positions.
 """
 
 from __future__ import annotations
@@ -22,7 +20,6 @@ import functools
 from dataclasses import dataclass
 from typing import TypeAlias
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -191,37 +188,3 @@ class CorrelationFilter:
 @functools.cache
 def _transforms(size: int, top: int, bottom: int, left: int, right: int) -> PartialFourier:
     return PartialFourier(size, slice(top, bottom), slice(left, right))
-
-
-Places = npt.NDArray[np.intp]
-"""Places (N, 2) on a map, as x and y."""
-
-
-def climbed(values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
-    """Move places to the best value in reach, less what the move costs.
-
-    Parameters
-    ----------
-    values : (m, m) array
-        The map by [y, x]; beyond its border the outermost values are repeated.
-    places : (N, 2) array
-        On the map.
-    costs : (2 r + 1, 2 r + 1) array
-        Costs of the moves by up to `r` places, by [y, x].
-
-    Returns
-    -------
-    moves : (N, 2) array
-        The best of the moves; of equal ones the first.
-    gains : (N,) array
-        Value there, less the cost.
-    """
-    side = len(costs)
-    reach = side // 2
-    padded = cv2.copyMakeBorder(values, reach, reach, reach, reach, cv2.BORDER_REPLICATE)
-    offsets = np.arange(side)
-    moves = (offsets[:, np.newaxis] * padded.shape[1] + offsets).ravel()
-    first = places[:, 1] * padded.shape[1] + places[:, 0]
-    gains = padded.take(first[:, np.newaxis] + moves) - costs.ravel()
-    best = gains.argmax(axis=1)
-    return np.column_stack([best % side, best // side]) - reach, gains.max(axis=1)

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.bin_counting import covered_region
 from vehicle_pf_tracker.image.window import (
     Counted,
     CountedFeature,
@@ -20,7 +21,6 @@ from vehicle_pf_tracker.image.window import (
     Positions,
     Window,
     bounds,
-    covered_region,
     to_grey,
 )
 

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.image.bin_counting import areas, bin_counts, covered_region
 from vehicle_pf_tracker.image.window import (
     Bounds,
     Counted,
@@ -22,10 +23,7 @@ from vehicle_pf_tracker.image.window import (
     Positions,
     Window,
     WindowFeature,
-    areas,
-    bin_counts,
     bounds,
-    covered_region,
     to_grey,
 )
 

@@ -12,8 +12,9 @@ from typing import Any, Generic, TypeAlias, TypeVar
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
 from vehicle_pf_tracker.scenes import drives
-from vehicle_pf_tracker.scenes.drive import DriveParameters, HighwayParameters, highway
+from vehicle_pf_tracker.scenes.drive import DriveParameters
 from vehicle_pf_tracker.scenes.drives import BarParameters, BrakingParameters, HidingParameters
+from vehicle_pf_tracker.scenes.highway import HighwayParameters, highway
 from vehicle_pf_tracker.scenes.scene import Scene
 
 SceneT = TypeVar("SceneT")

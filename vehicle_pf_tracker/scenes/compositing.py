@@ -5,15 +5,11 @@
 
 A sprite keeps the integral of its finely drawn picture, so that the mean over any pixel is four
 look-ups, exact for every sub-pixel shift and every scale.
-
-Polygons are filled alike to the bit whatever the image library; and random streams have names, so
-that the numbers one part of a scene draws never shift those of another.
 """
 
 from __future__ import annotations
 
 import math
-import zlib
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
@@ -142,55 +138,3 @@ def interpolate(grid: Array, y: Array, x: Array) -> Array:
     beyond: Array = grid[row, column + 1] * (1 - down) + grid[row + 1, column + 1] * down
     values: Array = left * (1 - right) + beyond * right
     return values
-
-
-def cells_inside(
-    outline: Array, rows: int, columns: int
-) -> tuple[PixelWindow, npt.NDArray[np.bool_]]:
-    """Find the cells of a grid whose centres lie inside a polygon, by the even-odd rule.
-
-    Parameters
-    ----------
-    outline : array of shape (N, 2)
-        Corners (x, y) in cells; cell `i` covers [i, i + 1).
-    rows, columns : int
-        Size of the grid.
-
-    Returns
-    -------
-    window : PixelWindow
-        The part of the grid around the polygon.
-    inside : array of bool, shape of the window
-    """
-    low, high = outline.min(axis=0).tolist(), outline.max(axis=0).tolist()
-    window = PixelWindow.between(low, high, columns, rows)
-    x: Array = np.arange(window.left, window.right, dtype=np.float64) + 0.5
-    y: Array = np.arange(window.top, window.bottom, dtype=np.float64) + 0.5
-    crossings = _crossings(outline, y)
-    inside = np.zeros((crossings.shape[1], x.size), dtype=np.bool_)
-    for enter, leave in zip(crossings[::2], crossings[1::2], strict=False):
-        inside |= (x >= enter[:, np.newaxis]) & (x < leave[:, np.newaxis])
-    return window, inside
-
-
-def _crossings(outline: Array, y: Array) -> Array:
-    """Find where the outline crosses each height `y`.
-
-    Returns
-    -------
-    array of shape (at most N, len(y))
-        The places (x) in rising order down each column; inf where there are no more.
-    """
-    x0, y0 = outline.T[..., np.newaxis]
-    x1, y1 = np.roll(outline, -1, axis=0).T[..., np.newaxis]
-    crosses = (y0 <= y) != (y1 <= y)
-    rise = np.where(y1 == y0, 1.0, y1 - y0)
-    places = np.where(crosses, x0 + (y - y0) * (x1 - x0) / rise, np.inf)
-    places.sort(axis=0)
-    # Rows of nothing but inf are left out: a convex polygon has two crossings at most.
-    return places[: int(crosses.sum(axis=0).max(initial=0))]
-
-
-def stream(seed: int, name: str, index: int = 0) -> np.random.Generator:
-    """Make the generator of the part `name` of a scene, for its frame or copy `index`."""
-    return np.random.default_rng([seed, zlib.crc32(name.encode()), index])

@@ -9,10 +9,12 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.compositing import Sprite, stream
+from vehicle_pf_tracker.scenes.cameras import Camera
+from vehicle_pf_tracker.scenes.compositing import Sprite
+from vehicle_pf_tracker.scenes.courses import Pace, moving, standing
 from vehicle_pf_tracker.scenes.drive import LANE, Drive, DriveParameters
-from vehicle_pf_tracker.scenes.models import Pace, moving, standing
-from vehicle_pf_tracker.scenes.scene import Actor, Camera, Scene, noise_parameter, stamps_parameter
+from vehicle_pf_tracker.scenes.random_streams import stream
+from vehicle_pf_tracker.scenes.scene import Actor, Scene, noise_parameter, stamps_parameter
 from vehicle_pf_tracker.scenes.scenery import bridge as make_bridge
 from vehicle_pf_tracker.scenes.scenery import pillar, plain, tree
 from vehicle_pf_tracker.scenes.solids import draw

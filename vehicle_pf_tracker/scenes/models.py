@@ -1,129 +1,25 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Vehicles that turn, and the ways things take through the frames.
-
-Paths give boxes in the image, courses the poses of vehicles on the ground.
-"""
+"""Vehicles that can be sent along any course: drawn for each heading that they take."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import astuple, dataclass, replace
-from itertools import pairwise
-from typing import TypeAlias, TypeVar
+from collections.abc import Iterable, Sequence
+from dataclasses import astuple
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
-from vehicle_pf_tracker.scenes.scene import Actor, Path
-from vehicle_pf_tracker.scenes.solids import ELEVATION, Face, draw, extent, normal_of, shadow
+from vehicle_pf_tracker.scenes.courses import Course, Pose
+from vehicle_pf_tracker.scenes.scene import Actor
+from vehicle_pf_tracker.scenes.solids import Face, draw, extent, normal_of, shadow
 from vehicle_pf_tracker.scenes.vehicles import HEAD_LAMP, SILL, TAIL_LAMP
 
 PLATE: Colour = (226, 226, 216)
 SHADOW_OPACITY = 0.5
 HEADING_STEP = math.radians(2)
 """Sprites are drawn for headings this far apart; their boxes are exact for every heading."""
-
-
-def standing(box: Box) -> Path:
-    """Return the path of what stands for ever in `box`."""
-    return lambda _: box
-
-
-def moving(start: Box, speed: float) -> Path:
-    """Return the path from `start`, the box in frame 0, along x with `speed` (px/frame)."""
-    return lambda frame: Box(start.x + speed * frame, start.y, start.width, start.height)
-
-
-Wave: TypeAlias = Callable[[float], float]
-"""A displacement, px, by frame number."""
-
-
-def wave(amplitude: float, period: float, phase: float) -> Wave:
-    """Return a slow swing: `amplitude` (px), `period` (frames) and `phase` (rad)."""
-    return lambda frame: amplitude * math.sin(2 * math.pi * frame / period + phase)
-
-
-@dataclass(frozen=True, slots=True)
-class Pose:
-    """A position on the ground, and the heading of a vehicle there.
-
-    Attributes
-    ----------
-    x, y : float
-        The point on the stage under the vehicle's middle, px.
-    heading : float
-        0 to the right, pi/2 away from the viewer, rad.
-    scale : float
-        Size there, px per metre.
-    """
-
-    x: float
-    y: float
-    heading: float
-    scale: float
-
-
-Placed = TypeVar("Placed", Box, Pose)
-Course: TypeAlias = Callable[[float], Pose]
-"""Gives the pose of a vehicle at a frame number, counted from 0."""
-
-
-@dataclass(frozen=True, slots=True)
-class Pace:
-    """A speed that changes linearly between `knots` (frame, px/frame), constant outside them."""
-
-    knots: tuple[tuple[float, float], ...]
-
-    @classmethod
-    def steady(cls, speed: float) -> Pace:
-        """Make the pace of one `speed` (px/frame)."""
-        return cls(((0.0, speed),))
-
-    def __call__(self, frame: float) -> float:
-        """Give the distance covered from the first knot to `frame`, px."""
-        (start, speed), (end, last_speed) = self.knots[0], self.knots[-1]
-        distance = speed * min(frame - start, 0.0) + last_speed * max(frame - end, 0.0)
-        for (t0, v0), (t1, v1) in pairwise(self.knots):
-            spent = min(max(frame, t0), t1) - t0
-            distance += v0 * spent + (v1 - v0) * spent**2 / (2 * (t1 - t0))
-        return distance
-
-    def arrival(self, distance: float) -> float:
-        """Give the frame in which `distance` (px, at least 0) is covered, for speeds over 0."""
-        low, high = self.knots[0][0], self.knots[0][0] + 1.0
-        while self(high) < distance:
-            high += high - low
-        for _ in range(60):
-            middle = (low + high) / 2
-            low, high = (middle, high) if self(middle) < distance else (low, middle)
-        return high
-
-
-def straight(start: Pose, pace: Pace) -> Course:
-    """Return the course that goes straight on from `start`, as flat ground looks."""
-    east = math.cos(start.heading)
-    north = math.sin(start.heading)
-
-    def course(frame: float) -> Pose:
-        gone = pace(frame)
-        y = start.y - gone * north * math.sin(ELEVATION)
-        return replace(start, x=start.x + gone * east, y=y)
-
-    return course
-
-
-def swaying(
-    course: Callable[[float], Placed], surge: Wave, weave: Wave
-) -> Callable[[float], Placed]:
-    """Follow a path or a course as a human drives: `surge` along x, `weave` along y."""
-
-    def swayed(frame: float) -> Placed:
-        placed = course(frame)
-        return replace(placed, x=placed.x + surge(frame), y=placed.y + weave(frame))
-
-    return swayed
 
 
 def all_round(faces: Sequence[Face]) -> list[Face]:

@@ -13,7 +13,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, interpolate
-from vehicle_pf_tracker.scenes.models import standing
+from vehicle_pf_tracker.scenes.courses import standing
 from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.solids import SHADE
 

@@ -18,7 +18,8 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.compositing import Colour, Sprite, cells_inside
+from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
+from vehicle_pf_tracker.scenes.polygons import cells_inside
 
 ELEVATION = math.radians(35)
 """Angle of the view above the horizon."""

@@ -12,7 +12,7 @@ from traffic_samples import vehicle
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.motion_detector import MotionDetector
 from vehicle_pf_tracker.parameters.counting_plan import Region
-from vehicle_pf_tracker.trackers.image_stream import StrayImageError
+from vehicle_pf_tracker.trackers.continuity import StrayImageError
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 PERIOD_NS = 40_000_000

@@ -6,13 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.image.window import (
-    Bounds,
-    Window,
-    bin_counts,
-    bounds,
-    covered_region,
-)
+from vehicle_pf_tracker.image.bin_counting import bin_counts, covered_region
+from vehicle_pf_tracker.image.window import Bounds, Window, bounds
 
 
 def rectangles(*rows):

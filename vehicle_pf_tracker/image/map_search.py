@@ -1,0 +1,45 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Search of a map for the best value close to each of some places."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+
+Places = npt.NDArray[np.intp]
+"""Places (N, 2) on a map, as x and y."""
+
+
+def climbed(values: Array, places: Places, costs: Array) -> tuple[Places, Array]:
+    """Move places to the best value in reach, less what the move costs.
+
+    Parameters
+    ----------
+    values : (m, m) array
+        The map by [y, x]; beyond its border the outermost values are repeated.
+    places : (N, 2) array
+        On the map.
+    costs : (2 r + 1, 2 r + 1) array
+        Costs of the moves by up to `r` places, by [y, x].
+
+    Returns
+    -------
+    moves : (N, 2) array
+        The best of the moves; of equal ones the first.
+    gains : (N,) array
+        Value there, less the cost.
+    """
+    side = len(costs)
+    reach = side // 2
+    padded = cv2.copyMakeBorder(values, reach, reach, reach, reach, cv2.BORDER_REPLICATE)
+    offsets = np.arange(side)
+    moves = (offsets[:, np.newaxis] * padded.shape[1] + offsets).ravel()
+    first = places[:, 1] * padded.shape[1] + places[:, 0]
+    gains = padded.take(first[:, np.newaxis] + moves) - costs.ravel()
+    best = gains.argmax(axis=1)
+    return np.column_stack([best % side, best // side]) - reach, gains.max(axis=1)
