@@ -10,8 +10,8 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.following.driver import OfflineTracker, with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters
-from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS
 from vehicle_pf_tracker.trackers.registry import VARIANTS
+from vehicle_pf_tracker.trackers.road_follower import ROAD_COLUMNS
 
 PF = VARIANTS["pf"]
 # 10 px to the metre, seen from above.

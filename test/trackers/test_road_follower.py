@@ -12,12 +12,8 @@ from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.road.poses import Pose
 from vehicle_pf_tracker.trackers.estimate import START_REGIME, Mode
-from vehicle_pf_tracker.trackers.localisation import (
-    ROAD_COLUMNS,
-    Contact,
-    Localisation,
-    RoadFollower,
-)
+from vehicle_pf_tracker.trackers.localisation import Localisation
+from vehicle_pf_tracker.trackers.road_follower import ROAD_COLUMNS, Contact, RoadFollower
 
 PERIOD = 40_000_000
 TENTH = RoadPlane(Homography(np.diag([0.1, 0.1, 1.0])), None, None, 1.0)

@@ -36,8 +36,9 @@ from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
 from vehicle_pf_tracker.trackers.attempts import TrackerError
 from vehicle_pf_tracker.trackers.continuity import StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
-from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS, Localisation
+from vehicle_pf_tracker.trackers.localisation import Localisation
 from vehicle_pf_tracker.trackers.registry import Variant
+from vehicle_pf_tracker.trackers.road_follower import ROAD_COLUMNS
 from vehicle_pf_tracker.trackers.session import Session
 
 ItemT = TypeVar("ItemT")

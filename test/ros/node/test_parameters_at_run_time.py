@@ -19,8 +19,8 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import ParameterSpec
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
-from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS
 from vehicle_pf_tracker.trackers.registry import find_variant
+from vehicle_pf_tracker.trackers.road_follower import ROAD_COLUMNS
 from vehicle_pf_tracker.trackers.session import Session
 
 pytestmark = pytest.mark.ros

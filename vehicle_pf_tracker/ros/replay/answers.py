@@ -12,7 +12,7 @@ from typing import Any
 
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.ros.messages import stamp_ns
-from vehicle_pf_tracker.trackers.localisation import ROAD_COLUMNS
+from vehicle_pf_tracker.trackers.road_follower import ROAD_COLUMNS
 
 DROPPED = "DROPPED"
 """Mode of a frame that a node never answered; all numbers are empty."""
