@@ -58,7 +58,8 @@ class Box:
     @property
     def corners(self) -> tuple[Position, ...]:
         """The four corners, clockwise in the image from the top left."""
-        right, bottom = self.x + self.width, self.y + self.height
+        right = self.x + self.width
+        bottom = self.y + self.height
         return (self.x, self.y), (right, self.y), (right, bottom), (self.x, bottom)
 
     def iou(self, other: Box) -> float:

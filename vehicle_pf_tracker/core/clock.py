@@ -73,6 +73,7 @@ class StampClock:
         self._last_ns = stamp_ns
         if last is None:
             return Tick(1.0)
+        # Integers are subtracted first: stamps of today have more digits than a float64.
         seconds = (stamp_ns - last) * 1e-9
         if seconds < 0:
             return Tick(1.0, StampEvent.JUMP_BACK)
@@ -84,6 +85,7 @@ class StampClock:
         self._repeats = 0
         if seconds > _LONGEST_GAP:
             return Tick(self._periods(_LONGEST_GAP), StampEvent.GAP)
+        # By the period known before: the interval itself must not change its own measure.
         elapsed = self._periods(seconds)
         self._learn(seconds)
         return Tick(elapsed)

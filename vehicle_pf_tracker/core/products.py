@@ -26,7 +26,8 @@ def product(left: npt.NDArray[_FloatT], right: npt.NDArray[_FloatT]) -> npt.NDAr
 
     The longer side of a product is cut.
     """
-    (rows, inner), columns = left.shape[-2:], right.shape[-1]
+    rows, inner = left.shape[-2:]
+    columns = right.shape[-1]
     longer = max(rows, columns)
     piece = max(SERIAL * longer // max(rows * inner * columns, 1), 1)
     if piece >= longer:

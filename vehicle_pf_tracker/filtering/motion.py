@@ -51,15 +51,19 @@ def sample_normal_rayleigh(
     (count, 2) array
         Displacements x', y' in px.
     """
+    # Unit draws times sigma: the numbers drawn do not depend on the parameters.
     along = rng.rayleigh(1.0, count) * sigma_r
     across = rng.standard_normal(count) * sigma_n
     length = float(np.hypot(*direction))
     if length > 0:
+        # One direction for all: equation 11 rotates by the angle of k1, whose length says nothing.
         cosine = np.full(count, direction[0] / length)
         sine = np.full(count, direction[1] / length)
     else:
+        # At a standstill a common direction would push the whole cloud off to one side.
         angle = rng.uniform(0.0, 2 * np.pi, count)
-        cosine, sine = np.cos(angle), np.sin(angle)
+        cosine = np.cos(angle)
+        sine = np.sin(angle)
     return np.column_stack([along * cosine - across * sine, along * sine + across * cosine])
 
 

@@ -51,6 +51,7 @@ def residual(weights: Weights, count: int, rng: np.random.Generator) -> Ancestor
     missing = count - len(certain)
     if missing == 0:
         return certain
+    # Where a copy was kept in spite of rounding, what is left of it may be below zero.
     rest = np.maximum(expected - kept, 0.0)
     drawn = _search(rest if rest.any() else weights, rng.random(missing))
     return np.concatenate([certain, drawn])
@@ -58,6 +59,7 @@ def residual(weights: Weights, count: int, rng: np.random.Generator) -> Ancestor
 
 def _search(weights: Weights, points: npt.NDArray[np.float64]) -> Ancestors:
     """Index of the first cumulative weight above each point of [0, 1), a share of all weight."""
+    # Points are scaled to the sum, not the weights to one: a pass over N less.
     cumulative = weights.cumsum()
     total = cumulative[-1]
     if not (0 < total < math.inf and weights.min() >= 0):

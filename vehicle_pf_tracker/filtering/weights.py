@@ -53,6 +53,7 @@ def from_log(log_weights: Weights) -> tuple[Weights, bool]:
         As for `normalise`.
     """
     largest = log_weights.max()
+    # All minus infinity, or one plus infinity or not a number: no ratio of two is known.
     if not math.isfinite(largest):
         return _uniform(len(log_weights)), False
     weights = np.exp(log_weights - largest)  # the largest is one

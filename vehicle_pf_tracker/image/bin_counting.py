@@ -77,6 +77,7 @@ def bin_counts(indices: npt.NDArray[Any], active: Bins, bins: int, windows: Boun
         left, top, right, bottom = (int(side[0]) for side in windows)
         inside = indices[top:bottom, left:right].ravel()
         return np.asarray(np.bincount(inside, minlength=bins)[np.newaxis, active])
+    # Integral images make the cost of a window independent of its size: four look-ups per plane.
     counts = np.zeros((len(windows.left), len(active)), dtype=np.int64)
     if indices.size == 0:
         return counts
@@ -90,6 +91,7 @@ def bin_counts(indices: npt.NDArray[Any], active: Bins, bins: int, windows: Boun
 def _count(indices: npt.NDArray[Any], active: Bins, bins: int, windows: Bounds) -> Counts:
     # A lane with room for the whole region's count never carries into the next one.
     lane_bits = int(indices.size).bit_length()
+    # Several bins share a float64, each in a lane of its bits: fewer planes to integrate.
     lanes = max(_EXACT_BITS // lane_bits, 1)
     lookup = _lanes_of_bins(active.tobytes(), bins, lane_bits, lanes)
     sums = _window_sums(lookup.take(indices, axis=0), windows).astype(np.int64)
@@ -116,6 +118,8 @@ def _window_sums(planes: npt.NDArray[np.float64], windows: Bounds) -> npt.NDArra
     _, width, count = planes.shape
     summed = np.asarray(cv2.integral(planes)).reshape(-1, count)
     left, top, right, bottom = windows
-    upper, lower = top * (width + 1), bottom * (width + 1)
+    # Flat indices, since `take` is faster than indexing by two arrays.
+    upper = top * (width + 1)
+    lower = bottom * (width + 1)
     corners = [summed.take(at, axis=0) for at in (lower + right, upper + right, lower + left)]
     return np.asarray(corners[0] - corners[1] - corners[2] + summed.take(upper + left, axis=0))

@@ -53,11 +53,13 @@ def shared_turn(before: Array, after: Array, strayed: float) -> Array:
     that are `strayed` off count half.
     """
     turn = np.eye(2)
+    # A ridge towards no turn, in the normal equations: as if five points had not turned.
     kept = TURN_INERTIA * np.eye(2)
     for _ in range(TURN_FITS):
         off = after - before @ turn
         far = (off[:, 0] ** 2 + off[:, 1] ** 2) / strayed**2
         weighted = before.T / (1 + far)
+        # Reweighted with a Cauchy weight: a stray point pulls less the farther it is off.
         turn = solved(weighted @ before + kept, weighted @ after + kept)
     return turn
 
@@ -92,9 +94,11 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
     for axis in (0, 1):
         # Each of the lower half with one of the upper half: far apart for most, and no N² pairs.
         order = before[:, axis].argsort(kind="stable")
-        low, high = order[:half], order[-half:]
+        low = order[:half]
+        high = order[-half:]
         old = before[high, axis] - before[low, axis]
         new = after[high, axis] - after[low, axis]
+        # Of points that are close an error of half a px is a change of size of a tenth.
         far = old > APART * size[axis]
         if far.sum() >= FEWEST_POINTS // 2:
             ratio = np.maximum(new[far] / old[far], LEAST_RATIO)
@@ -133,9 +137,12 @@ def carried_share(
     limits = np.full(len(points), STRAYED_PX)
     if len(background):
         stays = source - (points @ background[:2] + background[2])
+        # A point nearer to the road behind than to its vehicle is the road, seen beside the
+        # vehicle.
         limits = np.minimum(limits, np.hypot(stays[:, 0], stays[:, 1]))
     near = np.hypot(off[:, 0], off[:, 1]) < NEARLY * limits
     if near.sum() >= FEWEST_CARRIED:
+        # The turn is fitted to the residual, so that only what all share is taken off.
         gram = place[near].T @ place[near] + np.eye(2) * TURN_INERTIA
         off = off - place @ solved(gram, place[near].T @ off[near])
     return float((np.hypot(off[:, 0], off[:, 1]) < limits).mean())

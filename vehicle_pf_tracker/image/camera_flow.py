@@ -78,6 +78,7 @@ class CameraFlow:
         zoom = small.zoom
         last = self._last
         self._last = reduced
+        # A frame of another size begins anew; in a tiny one corners say nothing.
         if last is None or last.shape != reduced.shape or min(reduced.shape) < _LEAST_SIDE:
             return CameraMotion()
         corners = self._background(last, target, zoom)
@@ -85,12 +86,14 @@ class CameraFlow:
             return CameraMotion()
         is_mounted = self._still >= _STANDS_AFTER and self._still % _CHECKED_EVERY != 0
         if is_mounted and _stand(last, reduced, corners):
+            # Corners of a camera that stands do not drift: finding them anew seldom is enough.
             self._age += _WEAR_IN_PLACE - 1
             self._still += 1
             return CameraMotion()
         # The search starts where the motion of the frame before would take the corners.
         guess = self._motion.apply(corners.astype(np.float64)).astype(np.float32)
         moved, found = _FLOW.follow(last, reduced, corners, guess)
+        # Corners are carried on: those of the same points need no search of the grid.
         self._corners = moved[found]
         before, after = (ends[found].astype(np.float64) for ends in (corners, moved))
         motion = fit_camera_motion(before, after)
@@ -99,6 +102,7 @@ class CameraFlow:
             self._still += 1
             return motion
         self._still = 0
+        # Reduced px become px of the frame; a turn has no unit.
         return CameraMotion(motion.turn, motion.shift / zoom)
 
     def _background(
@@ -111,6 +115,7 @@ class CameraFlow:
             self._age = 0.0
         x, y = self._corners[:, 0] / zoom, self._corners[:, 1] / zoom
         middle_x, middle_y = target.centre
+        # Of the two axes one is enough: a corner above the box is as far off as one beside it.
         outside = np.abs(x - middle_x) > _CLEARANCE * target.width
         outside |= np.abs(y - middle_y) > _CLEARANCE * target.height
         return np.ascontiguousarray(self._corners[outside])
@@ -143,5 +148,6 @@ def _find_corners(grey: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
     cell = np.arange(_GRID[0] * _GRID[1])
     x = _BORDER + (cell % _GRID[0]) * wide + best % wide
     y = _BORDER + (cell // _GRID[0]) * high + best // wide
+    # A cell of plain road gives no corner rather than a weak one, which would wander.
     strong = flat[cell, best] > _LEAST_STRENGTH
     return np.asarray(np.column_stack([x, y])[strong], np.float32)

@@ -89,13 +89,16 @@ def cut_image(frame: Frame, centre: Array, zoom: Array, size: tuple[int, int]) -
     step = 1 / zoom
     sides = np.array(size)
     # Row of the affine map from pixel indices of the patch to those of the frame, x and y.
+    # Pixel centres of OpenCV are integers, those of this package halves.
     first = centre - sides / 2 * step + 0.5 * step - 0.5
+    # By the lesser zoom: averaging more along the other axis would blur the target.
     reduction = max(int(min(step.tolist()) + 2 - _REDUCED_FROM), 1)
     if reduction > 1:
         frame, corner, factors = _reduced(frame, centre, sides * step, reduction)
         first = (first - corner + 0.5) / factors - 0.5
         step = step / factors
-    (across, down), (x, y) = step.tolist(), first.tolist()
+    across, down = step.tolist()
+    x, y = first.tolist()
     matrix = np.array([[across, 0.0, x], [0.0, down, y]])
     image = cv2.warpAffine(
         frame,
@@ -120,12 +123,15 @@ def _reduced(frame: Frame, centre: Array, size: Array, factor: int) -> tuple[Fra
         Px of the frame in one of `small`, along x and y.
     """
     width, height = frame_size(frame)
+    # Two columns of each block are averaged below, so that it has to be even.
     factor -= factor % 2 if factor >= _SPARSE_FROM else 0
-    low, high = centre - size / 2 - factor, centre + size / 2 + factor
+    low = centre - size / 2 - factor
+    high = centre + size / 2 + factor
     left = min(max(math.floor(low[0]), 0), max(width - factor, 0))
     top = min(max(math.floor(low[1]), 0), max(height - factor, 0))
     columns = max(min(math.ceil(high[0]) - left, width - left) // factor, 1)
     rows = max(min(math.ceil(high[1]) - top, height - top) // factor, 1)
+    # One block more on each side, since bilinear sampling reads the neighbour.
     piece = frame[top : top + rows * factor, left : left + columns * factor]
     corner = np.array([left, top], float)
     if factor >= _SPARSE_FROM and min(piece.shape[:2]) >= factor:

@@ -42,6 +42,7 @@ def bin_indices(pixels: Frame, bits: int) -> BinIndices:
     (H, W) array of uint16
         From 0 to ``bin_count(bits) - 1``.
     """
+    # The highest bits: bins of one width, and no division.
     levels = (pixels >> np.uint8(8 - bits)).astype(np.uint16)
     return np.asarray(
         (levels[..., 0] << np.uint16(2 * bits))
@@ -88,6 +89,7 @@ class RgbMarginals(CountedFeature):
         """Count windows; see `CountedFeature.counts`."""
         region, windows = covered_region(frame, bounds(frame, positions, window))
         levels = marginal_bins(region)
+        # A pixel has a bin of each channel: three counts of 21 bins, not one of 63.
         edges = np.searchsorted(active, [0, CHANNEL_BINS, 2 * CHANNEL_BINS, self.bins])
         counts = [
             bin_counts(

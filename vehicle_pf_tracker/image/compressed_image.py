@@ -23,11 +23,13 @@ from vehicle_pf_tracker.image.encodings import LARGEST_SIDE_PX, Buffer, flat_byt
 MAX_PIXELS = 30_000_000
 """Three and a half times those of 4K video; decoding so many takes some 200 MB."""
 
-_JPEG, _PNG = b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n"
+_JPEG = b"\xff\xd8\xff"
+_PNG = b"\x89PNG\r\n\x1a\n"
 
 _MARKER = re.compile(rb"\xff+([^\x00\xff])")
 """Marker of a JPEG; within coded pixels every 255 is followed by 0 or a restart's number."""
 _END = 0xD9
+"""EOI, after which drivers may pad."""
 _ALONE = frozenset({0x01, *range(0xD0, 0xD9)})
 """Markers without a length: TEM, restarts and the start of the image."""
 _FRAME_HEADERS = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
@@ -94,6 +96,7 @@ def read_compressed(format: str, data: Buffer) -> CodedImage:  # noqa: A002
         `LARGEST_SIDE_PX` or more than `MAX_PIXELS` pixels.
     """
     name = f"a compressed image (format {format!r})"
+    # Copied: the image may be decoded after the message is gone.
     coded = flat_bytes(data).tobytes()
     if not coded:
         raise InputError(f"{name} holds no data")
@@ -119,6 +122,7 @@ def _png_size(data: bytes) -> tuple[int, int, int]:
     """Width, height (0: not stated), and offset behind the last chunk (0: there is none)."""
     offset = len(_PNG)
     size = (0, 0)
+    # A chunk is its length, kind, data and checksum: the loop ends at one that is cut off.
     while (end := offset + 12 + _number(data[offset : offset + 4])) <= len(data):
         kind = data[offset + 4 : offset + 8]
         if kind == b"IHDR" and end == offset + 25 and size == (0, 0):
@@ -133,6 +137,7 @@ def _jpeg_size(data: bytes) -> tuple[int, int, int]:
     """Width, height (0: not stated), and offset behind the end marker (0: there is none)."""
     offset = 2
     size = (0, 0)
+    # By lengths from marker to marker: thumbnails in segments have markers, too.
     while found := _MARKER.search(data, offset):
         marker = found[1][0]
         offset = found.end()
@@ -141,6 +146,7 @@ def _jpeg_size(data: bytes) -> tuple[int, int, int]:
         if marker in _ALONE:
             continue
         length = _number(data[offset : offset + 2])
+        # The first header counts: a thumbnail in a later segment has another size.
         if marker in _FRAME_HEADERS and size == (0, 0) and length >= 8:
             size = _number(data[offset + 5 : offset + 7]), _number(data[offset + 3 : offset + 5])
         offset += max(length, 2)

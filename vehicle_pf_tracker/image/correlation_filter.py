@@ -34,10 +34,15 @@ UPSAMPLING = 2
 """Places per cell and axis at which the response is computed; its peak is a cell wide."""
 _LABEL_SIGMA = 1 / 16
 """Standard deviation of the ideal response, of the target's side; the value of STRCF."""
-_FIRST_STEPS, _FIRST_GROWTH = 8, 3.0
-"""ADMM steps on the first image, which all later ones build on, and growth of the penalty."""
-_STEPS, _GROWTH = 2, 5.0
-"""The same on later images: STRCF shows that two steps from the filter before are enough."""
+_FIRST_STEPS = 8
+"""ADMM steps on the first image, which all later ones build on."""
+_FIRST_GROWTH = 3.0
+"""Growth of the penalty in each of them: the limit in space is enforced step by
+step, by a penalty that is 2187 times the first one in the end."""
+_STEPS = 2
+"""ADMM steps on later images: STRCF shows that two from the filter before are enough."""
+_GROWTH = 5.0
+"""Growth of the penalty in those: two steps have to enforce the limit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,12 +85,15 @@ class CorrelationFilter:
         spectrum = np.fft.rfft2(np.fft.ifftshift(label)).real / cells**2
         # Of the ideal response, which is even and therefore real, over the places.
         self._label = spectrum[frequencies(cells)].astype(np.float32)
+        # The target lies around the middle between two cells, so that its sides are even.
         from_middle = np.abs(np.arange(cells) - (cells - 1) / 2)
         inside = (from_middle[:, np.newaxis] <= target[1] / 2) & (from_middle <= target[0] / 2)
-        rows, columns = np.flatnonzero(inside.any(axis=1)), np.flatnonzero(inside.any(axis=0))
+        rows = np.flatnonzero(inside.any(axis=1))
+        columns = np.flatnonzero(inside.any(axis=0))
         self._rows = slice(int(rows[0]), int(rows[-1]) + 1)
         self._columns = slice(int(columns[0]), int(columns[-1]) + 1)
         self._target = PartialFourier(cells, self._rows, self._columns)
+        # Zeros at the ends are left out: a cell at the border counts little, not nothing.
         window = np.hanning(cells + 2)[1:-1]
         self._faded = PartialFourier(cells, slice(cells), slice(cells), window)
         fading = np.outer(window[self._rows], window[self._columns])
@@ -114,16 +122,19 @@ class CorrelationFilter:
             steps = _FIRST_STEPS
             growth = _FIRST_GROWTH
         else:
+            # The gradient of the term that ties the filter to the one before (STRCF eq. 5).
             before = self.weights.spectrum * np.float32(stiffness)
             wanted = spectrum * self._label + before
             steps = _STEPS
             growth = _GROWTH
         conjugate = spectrum.conj()
+        # Energy of all channels at each frequency: the only non-zero eigenvalue of x x^H.
         power = (spectrum * conjugate).sum(axis=0).real
         # ADMM in its scaled form: the multiplier, with the solution added, is confined.
         multiplier = confined = np.zeros(1, np.complex64)
         for step in range(steps):
             penalty = self.penalty * growth**step
+            # The multiplier is scaled by the penalty, which has just grown.
             multiplier = (multiplier - confined) * np.float32(1 / growth)
             right = wanted + (confined - multiplier) * np.float32(penalty)
             # Solve (x x^H / places + total) f = right at each frequency (Sherman and Morrison).
@@ -132,6 +143,7 @@ class CorrelationFilter:
             right -= spectrum * share
             right *= np.float32(1 / total)
             multiplier = multiplier + right
+            # There and back through the cells of the target: what is outside becomes zero.
             cells = self._target.cells_of(multiplier)
             confined = self._target.spectrum_of(cells)
         self._wide_weights = None
@@ -144,7 +156,8 @@ class CorrelationFilter:
     @property
     def extent(self) -> tuple[int, int]:
         """Columns and rows of the target's cells; even."""
-        columns, rows = self._columns, self._rows
+        columns = self._columns
+        rows = self._rows
         return columns.stop - columns.start, rows.stop - rows.start
 
     def respond_in_middle(self, features: CellFeatures) -> float:
@@ -152,8 +165,11 @@ class CorrelationFilter:
 
         Columns and rows are even, and at least those of the target.
         """
-        count, (columns, rows) = features.shape[1:], self.extent
-        top, left = (count[0] - rows) // 2, (count[1] - columns) // 2
+        count = features.shape[1:]
+        columns, rows = self.extent
+        top = (count[0] - rows) // 2
+        left = (count[1] - columns) // 2
+        # Without a transform: of a response only its middle is wanted, a sum of products.
         seen = features.transpose(1, 0, 2)[top : top + rows, :, left : left + columns]
         # Long dot products of BLAS are summed by several threads, and rounded otherwise then.
         return float(np.einsum("rcx,rcx->", seen, self._trained.faded))
@@ -165,6 +181,7 @@ class CorrelationFilter:
     def respond_wide(self, spectrum: Spectrum) -> Response:
         """Respond to the cells of a larger patch."""
         if self._wide_weights is None:
+            # Transformed when first asked for: a wide search happens in few frames.
             target = self._wide(spectrum.shape[1])[1]
             self._wide_weights = target.spectrum_of(self._trained.target)
         return self._response(spectrum, self._wide_weights)

@@ -109,6 +109,7 @@ def _check_layout(layout: _Encoding, message: Any) -> None:
         raise InputError(
             f"an image of {size} is larger than {LARGEST_SIDE_PX} px; is the message broken?"
         )
+    # Checked here: OpenCV would fail with its own words, or read the next row.
     if layout.even and (width % 2 or (layout.rows > 1 and height % 2)):
         raise InputError(f"an image of {size} is odd, but pixels share their colour in pairs")
     if step < width * layout.pixel_bytes:
@@ -119,6 +120,7 @@ def _pixels(layout: _Encoding, message: Any) -> Bytes:
     """View the data without row padding: (rows, width) or (rows, width, bytes of a pixel)."""
     width = message.width
     step = message.step
+    # Drivers pad rows, and send more bytes than the image needs: only too few are a mistake.
     flat = flat_bytes(message.data)
     rows = int(message.height * layout.rows)
     if flat.size < step * rows:
@@ -136,6 +138,7 @@ def _high_byte(pixels: Bytes, is_bigendian: bool) -> Bytes:
 
 def _stretched(pixels: Bytes, is_bigendian: bool) -> Bytes:
     """Scale 16-bit values from the darkest to the brightest percentile to 0 to 255."""
+    # A table of all 65536 values is faster than arithmetic on each pixel.
     values = np.ascontiguousarray(pixels).view(">u2" if is_bigendian else "<u2")[..., 0]
     sample = values[:: max(values.shape[0] // _SAMPLED, 1), :: max(values.shape[1] // _SAMPLED, 1)]
     low, high = np.percentile(sample, _TAILS)

@@ -32,9 +32,11 @@ _LATEST = 12
 """Frames kept besides: outlines of just before a doubt are what later ones are compared with."""
 _AROUND = 1.5
 """Half sides of the neighbourhood, of the box's longer side."""
-_LEAST_CONTRAST, _NOISE_FACTOR = 12.0, 4.0
-"""Difference in grey levels from which a pixel is foreground: at least that of a shadow's rim, and
-so many times the median difference around."""
+_LEAST_CONTRAST = 12.0
+"""Difference in grey levels from which a pixel is foreground, at least: that of a shadow's rim."""
+_NOISE_FACTOR = 4.0
+"""The same in units of the median difference around: that is two thirds of the
+noise's standard deviation, so that the factor is 2.7 of these."""
 _GROWN = 1.3
 """Size of the box, of itself, whose inside an outline has mostly to lie in."""
 _LEAST_PIECE = 4
@@ -76,10 +78,12 @@ class Foreground:
 
     def keep(self, small: SmallGrey, *, still: bool) -> None:
         """Keep a frame; discard earlier ones of another size, or if the camera has moved."""
+        # A background of another view is worse than none.
         if not still or (self._latest and self._latest[-1].image.shape != small.image.shape):
             self._background.clear()
             self._latest.clear()
             self._frames = 0
+        # Frames in a row show the same vehicles: those farther apart tell road from traffic.
         if self._frames % _KEPT_EVERY == 0:
             self._background.append(small)
         self._latest.append(small)
@@ -140,6 +144,7 @@ class Foreground:
         piece = small.image[rows, columns]
         if min(piece.shape) < 3:
             return None
+        # The whole background is known for this frame; else that of the neighbourhood is enough.
         if self._learnt_at == self._frames:
             background = self._whole[rows, columns]
         else:
@@ -163,6 +168,7 @@ def _moving(
     noise = np.searchsorted(counts, [(change.size - 1) // 2, change.size // 2], side="right").mean()
     level = max(_LEAST_CONTRAST, _NOISE_FACTOR * float(noise))
     moving = (cv2.GaussianBlur(change, (3, 3), 0) > level).astype(np.uint8)
+    # A windscreen of the road's grey would cut a car in two.
     closed = cv2.morphologyEx(moving, cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
     return np.asarray(closed, np.uint8)
 
@@ -177,7 +183,8 @@ def median(images: list[npt.NDArray[np.uint8]]) -> npt.NDArray[np.uint8]:
     for turn in range(len(images)):
         for first in range(turn % 2, len(images) - 1, 2):
             pair = images[first], images[first + 1]
-            images[first], images[first + 1] = np.minimum(*pair), np.maximum(*pair)
+            images[first] = np.minimum(*pair)
+            images[first + 1] = np.maximum(*pair)
     return np.ascontiguousarray(images[len(images) // 2])
 
 
@@ -202,11 +209,13 @@ def _bounds(
         labels[box[0, 1] : box[1, 1], box[0, 0] : box[1, 0]].ravel(), minlength=count
     )
     areas = stats[:, cv2.CC_STAT_AREA]
+    # Mostly inside: the outline of the car behind touches the box, and is another one's.
     own = (areas >= _LEAST_PIECE) & (inside >= 0.5 * areas)
     own[0] = False  # the background
     if not own.any():
         return None
     low = stats[own, :2].min(axis=0)
     high = (stats[own, :2] + stats[own, 2:4]).max(axis=0)
+    # What reaches the rim goes on outside, where its size is not known.
     touches = (low <= 0).any() or (high >= shape).any()
     return None if touches else (low.astype(float), high.astype(float))

@@ -25,6 +25,7 @@ GRADIENT_CELL_PX = 4
 DIRECTIONS = 18
 """Signed directions; the paper's number."""
 GRADIENT_CHANNELS = DIRECTIONS + DIRECTIONS // 2 + 4
+"""Channels of a cell: signed directions, unsigned ones, and texture energy by neighbourhood."""
 
 TRUNCATION = 0.2
 """Largest normalised magnitude (the paper's value): one strong edge must not silence the others."""
@@ -35,6 +36,7 @@ NOISE_ENERGY = 16.0
 zeros. It does not silence noise: a block of noise with a deviation of one level has 500."""
 
 _STEPS = np.arange(-255, 256)
+"""Differences of two grey levels."""
 _DX, _DY = np.meshgrid(_STEPS, _STEPS)
 DIRECTION_OF: npt.NDArray[np.uint8] = (
     np.rint(np.arctan2(_DY, _DX) / (2 * np.pi) * DIRECTIONS).astype(int) % DIRECTIONS
@@ -65,10 +67,12 @@ def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
 
 def _direction_histograms(grey: Grey) -> npt.NDArray[np.float32]:
     """Sum magnitudes by cell and direction, shared bilinearly between cells, (r, c, 18)."""
-    rows, columns = grey.shape[0] // GRADIENT_CELL_PX, grey.shape[1] // GRADIENT_CELL_PX
+    rows = grey.shape[0] // GRADIENT_CELL_PX
+    columns = grey.shape[1] // GRADIENT_CELL_PX
     wide = grey.astype(np.intp)
     dx = (wide[1:-1, 2:] - wide[1:-1, :-2] + 255).ravel()
     dy = (wide[2:, 1:-1] - wide[:-2, 1:-1] + 255).ravel()
+    # An 8-bit gradient has 511 x 511 values: two look-ups replace a root and an arctangent.
     at = dy * 511 + dx
     direction = DIRECTION_OF.ravel()[at]
     magnitude = MAGNITUDE_OF.ravel()[at]
@@ -97,7 +101,9 @@ def _cell_shares(length: int) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.floa
 def normalised_cells(histograms: npt.NDArray[np.float32]) -> CellFeatures:
     """Normalise direction histograms (r, c, 18) by their four neighbourhoods, (31, r, c)."""
     half = DIRECTIONS // 2
+    # A car before a bright and a dark road has the same edges with opposite signs.
     unsigned = histograms[..., :half] + histograms[..., half:]
+    # Beyond the border the outermost cell is repeated: zeros would brighten border cells.
     energy = np.pad((unsigned**2).sum(axis=2), 1, mode="edge")
     blocks = energy[:-1, :-1] + energy[:-1, 1:] + energy[1:, :-1] + energy[1:, 1:]
     scale = 1 / np.sqrt(blocks + np.float32(NOISE_ENERGY))
@@ -112,5 +118,6 @@ def normalised_cells(histograms: npt.NDArray[np.float32]) -> CellFeatures:
         features[:DIRECTIONS] += cut
         features[DIRECTIONS : DIRECTIONS + half] += np.minimum(plain * own, limit)
         features[DIRECTIONS + half + corner] = np.float32(TEXTURE_GAIN) * cut.sum(axis=0)
+    # Of the sum over four neighbourhoods a half, as in the paper: the channels stay below 0.4.
     features[: DIRECTIONS + half] *= np.float32(0.5)
     return features

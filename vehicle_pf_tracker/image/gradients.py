@@ -61,6 +61,7 @@ def direction_bins(
         -180 degrees is bin 0, 0 degrees the lower end of bin 32; 180 degrees is -180.
     """
     if not signed:
+        # The printed atan has the range of half a turn; of a vertical gradient one sign is chosen.
         fold = (gx < 0) | ((gx == 0) & (gy < 0))
         gx, gy = np.where(fold, -gx, gx), np.where(fold, -gy, gy)
     turns = np.arctan2(gy.astype(np.float64), gx.astype(np.float64)) / (2 * np.pi) + 0.5
@@ -110,6 +111,8 @@ class GradientDirections(CountedFeature):
                 bins = of_frame[1][inside]
             else:
                 strength, bins = self._directions(grey[inside].copy())
+            # The limit is relative: a window of faint edges has edge points as well as one of
+            # strong ones.
             peak = strength.max()
             if peak > 0:  # else nothing is an edge point
                 limit = max(np.float32(self.threshold) ** 2 * peak, np.float32(self.floor) ** 2)

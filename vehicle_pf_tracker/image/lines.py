@@ -50,8 +50,10 @@ def find_lines(frame: Frame, windows: Bounds, edge_threshold: float, shortest: i
     """
     left = max(int(windows.left.min()) - _MARGIN, 0)
     top = max(int(windows.top.min()) - _MARGIN, 0)
-    right, bottom = int(windows.right.max()) + _MARGIN, int(windows.bottom.max()) + _MARGIN
+    right = int(windows.right.max()) + _MARGIN
+    bottom = int(windows.bottom.max()) + _MARGIN
     grey = cv2.cvtColor(frame[top:bottom, left:right], cv2.COLOR_RGB2GRAY)
+    # Hysteresis from a third: the usual ratio, which keeps a line whole where it fades.
     edges = cv2.Canny(grey, edge_threshold / 3, edge_threshold)
     found = cv2.HoughLinesP(edges, 1, _ANGLE_STEP, shortest, minLineLength=shortest, maxLineGap=1)
     if found is None:
@@ -79,6 +81,7 @@ def lengths_inside(segments: Segments, windows: Bounds) -> Array:
     # A step of nothing crosses nowhere: a tiny one enters long before and leaves long after, or
     # the other way round where the segment lies outside.
     safe = np.where(np.abs(step) < 1e-9, 1e-9, step)
+    # A segment is start + t step with t from 0 to 1; each side of a window bounds t.
     enter = np.zeros((len(windows.left), len(segments)))
     leave = np.ones((1, 1))
     for axis, (low, high) in enumerate(
@@ -99,6 +102,7 @@ def direction_shares(segments: Segments, bins: int) -> Array:
     """
     x, y = (segments[:, 2:] - segments[:, :2]).T
     bin_position = np.mod(np.arctan2(y, x), np.pi) / np.pi * bins
+    # Shared linearly between two bins, as the direction of a short segment is off by degrees.
     lower = np.floor(bin_position).astype(np.intp)
     upper_share = bin_position - lower
     shares = np.zeros((len(segments), bins))

@@ -36,8 +36,10 @@ def climbed(values: Array, places: Places, costs: Array) -> tuple[Places, Array]
     """
     side = len(costs)
     reach = side // 2
+    # Repeated values make places beyond the border no better than those on it.
     padded = cv2.copyMakeBorder(values, reach, reach, reach, reach, cv2.BORDER_REPLICATE)
     offsets = np.arange(side)
+    # One `take` reads the neighbourhoods of all places.
     moves = (offsets[:, np.newaxis] * padded.shape[1] + offsets).ravel()
     first = places[:, 1] * padded.shape[1] + places[:, 0]
     gains = padded.take(first[:, np.newaxis] + moves) - costs.ravel()

@@ -36,6 +36,7 @@ def epanechnikov(window: Window) -> tuple[Array, Array]:
     y, x = np.mgrid[
         -window.half_height : window.half_height + 1, -window.half_width : window.half_width + 1
     ]
+    # Half a pixel more than the half sides: the ellipse touches the outer sides of the pixels.
     radius = np.square(x / (window.half_width + 0.5)) + np.square(y / (window.half_height + 0.5))
     inside = radius < 1
     return np.column_stack([x[inside], y[inside]]) * 1.0, 1.0 - radius[inside]
@@ -112,9 +113,11 @@ def mean_shift(
         Mean of the ellipse's pixels, each weighted by ``sqrt(q / p)`` of its colour; the position
         itself where the ellipse has no colour of the reference.
     """
-    (offsets, profile), pixel = epanechnikov(window), _pixels(frame, positions)
+    offsets, profile = epanechnikov(window)
+    pixel = _pixels(frame, positions)
     cells = _cells(frame, pixel, window, reference.active, bits)
     masses = _masses(cells, profile, len(reference.active))
+    # Two more columns for other colours and pixels outside, of weight zero: no test per pixel.
     table = np.zeros((len(masses), masses.shape[1] + 2))
     np.divide(reference.values, masses, out=table[:, :-2], where=masses > 0)
     weights = np.sqrt(table).ravel().take(cells)  # sqrt(q / p) of eq. 25, (N, P)
@@ -137,17 +140,21 @@ def _cells(frame: Frame, pixel: Centres, window: Window, active: Indices, bits: 
     The table has a row for each window. In a row the active bins come first, then one cell for all
     other colours, and one for pixels outside the image.
     """
+    # Colours that the reference has not are one cell: they count in the norm only.
     table = np.full(bin_count(bits), len(active))
     table[active] = np.arange(len(active))
     reach = np.array([window.half_width, window.half_height])
     first = pixel.min(axis=0) - reach
     end = pixel.max(axis=0) + reach + 1
-    low, high = np.maximum(first, 0), np.minimum(end, frame_size(frame))
+    low = np.maximum(first, 0)
+    high = np.minimum(end, frame_size(frame))
     region = np.full((end - first)[::-1], len(active) + 1)
-    (left, top), (right, bottom) = low - first, high - first
+    left, top = low - first
+    right, bottom = high - first
     covered = frame[low[1] : high[1], low[0] : high[0]]
     region[top:bottom, left:right] = table[bin_indices(covered, bits)]
     stride = np.array([1, region.shape[1]])
+    # All kernels are read by one `take` of flat indices, as one offset fits every window.
     reads = (epanechnikov(window)[0] @ stride).astype(np.intp)
     columns = region.ravel().take(((pixel - first) @ stride)[:, np.newaxis] + reads)
     return np.asarray(columns + (len(active) + 2) * np.arange(len(pixel))[:, np.newaxis])

@@ -62,6 +62,7 @@ class PointFlow:
             winSize=(self.window, self.window),
             maxLevel=self.levels,
             criteria=(cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, self.steps, self.precision),
+            # OpenCV takes the fourth argument as a guess only with this flag.
             flags=0 if guess is None else cv2.OPTFLOW_USE_INITIAL_FLOW,
         )
         return np.asarray(moved, np.float32).reshape(-1, 2), np.asarray(found).ravel() > 0
@@ -79,6 +80,7 @@ class PointFlow:
             Offset of the end of the way back from where it should be.
         """
         moved, found = self.follow(before, after, points, guess)
+        # Back from where they are to where they came from: the way out says where to look.
         back = None if guess is None else points
         again, returned = self.follow(after, before, moved, back)
         return moved, found & returned, again - points

@@ -44,11 +44,14 @@ def shared_similarity(before: Array, after: Array) -> Array:
     rest = np.eye(2, 3)
     if len(flow) < LEAST_CORNERS:
         return rest
+    # A camera that stands is the usual case, and exactly none is better than a fit to noise.
     if (np.abs(flow) < AGREEING_PX).mean() >= STILL_SHARE:
         return rest
     # A zoom or a roll spreads the flow over the image, hence the wide neighbourhood.
     apart = np.abs(flow[:, np.newaxis] - flow)
+    # The mode of the flow, not its mean: a lorry may carry many of the corners.
     densest = int((apart < 3 * AGREEING_PX).sum(axis=1).argmax())
+    # Wider than what counted for the mode, so that the rim of a zoom takes part in the fit.
     agreeing = apart[densest] < 5 * AGREEING_PX
     if agreeing.sum() < LEAST_CORNERS:
         return rest
@@ -66,9 +69,11 @@ def _robust_similarity(start: _Complex, end: _Complex) -> tuple[complex, complex
         target = shares @ end
         off = start - middle
         weighted = weights * off.conj()
+        # Weighted least squares in closed form; the summand bears corners that coincide.
         factor = weighted @ (end - target) / ((weighted @ off).real + 1e-9)
         shift = target - factor * middle
         residual = np.abs(end - factor * start - shift)
+        # Half of the limit at least: a perfect fit would leave the median of noise as the scale.
         scale = max(1.5 * median(residual), AGREEING_PX / 2)
         weights = 1 / (1 + (residual / scale) ** 2) ** 2
     return factor, shift

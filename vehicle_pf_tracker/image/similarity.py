@@ -23,6 +23,7 @@ def bhattacharyya_coefficient(p: Array, q: Array) -> Array:
     p, q : (..., bins) arrays
         Normalised histograms; leading dimensions broadcast.
     """
+    # Rounding may take the sum of equal histograms above 1, and its distance below 0.
     return np.asarray(np.minimum(np.sqrt(p * q).sum(axis=-1), 1.0))
 
 
@@ -33,6 +34,7 @@ def hellinger_distance(coefficient: Array) -> Array:
 
 def hellinger_similarity(p: Array, q: Array) -> float:
     """``1 - d_B`` of two normalised histograms (bins,), from 0 (disjoint) to 1 (equal)."""
+    # Scalars without arrays: one pair of histograms in each frame.
     coefficient = min(float(np.sqrt(p * q).sum()), 1.0)
     return 1.0 - math.sqrt(max(1.0 - coefficient, 0.0))
 

@@ -43,8 +43,10 @@ def small_grey(frame: Frame) -> SmallGrey:
     them from memory, and would grow with the frame.
     """
     width, height = frame_size(frame)
+    # Never enlarged: interpolated pixels add cost and no motion.
     zoom = min(_LARGEST_SIDE / max(width, height), 1.0)
     step = int(1 / zoom)
+    # The middle row of each step, so that the picture does not shift.
     small = np.ascontiguousarray(frame) if step < _SPARSE_FROM else frame[step // 2 :: step]
     if zoom < 1:
         size = max(round(width * zoom), 1), max(round(height * zoom), 1)

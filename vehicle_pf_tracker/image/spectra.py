@@ -48,6 +48,7 @@ class PartialFourier:
     ) -> None:
         places = np.arange(cells)
         weights = np.ones(cells) if window is None else window
+        # What is zero outside the part needs no rows or columns of the matrices.
         y, x = places[rows], places[columns]
         self._from_rows = np.asarray(_waves(y, cells).T * weights[rows], np.float32)
         self._to_rows = np.asarray(_waves(y, cells) / cells, np.float32)
@@ -63,6 +64,7 @@ class PartialFourier:
         pairs = product(product(self._from_rows, cells), self._from_columns)
         spectrum = pairs.view(np.complex64)
         half = len(self._from_rows) // 2
+        # A real row has cosines and sines; frequencies f and -f are their sum and difference.
         cosines = spectrum[:, 2 : half + 1]
         sines = 1j * spectrum[:, half + 1 :]
         spectrum[:, half + 1 :] = cosines + sines
@@ -88,6 +90,7 @@ def upsampled(spectrum: Spectrum, upsampling: int) -> _Matrix:
 def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
     """Spectrum of the same cells moved by (x, y) cells, circularly."""
     cells = spectrum.shape[1]
+    # A shift is a phase at each frequency: exact, for fractions of a cell too.
     down = np.exp(-2j * np.pi / cells * y * frequencies(cells))[:, np.newaxis]
     right = np.exp(-2j * np.pi / cells * x * np.arange(cells // 2 + 1))
     return np.asarray(spectrum * (down * right).astype(np.complex64))
@@ -97,7 +100,8 @@ def _coefficients(spectrum: Spectrum) -> _Matrix:
     """Coefficients of cosines and sines along y, real and imaginary parts by turns along x."""
     half = spectrum.shape[-1] - 1
     found = spectrum.copy()
-    low, high = spectrum[..., 2 : half + 1, :], spectrum[..., half + 1 :, :]
+    low = spectrum[..., 2 : half + 1, :]
+    high = spectrum[..., half + 1 :, :]
     found[..., 2 : half + 1, :] += high
     np.multiply(low - high, np.complex64(1j), out=found[..., half + 1 :, :])
     return np.asarray(found.view(np.float32))
@@ -107,6 +111,7 @@ def _coefficients(spectrum: Spectrum) -> _Matrix:
 def _fine_transforms(cells: int, upsampling: int) -> tuple[_Matrix, _Matrix]:
     places = (np.arange(cells * upsampling) - cells * upsampling // 2) / upsampling
     right = _to_columns(places, cells)
+    # Of the highest frequency only the cosine is known: between cells it would ring.
     right[-2:] = 0
     return np.asarray(_waves(places, cells) / cells, np.float32), right
 
@@ -125,6 +130,7 @@ def _pairs(places: npt.NDArray[np.integer] | Array, cells: int, weights: Array) 
 
 def _to_columns(places: npt.NDArray[np.integer] | Array, cells: int) -> _Matrix:
     """Matrix that takes such parts to values at some places; most stand for two frequencies."""
+    # The half spectrum leaves out negative frequencies along x, which are the conjugates.
     counted = np.full(cells // 2 + 1, 2 / cells)
     counted[[0, -1]] = 1 / cells
     return np.ascontiguousarray(_pairs(places, cells, counted).T)

@@ -74,6 +74,7 @@ class Stillness:
             return []
         if self._looked_ns is None or stamp_ns - self._looked_ns >= _EVERY * 1e9:
             self._looked_ns = stamp_ns
+            # Kept once seen: traffic that has passed proves that the camera sees motion.
             self._others_move = self._compare(frame, box) or self._others_move
         waited = (stamp_ns - self._began_ns) * 1e-9
         was_suspect = self.is_suspect
@@ -90,14 +91,18 @@ class Stillness:
         width, height = frame_size(frame)
         scale = min(_SIDE / max(width, height), 1.0)
         size = max(round(width * scale), 1), max(round(height * scale), 1)
+        # Averaged to 64 px: noise of single pixels is gone, vehicles are still seen.
         small = cv2.resize(frame, size, interpolation=cv2.INTER_AREA).mean(axis=2)
         before = self._before
         self._before = small
         if before is None or before.shape != small.shape:
             return False
         is_changed = np.abs(small - before) > _CHANGED
-        (left, top), (right, bottom) = box.corners[0], box.corners[2]
+        left, top = box.corners[0]
+        right, bottom = box.corners[2]
+        # A pixel more on each side: the target trembles in its own box.
         low = [max(int(at * scale) - 1, 0) for at in (left, top)]
         high = [max(math.ceil(at * scale) + 1, 0) for at in (right, bottom)]
         is_changed[low[1] : high[1], low[0] : high[0]] = False
+        # All that changes at once is the camera or a cloud, and proves nothing of the target.
         return 0.0 < float(is_changed.mean()) <= _CAMERA_SHARE

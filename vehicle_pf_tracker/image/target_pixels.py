@@ -54,7 +54,8 @@ def contrast(frame: Frame, box: Box) -> float:
     """
     across = _MARGIN * box.width
     down = _MARGIN * box.height
-    left, top = max(int(box.x - across), 0), max(int(box.y - down), 0)
+    left = max(int(box.x - across), 0)
+    top = max(int(box.y - down), 0)
     right, bottom = np.ceil([box.x + box.width + across, box.y + box.height + down]).astype(int)
     patch = np.ascontiguousarray(frame[top : max(bottom, top), left : max(right, left)])
     # Smoothed, since noise is no structure.

@@ -47,6 +47,7 @@ class Cooccurrence(CountedFeature):
     ) -> Counted:
         """Count windows; see `CountedFeature.counts`."""
         region, windows = covered_region(frame, bounds(frame, positions, window))
+        # The last column of a window has no eastern neighbour in it.
         pairs = Bounds(windows.left, windows.top, windows.right - 1, windows.bottom)
         counts = bin_counts(pair_bins(to_grey(region)), active, self.bins, pairs)
         return Counted(counts, areas(pairs))
@@ -54,6 +55,7 @@ class Cooccurrence(CountedFeature):
 
 def pair_bins(grey: Grey) -> Grey:
     """Bin of each pixel with its eastern neighbour, shape (H, W - 1)."""
+    # Three bits of level: 8 x 8 pairs, the paper's size.
     levels = grey >> np.uint8(5)
     return np.asarray((levels[:, :-1] << np.uint8(3)) | levels[:, 1:])
 
@@ -83,6 +85,7 @@ class HaralickStatistics(WindowFeature):
         matrices = Cooccurrence().histograms(frame, positions, window)
         values = descriptors(matrices)
         pairs = np.stack([values, 1.0 - values], axis=2).reshape(len(values), self.bins)
+        # A window of one column has no pair, and is similar to nothing.
         measured = matrices.any(axis=1, keepdims=True)
         return np.asarray(np.where(measured, pairs / len(DESCRIPTORS), 0.0))
 
@@ -103,6 +106,7 @@ def descriptors(matrices: Array) -> Array:
     """
     first, second = np.divmod(np.arange(LEVELS * LEVELS), LEVELS)
     difference = np.abs(first - second)
+    # p log p of an empty bin is 0: log 1 stands in for log 0.
     logarithms = np.log(np.where(matrices > 0, matrices, 1.0))
     values = [
         matrices.max(axis=1),
@@ -139,6 +143,7 @@ class BinaryPatterns(CountedFeature):
 def patterns(grey: Grey) -> Grey:
     """Pattern of every pixel, shape (H, W): bit `i` is set where `NEIGHBOURS[i]` >= the pixel."""
     height, width = grey.shape
+    # Mirrored without repeating the border: repeated pixels would all count as not darker.
     padded = np.asarray(cv2.copyMakeBorder(grey, 1, 1, 1, 1, cv2.BORDER_REFLECT_101), np.uint8)
     codes = np.zeros_like(grey)
     for bit, (column, row) in enumerate(NEIGHBOURS):

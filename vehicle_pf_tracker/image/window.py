@@ -65,6 +65,7 @@ def centres(positions: Positions) -> Centres:
     positions : (..., 2) array
         x, y in continuous px (the centre of pixel i is i + 0.5).
     """
+    # Half to even, as `round` and numba do: all kernels choose the same pixel.
     return np.rint(np.asarray(positions) - 0.5).astype(np.intp)
 
 
@@ -146,6 +147,7 @@ class Counted(NamedTuple):
 
     def coefficients(self, values: Histograms) -> Coefficients:
         """Bhattacharyya coefficient of each row with a reference's `values` (K,), shape (N,)."""
+        # The root of the total comes out of the sum, so that only active bins are divided.
         overlap = np.sqrt(self.bins * values).sum(axis=1)
         return np.asarray(np.minimum(overlap / np.sqrt(np.maximum(self.totals, 1)), 1.0))
 
@@ -210,6 +212,7 @@ class CountedFeature(WindowFeature):
         self, frame: Frame, positions: Positions, window: Window, reference: Reference
     ) -> Coefficients:
         """Compare windows by the bins of `reference` alone; see `WindowFeature.similarity`."""
+        # A reference without a bin is similar to nothing; there is nothing to count either.
         if len(reference.active) == 0:
             return np.zeros(len(positions))
         counted = self.counts(frame, positions, window, reference.active)

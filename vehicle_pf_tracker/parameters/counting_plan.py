@@ -63,7 +63,8 @@ class CountingLine:
 
     def share(self, point: Position) -> float:
         """Where along the line `point` is: 0 at the start, 1 at the end, beyond them outside."""
-        (x, y), (to_x, to_y) = self.start, self.end
+        x, y = self.start
+        to_x, to_y = self.end
         along = (point[0] - x) * (to_x - x) + (point[1] - y) * (to_y - y)
         return along / self.length**2
 
@@ -117,7 +118,8 @@ class CountingPlan:
         """Return the names of the lines and zones of which nothing is in an image of this size."""
         shapes = [(one.name, np.array([one.start, one.end])) for one in self.lines]
         shapes += [(one.name, np.array(one.corners)) for one in self.zones]
-        low, high = (0, 0), (width, height)
+        low = (0, 0)
+        high = (width, height)
         return [n for n, at in shapes if (at.max(0) < low).any() or (at.min(0) > high).any()]
 
 

@@ -67,7 +67,8 @@ def _cvat_label(
     number = images.names.get(stated.get("name", "").rpartition("/")[2])
     if number is None and index.is_integer():
         number = images.nth(int(index))
-    left, top = values["xtl"], values["ytl"]
+    left = values["xtl"]
+    top = values["ytl"]
     sides = (left, top, values["xbr"] - left, values["ybr"] - top)
     if is_absent := values["outside"] == 1:
         sides = ABSENT

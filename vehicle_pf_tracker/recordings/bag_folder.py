@@ -20,7 +20,9 @@ from vehicle_pf_tracker.recordings.messages import type_hash
 from vehicle_pf_tracker.recordings.recording_names import CONVERSION, MCAP, SQLITE
 
 VERSION = 9
+"""Version of metadata.yaml that is written: that of rosbag2 in Jazzy."""
 _INFINITE = {"sec": 9223372036, "nsec": 854775807}
+"""Duration by which ROS says "without limit": the largest int64 in ns."""
 RELIABLE_QOS: list[dict[str, Any]] = [
     {
         "history": "keep_last",

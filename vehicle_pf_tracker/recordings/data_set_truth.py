@@ -18,6 +18,7 @@ from vehicle_pf_tracker.recordings.truth_labels import ABSENT, Images, Label
 
 _REQUIRED = ("frame", "x", "y", "w", "h")
 _PRESENCE: Mapping[float, Occlusion | None] = {1.0: None}
+"""Meaning of a flag that says the vehicle is not in view: a frame without truth."""
 _FLAGS: Mapping[str, Mapping[float, Occlusion | None]] = {
     "out_of_view.txt": _PRESENCE,
     "absence.label": _PRESENCE,
@@ -98,7 +99,8 @@ def in_order(path: Path, text: str, images: Images) -> Iterator[Label]:
         elif len(values) == 4:
             sides = (values[0] - first_px, values[1] - first_px, values[2], values[3])
         else:
-            xs, ys = values[::2], values[1::2]
+            xs = values[::2]
+            ys = values[1::2]
             sides = (min(xs), min(ys), max(xs) - min(xs), max(ys) - min(ys))
         identity = int(ending.group(1)) if ending else 1
         yield Label(where, images.nth(begin + index), sides, state or Occlusion.NONE, identity)

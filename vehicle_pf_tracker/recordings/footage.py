@@ -16,9 +16,10 @@ from vehicle_pf_tracker.core.truth import Truth
 
 START_NS = 1_000_000_000
 """Stamp of the first image. Not 0, which many ROS programs take for "no time"."""
-LOWEST_FPS, HIGHEST_FPS = 1e-4, 1e6
-"""Frame rates that are believed, 1/s: from an image every three hours up to one per microsecond,
-which the fastest cameras reach."""
+LOWEST_FPS = 1e-4
+"""Least frame rate that is believed, 1/s: an image every three hours."""
+HIGHEST_FPS = 1e6
+"""Highest frame rate that is believed, 1/s: the fastest cameras reach it."""
 LARGEST_PX = 2.0**24
 """Largest coordinate of a true box, px: beyond it a polygon's single precision loses whole px."""
 LAST_STAMP_NS = (2**31 - 1) * 10**9

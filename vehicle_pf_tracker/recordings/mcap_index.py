@@ -39,10 +39,11 @@ from vehicle_pf_tracker.recordings.mcap_blocks import (
 
 MAGIC = b"\x89MCAP0\r\n"
 _FOOTER = struct.pack("<BQ", Opcode.FOOTER, 20)
+"""Beginning of the footer record of an MCAP file: its opcode, and the length of its content."""
 _TAIL = len(_FOOTER) + 20 + len(MAGIC)
-
-
+"""Bytes from there to the end of a file that was closed."""
 _WHOLE_BLOCK = -1
+"""Offset of a block that is not opened yet, below those of all messages: it sorts before them."""
 
 
 @dataclass

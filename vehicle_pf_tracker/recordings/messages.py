@@ -58,8 +58,10 @@ IMAGE_ANNOTATIONS = "foxglove_msgs/msg/ImageAnnotations"
 _BROKEN = (SerdeError, struct.error, ValueError, IndexError, AssertionError)
 
 
-OK, WARN, ERROR = 0, 1, 2
-"""Levels of a diagnostic status."""
+# Levels of a diagnostic status, as `diagnostic_msgs/DiagnosticStatus` numbers them.
+OK = 0
+WARN = 1
+ERROR = 2
 
 
 @cache
@@ -247,12 +249,14 @@ def _truth_of(stamp_ns: int, by_topic: dict[str, Any]) -> Truth:
 
 def _box_of(stamp_ns: int, by_topic: dict[str, Any]) -> Box:
     points = by_topic[TRUTH_BOX_TOPIC].polygon.points
-    xs, ys = [point.x for point in points], [point.y for point in points]
+    xs = [point.x for point in points]
+    ys = [point.y for point in points]
     if len(points) < 3 or not all(abs(side) <= LARGEST_PX for side in xs + ys):
         raise InputError(
             f"the truth box at stamp {stamp_ns} ns is not a polygon of corners within 2^24 px"
         )
-    width, height = max(xs) - min(xs), max(ys) - min(ys)
+    width = max(xs) - min(xs)
+    height = max(ys) - min(ys)
     if width <= 0 or height <= 0:
         raise InputError(f"the truth box at stamp {stamp_ns} ns has no area")
     if TRUTH_POSITION_TOPIC not in by_topic:

@@ -11,8 +11,10 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-MCAP, SQLITE = ".mcap", ".db3"
-"""Suffixes of the files of recordings."""
+MCAP = ".mcap"
+"""Suffix of MCAP files."""
+SQLITE = ".db3"
+"""Suffix of rosbag2's SQLite files."""
 CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
 """Command that converts a bag; it comes with `rosbags`, and so with this package."""
 

@@ -48,6 +48,7 @@ class Homography:
 
     def to_image(self, points: Array) -> Array:
         """Map metres (…, 2) to pixels (…, 2)."""
+        # Inverted when asked for: trackers map to the road only.
         inverse = np.asarray(np.linalg.inv(self.matrix), np.float64)
         return _mapped(inverse, points)
 
@@ -85,11 +86,13 @@ def fit_homography(pixels: Array, metres: Array) -> Homography:
         raise InputError(
             f"the road needs at least {LEAST_PAIRS} pairs of points, got {len(pixels)}"
         )
+    # Pixels in hundreds and products of them would cost half of the digits (Hartley 1997).
     to_unit_pixels = _normalising(pixels)
     to_unit_metres = _normalising(metres)
     unit_pixels = _mapped(to_unit_pixels, pixels)
     unit_metres = _mapped(to_unit_metres, metres)
     road_to_image = _refined(_linear_fit(unit_metres, unit_pixels), unit_metres, unit_pixels)
+    # Fitted from the road to the image, where the errors are; kept the other way round.
     matrix = np.linalg.inv(to_unit_metres) @ np.linalg.inv(road_to_image) @ to_unit_pixels
     near = Homography(matrix).nearness(pixels)
     if not (np.all(near > 0) or np.all(near < 0)):
@@ -112,8 +115,10 @@ def _normalising(points: Array) -> Array:
 
 def _linear_fit(source: Array, target: Array) -> Array:
     """Solve the direct linear transformation from `source` to `target`, both normalised."""
+    # The last singular vector solves A h = 0 with |h| = 1.
     _, values, vectors = np.linalg.svd(_rows(_homogeneous(source), target))
     matrix: Array = vectors[-1].reshape(3, 3)
+    # A matrix that is nearly singular maps the road to a line.
     shape = np.linalg.svd(matrix, compute_uv=False)
     if values[7] < _LEAST_RATIO * values[0] or shape[2] < _LEAST_RATIO * shape[0]:
         raise InputError(
@@ -128,9 +133,11 @@ def _refined(matrix: Array, source: Array, target: Array) -> Array:
     points = _homogeneous(source)
     for _ in range(_ROUNDS):
         mapped = _mapped(matrix, source)
+        # The rows of the linear fit, divided by the depth, are the derivatives by the nine numbers.
         derivatives = _rows(points / (points @ matrix[2])[:, np.newaxis], mapped)
         step = np.linalg.lstsq(derivatives, (target - mapped).ravel(), rcond=None)[0]
         matrix = matrix + step.reshape(3, 3)
+        # The scale of a homography is free: kept at 1, it cannot drift off in the steps.
         matrix = matrix / np.linalg.norm(matrix)
         if np.linalg.norm(step) < _SETTLED:
             break

@@ -76,11 +76,13 @@ class Lens:
     @property
     def matrix(self) -> Array:
         """Camera matrix (3, 3) for pixels of this package."""
-        (fx, fy), (cx, cy) = self.focal, self.centre
+        fx, fy = self.focal
+        cx, cy = self.centre
         return np.array([[fx, 0, cx + FIRST_PIXEL], [0, fy, cy + FIRST_PIXEL], [0, 0, 1]])
 
     def to_ideal(self, points: Array) -> Array:
         """Remove the distortion from pixels (…, 2); nan where no ray belongs to a pixel."""
+        # All zero is no lens for polynomials, but still bends by the equidistant model.
         if not any(self.coefficients) and self.model != "equidistant":
             return points
         return self._pixels(self._undistorted(self._rays(points)))
@@ -104,6 +106,7 @@ class Lens:
             bent = cv2.fisheye.distortPoints(points, np.eye(3), coefficients)
         else:
             forward = np.dstack([points, np.ones(points.shape[:2])])
+            # `projectPoints` with no rotation and no shift is the distortion alone.
             still = np.zeros(3)
             bent = cv2.projectPoints(forward, still, still, np.eye(3), coefficients)[0]
         return np.asarray(bent, np.float64).reshape(rays.shape)
@@ -115,6 +118,7 @@ class Lens:
         k1 = -0.3 it is off by 1e-5 focal lengths at half a focal length from the centre, and at a
         whole one, where no ray belongs to a pixel, it returns a point as if there were one.
         """
+        # Distorted rays are near enough to start from: the distortion is small beside the ray.
         rays = np.array(distorted)
         with np.errstate(all="ignore"):
             for _ in range(_ROUNDS):
@@ -126,6 +130,7 @@ class Lens:
                     for step in np.eye(2) * _STEP
                 ]
                 (a, c), (b, d) = (np.moveaxis(column, -1, 0) for column in columns)
+                # The 2 x 2 systems by hand, for all points at once.
                 x, y = np.moveaxis(error, -1, 0)
                 move = np.stack([d * x - b * y, a * y - c * x], axis=-1)
                 rays = rays - move / (a * d - b * c)[..., np.newaxis]

@@ -37,6 +37,7 @@ class RoadMotion:
         """Begin at a measured position (2,), m, with its covariance (2, 2); speed unknown."""
         full = np.zeros((4, 4))
         full[:2, :2] = covariance
+        # Wide, not infinite: the second position decides, and the matrices stay invertible.
         full[2:, 2:] = np.eye(2) * _SPEED_SIGMA**2
         return cls(np.concatenate([position, np.zeros(2)]), full)
 
@@ -55,6 +56,7 @@ class RoadMotion:
         step[0, 2] = step[1, 3] = seconds
         square = seconds**2 / 2
         cube = seconds**3 / 3
+        # White acceleration integrated over the time (Bar-Shalom): right for any frame rate.
         walk = np.kron([[cube, square], [square, seconds]], np.eye(2)) * acceleration**2
         return RoadMotion(step @ self.state, step @ self.covariance @ step.T + walk)
 
@@ -85,5 +87,6 @@ class RoadMotion:
         speed = self.speed
         if speed == 0:
             return float(np.sqrt(np.linalg.norm(covariance, 2)))
+        # To the first order; at a standstill above the speed has no direction to be known along.
         along = self.velocity / speed
         return float(np.sqrt(along @ covariance @ along))

@@ -69,6 +69,7 @@ class RoadPlane:
         homography = fit_homography(ideal, metres)
         hull = convex_hull(ideal)
         middle = hull.mean(axis=0)
+        # Grown from its middle: beyond the pairs a homography extrapolates, and soon badly.
         return cls(homography, lens, middle + (1 + margin) * (hull - middle), coarsest)
 
     @classmethod
@@ -87,8 +88,10 @@ class RoadPlane:
                 f"the camera is {pose.position[2]:g} m above the road's plane z = 0; "
                 "it must be above it, and the road's frame have z upwards"
             )
+        # Road to camera: with z = 0 the third column of the rotation falls out.
         turned = pose.rotation.T
         to_image = lens.matrix @ np.column_stack([turned[:, :2], -turned @ pose.position])
+        # Beyond it the inverse has no digits left: the plane is seen as a line.
         if np.linalg.cond(to_image) > 1e12:
             raise InputError("the camera's view lies within the road's plane")
         # The third coordinate of this map is 1 / depth: positive in front of the camera.
@@ -135,6 +138,7 @@ def residuals(plane: RoadPlane, pairs: Sequence[Pair]) -> tuple[Array, Array]:
 
 def convex_hull(points: Array) -> Array:
     """Return the corners (M, 2) of the convex hull of points (N, 2), in order around it."""
+    # Indices, not points: OpenCV knows float32 only, and the corners shall keep their digits.
     corners = cv2.convexHull(points.astype(np.float32), clockwise=False, returnPoints=False)
     return np.asarray(points[corners.ravel()])
 
@@ -143,5 +147,6 @@ def is_inside(hull: Array, point: Array) -> bool:
     """Return whether `point` (2,) is in the convex hull or on its edge."""
     along = np.roll(hull, -1, axis=0) - hull
     to_point = point - hull
+    # A convex outline has every inner point on the same side of each edge.
     turns = along[:, 0] * to_point[:, 1] - along[:, 1] * to_point[:, 0]
     return bool(np.all(turns >= 0))

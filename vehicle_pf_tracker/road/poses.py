@@ -46,6 +46,7 @@ class Pose:
                 f"the pose {position}, {quaternion} needs finite numbers and a quaternion x,y,z,w "
                 "of length 1"
             )
+        # Printed quaternions are rounded: scaled, the matrix is a rotation to the last digit.
         x, y, z, w = (number / length for number in quaternion)
         rotation = np.array(
             [
@@ -81,6 +82,7 @@ class PoseTree:
 
     def put(self, parent: str, child: str, pose: Pose) -> None:
         """Keep the pose of `child` in `parent`, over an earlier one."""
+        # TF1 names began with a slash, and recordings of that time still have them.
         self._parents[child.lstrip("/")] = parent.lstrip("/"), pose
 
     def find(self, frame: str, reference: str) -> Pose:
@@ -93,6 +95,7 @@ class PoseTree:
         """
         below = self._chain(frame.lstrip("/"))
         above = self._chain(reference.lstrip("/"))
+        # The lowest common frame: both ways are multiplied up to there only.
         common = next((name for name in below if name in above), None)
         if common is None:
             raise InputError(f"TF does not connect the frames {frame!r} and {reference!r}")

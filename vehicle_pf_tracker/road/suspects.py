@@ -38,6 +38,8 @@ def disagreement(pairs: Sequence[Pair], lens: Lens | None) -> str:
     Of four pairs only an impossible order or points in line can be told, of five not which is off.
     """
     try:
+        # A fit that fails says less than one that is bad: which pairs make it impossible is another
+        # question.
         error = _standard_error(pairs, lens)
     except InputError:
         return _of_impossible(pairs, lens)
@@ -45,6 +47,7 @@ def disagreement(pairs: Sequence[Pair], lens: Lens | None) -> str:
         return ""
     wrong = _left_out(pairs, lens, error / _GAIN)
     if wrong:
+        # How far off a pair is, is measured from a fit that it did not bend.
         rest = _fitted([pair for place, pair in enumerate(pairs) if place not in wrong], lens)
         off = residuals(rest, [pairs[place] for place in wrong])[0]
         return "read again: " + ", ".join(
@@ -63,6 +66,7 @@ def _fitted(pairs: Sequence[Pair], lens: Lens | None) -> RoadPlane:
 def _standard_error(pairs: Sequence[Pair], lens: Lens | None) -> float:
     """Return the standard error of a pixel coordinate, px; a homography has eight numbers."""
     off = residuals(_fitted(pairs, lens), pairs)[0]
+    # Two coordinates a pair, less the eight numbers: four pairs fit exactly, whatever is wrong.
     free = 2 * (len(pairs) - LEAST_PAIRS)
     return float(np.sqrt((off**2).sum() / free)) if free else 0.0
 
@@ -72,6 +76,7 @@ def _left_out(pairs: Sequence[Pair], lens: Lens | None, most: float) -> tuple[in
 
     The rest must have more pairs than determine it, so that it can disagree at all.
     """
+    # Fewest first: leaving out two would hide which one was misread.
     for count in range(1, _MOST_LEFT_OUT + 1):
         if len(pairs) - count <= LEAST_PAIRS or (count > 1 and len(pairs) > _MOST_PAIRS):
             break
@@ -99,6 +104,7 @@ def _of_impossible(pairs: Sequence[Pair], lens: Lens | None) -> str:
         return "read again: " + ", ".join(_named(pairs[place]) for place in wrong)
     for what in ("pixel", "road"):
         points = np.array([getattr(pair, what) for pair in pairs], np.float64)
+        # In the image first: points in line on the road may have been read in line.
         for places in combinations(range(len(pairs)), 3):
             if _is_flat(points[list(places)]):
                 names = ", ".join(_named(pairs[place]) for place in places)
@@ -127,5 +133,6 @@ def _is_flat(points: Array) -> bool:
 
 
 def _named(pair: Pair) -> str:
-    (u, v), (x, y) = pair.pixel, pair.road
+    u, v = pair.pixel
+    x, y = pair.road
     return f"{u:g},{v:g}={x:g},{y:g}"

@@ -76,6 +76,7 @@ class Disturbance:
 
 
 DISTURBANCES = {"clean": Disturbance(2.0, 0.0, 0.0), "rough": Disturbance(8.0, 3.0, 0.03)}
+"""Cameras by name: a steady one, and one that the wind shakes, with more noise and flicker."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -94,7 +94,8 @@ class Sprite:
 
     def area(self, box: Box) -> float:
         """Area in px² of the silhouette when the sprite fills `box`."""
-        rows, columns = self._integral.shape[0] - 1, self._integral.shape[1] - 1
+        rows = self._integral.shape[0] - 1
+        columns = self._integral.shape[1] - 1
         return float(self._integral[-1, -1, 3] * box.area / (rows * columns))
 
     def layer(self, box: Box, window: PixelWindow) -> Image:
@@ -118,7 +119,8 @@ class Sprite:
 
     @staticmethod
     def _means(integral: Array, box: Box, window: PixelWindow) -> Array:
-        rows, columns = integral.shape[0] - 1, integral.shape[1] - 1
+        rows = integral.shape[0] - 1
+        columns = integral.shape[1] - 1
         x = (np.arange(window.left, window.right + 1) - box.x) * (columns / box.width)
         y = (np.arange(window.top, window.bottom + 1) - box.y) * (rows / box.height)
         corners = interpolate(integral, y.clip(0, rows), x.clip(0, columns))

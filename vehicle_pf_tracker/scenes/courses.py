@@ -73,7 +73,8 @@ class Pace:
 
     def __call__(self, frame: float) -> float:
         """Give the distance covered from the first knot to `frame`, px."""
-        (start, speed), (end, last_speed) = self.knots[0], self.knots[-1]
+        start, speed = self.knots[0]
+        end, last_speed = self.knots[-1]
         distance = speed * min(frame - start, 0.0) + last_speed * max(frame - end, 0.0)
         for (t0, v0), (t1, v1) in pairwise(self.knots):
             spent = min(max(frame, t0), t1) - t0
@@ -82,7 +83,8 @@ class Pace:
 
     def arrival(self, distance: float) -> float:
         """Give the frame in which `distance` (px, at least 0) is covered, for speeds over 0."""
-        low, high = self.knots[0][0], self.knots[0][0] + 1.0
+        low = self.knots[0][0]
+        high = self.knots[0][0] + 1.0
         while self(high) < distance:
             high += high - low
         for _ in range(60):

@@ -31,6 +31,7 @@ from vehicle_pf_tracker.scenes.solids import Face
 from vehicle_pf_tracker.scenes.vehicles import car, suv, truck
 
 SIZES = {"640x480": (640, 480), "768x576": (768, 576)}
+"""Width and height in px of the papers' videos, by the word that the parameter takes."""
 FREE = 10
 """Free pixels between the vehicle and the image's sides in the first and the last frame."""
 LANE = 1

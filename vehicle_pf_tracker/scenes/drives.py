@@ -20,7 +20,10 @@ from vehicle_pf_tracker.scenes.scenery import pillar, plain, tree
 from vehicle_pf_tracker.scenes.solids import draw
 from vehicle_pf_tracker.scenes.vehicles import car, coach
 
-WIDTH, HEIGHT = 640, 480
+WIDTH = 640
+"""Width of the artificial video, px (Scharcanski 2011)."""
+HEIGHT = 480
+"""Height of the artificial video, px."""
 BAR_MARGIN = 20
 """Free pixels between the vehicle and the image's sides in the first and the last frame."""
 
@@ -28,7 +31,7 @@ _SOURCE = "Scharcanski 2011, section IV"
 
 
 COACH_LENGTH = 12.0
-"""Metres."""
+"""Length of a coach, m: three times that of the cars it hides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,7 +188,8 @@ def clear(parameters: DriveParameters, seed: int) -> Scene:
 
 def braking(parameters: BrakingParameters, seed: int) -> Scene:
     """Make the scene: the target changes its speed under a bridge."""
-    before, after = parameters.speed, parameters.speed * parameters.change
+    before = parameters.speed
+    after = parameters.speed * parameters.change
     plain = Drive(parameters, seed)
     frame = plain.frame_at(plain.along(0.5))
     half = 0.35 * parameters.hidden

@@ -85,7 +85,8 @@ class Vehicle:
 
     def on(self, path: Path) -> tuple[Actor, Actor]:
         """Send it along `path`; returns shadow and body, in the order to paint them."""
-        (right, down), size = self._shade_offset, self._shade_size
+        right, down = self._shade_offset
+        size = self._shade_size
 
         def follow(frame: float) -> Box:
             body = path(frame)

@@ -17,7 +17,9 @@ from vehicle_pf_tracker.scenes.solids import Face, draw, extent, normal_of, shad
 from vehicle_pf_tracker.scenes.vehicles import HEAD_LAMP, SILL, TAIL_LAMP
 
 PLATE: Colour = (226, 226, 216)
+"""Number plates: nearly white."""
 SHADOW_OPACITY = 0.5
+"""Opacity of shadows on the road: half, as the sky lights them too."""
 HEADING_STEP = math.radians(2)
 """Sprites are drawn for headings this far apart; their boxes are exact for every heading."""
 
@@ -45,7 +47,8 @@ def all_round(faces: Sequence[Face]) -> list[Face]:
 
 def turned(faces: Iterable[Face], heading: float) -> list[Face]:
     """Turn a solid by `heading` (rad): 0 drives to the right, pi/2 away from the viewer."""
-    cosine, sine = math.cos(heading), math.sin(heading)
+    cosine = math.cos(heading)
+    sine = math.sin(heading)
     return [
         face.moved(lambda x, y, z: (x * cosine - y * sine, x * sine + y * cosine, z))
         for face in faces

@@ -30,7 +30,8 @@ def cells_inside(
         The part of the grid around the polygon.
     inside : array of bool, shape of the window
     """
-    low, high = outline.min(axis=0).tolist(), outline.max(axis=0).tolist()
+    low = outline.min(axis=0).tolist()
+    high = outline.max(axis=0).tolist()
     window = PixelWindow.between(low, high, columns, rows)
     x: Array = np.arange(window.left, window.right, dtype=np.float64) + 0.5
     y: Array = np.arange(window.top, window.bottom, dtype=np.float64) + 0.5

@@ -18,17 +18,25 @@ from vehicle_pf_tracker.scenes.scenery import PAINT, asphalt, concrete, foliage,
 from vehicle_pf_tracker.scenes.solids import ELEVATION
 
 LANE_WIDTH = 3.25
-"""Metres."""
+"""Width of a lane, m: between those of a city (3.0) and a motorway (3.75)."""
 SHOULDER = 8
 """Distance from the kerb to the first lane, px."""
 STEEL: Colour = (176, 180, 182)
+"""Galvanised guard rails in the sun."""
 
 
-_FAR_ROAD, _NEAR_ROAD = slice(82, 194), slice(224, 352)
+_FAR_ROAD = slice(82, 194)
+"""Rows of asphalt of the far carriageway on the highway, px: three lanes at its scale."""
+_NEAR_ROAD = slice(224, 352)
+"""The same of the near one, whose scale is larger."""
 _FAR_EDGES = (102, 186)
+"""Rows of the far edge lines, px; the wheels of `FAR_LANES` stand between the markings."""
 _FAR_DIVIDERS = (130, 156)
+"""Rows of the dashed lines between the far lanes, px."""
 _NEAR_EDGES = (232, 326)
+"""Rows of the near edge lines, px."""
 _NEAR_DIVIDERS = (263, 294)
+"""Rows of the dashed lines between the near lanes, px."""
 
 
 def dual_carriageway(width: int, height: int, rng: np.random.Generator) -> Image:
@@ -149,7 +157,8 @@ def town(shape: tuple[int, int], roads: Sequence[Carriageway], rng: np.random.Ge
     picture = concrete(shape, rng)
     picture[::14] *= np.float32(0.9)
     picture[:, ::20] *= np.float32(0.93)
-    top, bottom = roads[0].top - 40, min(roads[-1].rows.stop + 40, shape[0])
+    top = roads[0].top - 40
+    bottom = min(roads[-1].rows.stop + 40, shape[0])
     picture[:top] = grass((top, shape[1]), rng)
     picture[bottom:] = grass((shape[0] - bottom, shape[1]), rng)
     kerb(picture, slice(top + 2, bottom), rng)

@@ -20,7 +20,9 @@ from vehicle_pf_tracker.scenes.solids import SHADE
 PAINT: Colour = (214, 214, 206)
 """Colour of markings."""
 STEEL: Colour = (128, 132, 134)
+"""Lamp posts and poles, weathered."""
 BARK: Colour = (74, 62, 50)
+"""Trunks of trees."""
 
 
 PARAPET = 11
@@ -149,7 +151,8 @@ def tree(
         Source of its shape.
     """
     width, top, bottom = crown
-    rows, columns = round(2 * (bottom - top)), round(2 * width)
+    rows = round(2 * (bottom - top))
+    columns = round(2 * width)
     y, x = np.linspace(-1, 1, rows)[:, np.newaxis], np.linspace(-1, 1, columns)
     rim = 1 - np.hypot(x, y) + 0.22 * value_noise((rows, columns), (14, 14), rng)
     gaps = value_noise((rows, columns), (7, 8), rng) + 0.5 * value_noise(

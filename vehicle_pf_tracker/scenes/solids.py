@@ -22,17 +22,20 @@ from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
 from vehicle_pf_tracker.scenes.polygons import cells_inside
 
 ELEVATION = math.radians(35)
-"""Angle of the view above the horizon."""
+"""Angle of the view above the horizon: that of a camera on a bridge or a mast near the road."""
 SHADE: Colour = (12, 14, 20)
 """Colour that shadows are tinted with."""
 OVERSAMPLING = 6
-"""Cells drawn per pixel and axis."""
+"""Cells drawn per pixel and axis: 36 levels of coverage at an edge, finer than the noise."""
 SAME_PLACE = 0.08
 """A face no more than this behind another (m) is taken as painted on it, if drawn later."""
 
 _VIEW = np.array([0.0, -math.cos(ELEVATION), math.sin(ELEVATION)])
+"""Unit vector towards the viewer."""
 _DOWN = np.array([0.0, -math.sin(ELEVATION), -math.cos(ELEVATION)])
+"""Unit vector that points down in the image."""
 _SUN = np.array([0.35, 0.4, 0.85])
+"""Direction of the sun, nearly of length 1: high, so that shadows stay beside their vehicles."""
 
 Point = tuple[float, float, float]
 
@@ -91,7 +94,8 @@ def shadow(faces: Iterable[Face]) -> list[Face]:
 def extent(faces: Iterable[Face]) -> Box:
     """Tight box of a solid as it is seen, in metres of the view plane."""
     every = np.concatenate([_project(face) for face in faces])
-    (left, top), (right, bottom) = every.min(axis=0).tolist(), every.max(axis=0).tolist()
+    left, top = every.min(axis=0).tolist()
+    right, bottom = every.max(axis=0).tolist()
     return Box(left, top, right - left, bottom - top)
 
 
@@ -103,7 +107,8 @@ def draw(faces: Sequence[Face], width: float, height: float, opacity: float = 1.
     and set the fineness.
     """
     bounds = extent(faces)
-    columns, rows = math.ceil(width * OVERSAMPLING), math.ceil(height * OVERSAMPLING)
+    columns = math.ceil(width * OVERSAMPLING)
+    rows = math.ceil(height * OVERSAMPLING)
     cells_per_metre = columns / bounds.width, rows / bounds.height
     colour = np.zeros((rows, columns, 3), np.uint8)
     nearness = np.full((rows, columns), -np.inf, np.float32)

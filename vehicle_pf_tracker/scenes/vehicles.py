@@ -10,14 +10,23 @@ from collections.abc import Sequence
 from vehicle_pf_tracker.scenes.compositing import Colour
 from vehicle_pf_tracker.scenes.solids import Face, Point, disc, side_panel, strips
 
+# Colours of parts that are the same on all vehicles, whatever their paint.
 TYRE: Colour = (22, 22, 24)
+"""Rubber."""
 RIM: Colour = (150, 152, 156)
+"""Aluminium of wheels."""
 SILL: Colour = (38, 38, 40)
+"""Plastic of sills and bumpers."""
 SIDE_GLASS: Colour = (40, 48, 56)
+"""Side windows, which show the dark inside."""
 SCREEN: Colour = (92, 112, 128)
+"""Windscreens, which lean and reflect the sky."""
 HEAD_LAMP: Colour = (244, 240, 214)
+"""Glass of head lamps."""
 TAIL_LAMP: Colour = (186, 24, 22)
+"""Glass of tail lamps."""
 AMBER_LAMP: Colour = (236, 140, 30)
+"""Glass of indicators."""
 
 Contour = Sequence[tuple[float, float]]
 
@@ -25,13 +34,15 @@ Contour = Sequence[tuple[float, float]]
 _TUMBLEHOME = 0.2
 """Inward lean of the cabin from sill to roof, m."""
 ROOF_UNIT: Colour = (170, 172, 174)
+"""Air conditioning of a coach."""
 
 
 def _panel(
     x: tuple[float, float], z: tuple[float, float], colour: Colour, *, glow: bool = False
 ) -> Face:
     """Make an upright rectangle on the near side."""
-    (rear, front), (low, high) = x, z
+    rear, front = x
+    low, high = z
     contour = [(rear, low), (rear, high), (front, high), (front, low)]
     return side_panel(contour, 0, colour, glow=glow)
 
@@ -168,7 +179,8 @@ def _flank(body: Contour, paint: Colour, door: float) -> list[Face]:
 def _cabin(cabin: Contour, width: float, paint: Colour) -> list[Face]:
     """Rear and front screens, roof and the painted near side of a cabin of four (x, z) points."""
     (xr, zr), (x1, z1), (x2, z2), (xf, zf) = cabin
-    near, far = _TUMBLEHOME, width - _TUMBLEHOME
+    near = _TUMBLEHOME
+    far = width - _TUMBLEHOME
     return [
         Face(((xr, 0.05, zr), (x1, near, z1), (x1, far, z1), (xr, width - 0.05, zr)), SCREEN),
         Face(((xf, 0.05, zf), (x2, near, z2), (x2, far, z2), (xf, width - 0.05, zf)), SCREEN),

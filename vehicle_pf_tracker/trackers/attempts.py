@@ -80,6 +80,7 @@ class Attempts:
             raise
         except Exception as error:  # whatever a tracker or a network raises
             self._errors_in_a_row += 1
+            # 1: cost one image. 2: start anew. 3, within the new start: it is broken.
             if self._errors_in_a_row % 2:
                 raise TrackerError(error, persists=self._errors_in_a_row > 1) from error
             self.events.append(

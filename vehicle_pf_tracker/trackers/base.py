@@ -54,12 +54,14 @@ class Target:
 
     def __init__(self, frame: Frame, box: Box) -> None:
         width, height = frame_size(frame)
+        # The target's own size at least: a search region or a wider window lies around it.
         margin = max(_MARGIN, math.ceil(max(box.width, box.height)))
         left = max(math.floor(box.x) - margin, 0)
         top = max(math.floor(box.y) - margin, 0)
         right = min(math.ceil(box.x + box.width) + margin, width)
         bottom = min(math.ceil(box.y + box.height) + margin, height)
         self.box = box
+        # A copy of the part, not of the frame: it is kept as long as the track.
         self.patch: Frame = frame[top:bottom, left:right].copy()
         self.centre = box.centre[0] - left, box.centre[1] - top
 
@@ -207,6 +209,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         began = time.perf_counter()
         check_target(box, *frame_size(check_frame(frame)))
         self._target = Target(frame, box)
+        # Kept until the next frame: new parameters before it start again, see `reconfigure`.
         self._first_frame = frame.copy()
         self._window = self._target.window(self.parameters.window)
         # From the seed again: a restart repeats the first start, to the last bit.
@@ -214,6 +217,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         self._judge = EvidenceJudge()
         self._cloud = Cloud.uniform(keep_inside(frame, self._scatter(box.centre)))
         self._learn()
+        # The centre of a box half outside the image may be outside, too.
         x, y = keep_inside(frame, np.asarray(box.centre))
         outcome = Outcome(self._cloud, (float(x), float(y)), (0.0, 0.0), START_REGIME, 1.0, {})
         return self._estimate(outcome, Mode.TRACKING, 1.0, began)
@@ -223,7 +227,9 @@ class BaseTracker(ABC, Generic[ParametersT]):
         began = time.perf_counter()
         outcome = self._advance(check_frame(frame), elapsed)
         self._first_frame = None
+        # Waiting is counted in seconds, since thresholds hold for every frame rate.
         seconds = elapsed * self.frame_period
+        # The variant says it, since only there the mean is known before it is clipped.
         left_image = outcome.left_image
         mode = self._judge.judge(outcome.evidence, seconds, self.parameters, left_image=left_image)
         confidence = self._judge.confidence(outcome.evidence) if outcome.cloud.sound else 0.0
@@ -246,6 +252,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         if "restarts" in changed:
             self.seed = drawn_seed(parameters.seed)
             self._rng = np.random.default_rng(self.seed)
+        # Started again with the same numbers, as if the new parameters had been there first.
         if self._first_frame is not None:
             self.start(self._first_frame, self.target.box)
         elif self._target is not None and "relearns" in changed:
@@ -273,8 +280,10 @@ class BaseTracker(ABC, Generic[ParametersT]):
         return keep_inside(frame, proposed), is_outside(frame, x, y)
 
     def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:
-        target, (x, y) = self.target.box, outcome.position
+        target = self.target.box
+        x, y = outcome.position
         box = Box.around(outcome.position, *outcome.size or (target.width, target.height))
+        # Of the weights before resampling: afterwards all are equal.
         effective = effective_sample_size(outcome.cloud.weights)
         # A weight that is not finite leaves no effective particles, a position no finite sum.
         if not (effective > 0 and math.isfinite(x + y + outcome.cloud.positions.sum())):
@@ -292,6 +301,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
             effective_sample_size=effective,
             resampling_passes=outcome.resampling_passes,
             resampled_particles=outcome.resampled_particles,
+            # Views, since a caller that wrote to them would change the next step.
             particles=read_only(outcome.cloud.positions),
             weights=read_only(outcome.cloud.weights),
             duration=time.perf_counter() - began,
@@ -305,6 +315,7 @@ class ParticleTracker(BaseTracker[ParticleParametersT]):
         """Take new parameters; another number of particles is drawn from the present cloud."""
         super().reconfigure(parameters)
         if self._target is not None and len(self._cloud.weights) != parameters.num_particles:
+            # Systematic: a change of the number alone then keeps the cloud's shape best.
             ancestors = self._draw(self._cloud.weights, "systematic")
             self._cloud = Cloud.uniform(self._cloud.positions[ancestors])
 

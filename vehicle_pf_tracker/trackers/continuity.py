@@ -96,6 +96,7 @@ class Continuity:
         if reason is None:
             self._believe(image, stamp_ns - self._last.stamp_ns if self._last else 0)
             return Continuation.LEAPS if timed and self._last_leapt else Continuation.CONTINUES
+        # Before the others: of two that agree with each other the stream has changed.
         if self._doubted is not None and self._agrees(image, self._doubted):
             self._believe(image, stamp_ns - self._doubted.stamp_ns)
             return Continuation.CONFIRMS
@@ -105,6 +106,7 @@ class Continuity:
             return Continuation.CORRECTS
         self._doubted = image
         self._odd += 1
+        # A clock that never agrees is no reason to lose the target: frames count one period each.
         if self._odd > PATIENCE and size == self.size:
             return Continuation.UNTIMED
         raise StrayImageError(reason + _AGREED)
@@ -115,6 +117,7 @@ class Continuity:
         if image.size != self._last.size:
             usual = size_words(self._last.size)
             return f"the image is of {size_words(image.size)} px among images of {usual} px"
+        # Size before time: an image of another camera has a stamp of its own.
         interval = image.stamp_ns - self._last.stamp_ns
         if timed and interval < 0:
             return f"the image's stamp goes back by {-interval * 1e-9:.3f} s"
@@ -127,6 +130,7 @@ class Continuity:
         interval = image.stamp_ns - doubted.stamp_ns
         leap = doubted.stamp_ns - self._last.stamp_ns  # of a camera that has become this slow
         longest = max(LONGEST_GAP_NS, leap + leap // 2)
+        # The two have to agree with each other, not with what was before them.
         return image.size == doubted.size and 0 <= interval <= longest
 
     def _shows_last_ahead(self, image: _Image) -> bool:
@@ -144,6 +148,7 @@ class Continuity:
         self._last = image
         self._doubted = None
         self._odd = 0
+        # Against the smallest interval: a mean would grow with every dropped image.
         self._last_leapt = interval_ns > _LATE * min(self._intervals, default=0)
         self._interval_ns = interval_ns
         if interval_ns > 0:

@@ -50,6 +50,7 @@ class RunningLevel:
         if self.count > 1:
             distance = min(abs(value - self.value), _LARGEST_EXCESS * self.deviation)
             self.deviation += rate * (distance - self.deviation)
+        # A plain mean at first; from 1 / rate values on an exponential one.
         self.value += max(rate, 1.0 / self.count) * (value - self.value)
 
 
@@ -102,6 +103,7 @@ class EvidenceJudge:
             return self.mode
         self.seconds_without += seconds
         # Lost stays lost without evidence: an estimate at the border does not come back by waiting.
+        # At the border at once: a vehicle that has driven out is not hidden.
         is_long = self.seconds_without >= parameters.lost_after
         lost = left_image or is_long or self.mode is Mode.LOST
         self.mode = Mode.LOST if lost else Mode.OCCLUDED

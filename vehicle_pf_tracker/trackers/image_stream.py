@@ -133,6 +133,7 @@ class ImageStream:
         if isinstance(image, np.ndarray):
             check_frame(image)
         else:
+            # Coded images are decoded only if they may be used: a stray one may be of any size.
             expected = {self.size, _size(aside[0]) if aside is not None else self.size}
             # A camera that was turned by 90 degrees says so in the file, and is turned in decoding.
             if expected & {None, image.size, image.size[::-1]}:  # else a stray, of any size
@@ -140,6 +141,7 @@ class ImageStream:
         try:
             continuation = self._continuity.judge(_size(image), stamp_ns, timed=is_tracking)
         except StrayImageError:
+            # Copied: a driver may reuse its buffer.
             self._aside = image.copy() if isinstance(image, np.ndarray) else image, stamp_ns
             raise
         turns = []
@@ -158,6 +160,7 @@ class ImageStream:
         events = []
         if corrects:
             events.append("the last image's stamp was ahead")
+            # The clock goes back with the image: its interval was not real.
             self._clock = self._clock_before or StampClock(self._frame_rate)
         self._clock_before = copy.deepcopy(self._clock) if leaps else None
         is_timed = continuation is not Continuation.UNTIMED
@@ -165,6 +168,7 @@ class ImageStream:
         if self._last_ns is not None and 0 < stamp_ns - self._last_ns < _SHORTEST_NS:
             events.append(_OTHER_UNIT)
         self._last_ns = stamp_ns
+        # A recording played again, which starts a track again where that is asked for.
         begins_anew = tick.event is StampEvent.JUMP_BACK and self._resets
         if tick.event is not None:
             events.append(tick.event.value)
@@ -178,6 +182,7 @@ class ImageStream:
             change = f"from {size_words(before)} to {size_words(size)}"
             events.append(f"image size changed {change}; starting again")
             begins_anew = True
+        # Until intervals are known, 30 Hz: the commonest rate.
         period = self._clock.period or DEFAULT_PERIOD
         return Turn(frame, tick.elapsed, period, tuple(events), begins_anew, leaps, corrects)
 

@@ -60,6 +60,7 @@ class Localisation:
         """Take another mapping to the road; lens and pose that came from outside are kept."""
         before = self.parameters
         self.parameters = parameters
+        # A lens of another source is another lens.
         if not (before.from_camera_info and parameters.from_camera_info):
             self._lens = parameters.lens
         if not (before.from_tf and parameters.from_tf):
@@ -102,6 +103,7 @@ class Localisation:
         if not self.has_road:
             return
         if parameters.from_camera_info and self._lens is None:
+            # Until it comes there is no road, which is no error.
             self.objection = "no camera_info yet"
         elif parameters.from_tf and self._pose is None:
             self.objection = f"no transform from {parameters.frame_id} to the camera yet"
@@ -117,4 +119,5 @@ class Localisation:
                 self.objection = ""
                 self._follower = RoadFollower(plane, parameters.acceleration)
             else:
+                # The camera has moved, the vehicle has not: its contact and speed go on.
                 self._follower.move(plane)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.base import BaseTracker
 
 _PACKAGE = __name__.rpartition(".")[0]
+"""Package that modules with a leading dot lie in."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,6 +171,7 @@ def find_variant(name: str, own: Mapping[str, Variant] = VARIANTS) -> Variant:
     InputError
         If there is none of this name.
     """
+    # Plug-ins last: none has a name that is taken (`plug_ins`).
     known = {**own, **plug_ins()}
     if name not in known:
         hint = suggestion(name.removesuffix("_tracker"), known)

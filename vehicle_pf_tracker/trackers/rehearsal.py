@@ -15,6 +15,7 @@ from vehicle_pf_tracker.trackers.registry import Variant
 _SIZE = 160, 120
 """Width and height in px: a window of the usual 40 px fits with room to search around it."""
 _BOX = Box(60.0, 45.0, 40.0, 30.0)
+"""Target in the middle of it: of the proportions of a car."""
 _FRAMES = (True, True, False, True)
 """Whether the target is visible: kernels of the search after an occlusion are compiled too."""
 

@@ -87,6 +87,7 @@ class Contact:
     @classmethod
     def of(cls, plane: RoadPlane, box: Box) -> Contact:
         """Make the contact of a track that began with `box`."""
+        # The middle of the lower edge: of a box only that is known to touch the road.
         x, y = box.centre
         centre, below = plane.ideal(np.array([[x, y], [x, y + box.height / 2]]))
         near = float(plane.homography.nearness(below))
@@ -95,6 +96,7 @@ class Contact:
 
     def point(self, centre: Array) -> Array:
         """Return the ideal pixel (2,) of the contact under a vehicle's `centre` (2,), px."""
+        # The lens is removed before anything is divided by a depth.
         ideal = self.plane.ideal(centre)
         # The way d solves d = share * nearness(ideal + d): the size where the contact itself is.
         matrix = self.plane.homography.matrix
@@ -104,6 +106,7 @@ class Contact:
 
     def jacobian(self, centre: Array) -> Array:
         """Return the derivative (2, 2) of the contact's metres by the centre's pixels."""
+        # By differences through all of it: lens, perspective of the vehicle and road in one.
         columns = [
             (self._road(centre + step) - self._road(centre - step)) / (2 * _STEP)
             for step in np.eye(2) * _STEP
@@ -146,6 +149,7 @@ class RoadFollower:
 
     def follow(self, estimate: Estimate, covariance: Array, stamp_ns: int) -> RoadEstimate | None:
         """Take the next estimate with its covariance (2, 2; px²); None where it has no road."""
+        # A new target has a contact and a speed of its own.
         if self._contact is None or estimate.begins:
             self._contact = Contact.of(self._plane, estimate.box)
             self._motion = None
@@ -156,8 +160,11 @@ class RoadFollower:
             return None
         position = self._plane.homography.to_road(contact)
         jacobian = self._contact.jacobian(centre)
+        # First order; the scale of the road hardly changes over the ellipse of a position.
         on_road = jacobian @ covariance @ jacobian.T
+        # A prediction of the tracker is no measurement: the filter predicts by itself.
         measured = position if estimate.mode is Mode.TRACKING else None
+        # Errors last for frames; as if independent, they would make the speed too sure.
         motion = self._move(measured, on_road * CORRELATION, stamp_ns)
         if motion is None:
             self.objection = "the vehicle was not visible on the road yet"
@@ -177,6 +184,7 @@ class RoadFollower:
         """Predict the motion to a stamp, and measure where there is a position."""
         seconds = (stamp_ns - self._last_ns) * 1e-9
         self._last_ns = stamp_ns
+        # After a gap the old velocity says nothing, and one of time that went back is wrong.
         motion = self._motion if 0 <= seconds <= _LONGEST_GAP else None
         if motion is not None and seconds > 0:
             motion = motion.predicted(seconds, self._acceleration)

@@ -142,10 +142,13 @@ class Session:
                 self._take_back()
             kernels = self.tracker.kernels  # they have no state of their own, and need no copy
             kept = {id(kernels): kernels}
+            # Copied only where the stamp may prove to be ahead: a tracker's state is large.
             self._backup = copy.deepcopy(self.tracker, kept) if turn.leaps else None
+            # Where it was seen last says nothing in images of another size, or of another time.
             if turn.begins_anew:
                 self._seen = None
                 self._start_anew()
+            # Known after ten intervals; until then it may change from image to image.
             self.tracker.frame_period = turn.period
             estimate = self._attempts.take(partial(self._step, turn), self._start_anew)
         return estimate
@@ -160,6 +163,7 @@ class Session:
             return
         parameters = self.tracker.parameters
         self.tracker = self._backup
+        # The copy may be older than a change of parameters.
         if self.tracker.parameters != parameters:
             self.tracker.reconfigure(parameters)
 
@@ -174,6 +178,7 @@ class Session:
             estimate = self.tracker.step(turn.frame, turn.elapsed)
         else:
             return None
+        # Only where it was seen: a new start on a prediction would learn the occluder.
         if estimate.mode is Mode.TRACKING:
             self._seen = estimate.box
         return estimate

@@ -65,8 +65,11 @@ class Spread:
         """
         area = estimate.box.area
         doubt = self.doubt * (1 - estimate.confidence)
+        # Half of the log area: the log of a side.
         change = self.change * math.log(area / first_area) / 2
+        # Independent errors: variances add. Area is the square of the vehicle's side.
         level = area * (self.size**2 + doubt**2 + change**2 + (self.growth * hidden) ** 2)
+        # Along the heading alone: a hidden vehicle brakes, and hardly leaves its lane.
         way = self.drift * hidden / period * np.asarray(estimate.velocity)
         spread: Array = self.cloud**2 * cloud_covariance(estimate)
         return spread + level * np.eye(2) + np.outer(way, way)
@@ -106,6 +109,7 @@ class Uncertainty:
         """Take the next estimate: note for how long the vehicle has not been visible."""
         if estimate.begins or not self._first_area:
             self._first_area = estimate.box.area
+        # Time that goes back is a recording that starts again.
         if estimate.mode is Mode.TRACKING or self._seen_ns is None or stamp_ns < self._seen_ns:
             self._seen_ns = stamp_ns
         self._hidden = (stamp_ns - self._seen_ns) * 1e-9

@@ -90,6 +90,7 @@ class Kernels:
 
 
 CHOICES = ("auto", "opencv", "numba")
+"""Values of the parameter `kernels`."""
 
 
 def load_kernels(choice: str) -> Kernels:
@@ -115,6 +116,7 @@ def load_kernels(choice: str) -> Kernels:
                 f"kernels: numba needs numba, which cannot be imported ({error}); "
                 "install it, or set kernels to auto or opencv"
             ) from error
+        # Not installed is a choice; installed and broken is worth a sentence.
         if isinstance(error, ModuleNotFoundError) and error.name == "numba":
             return Kernels()
         why = f"numba is installed but cannot be imported ({error}); the OpenCV kernels are used"

@@ -25,8 +25,11 @@ from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
 _UNSIGNED = DIRECTIONS // 2
 """Directions of gradients whose sign does not count."""
 _IMAGE = numba.types.Array(numba.uint8, 2, "C")
+"""Luminance of a patch, (H, W)."""
 _BYTES = numba.types.Array(numba.uint8, 1, "C", readonly=True)
+"""The table of directions, flat."""
 _CELLS = numba.types.Array(numba.float32, 3, "C")
+"""Channels of cells as they are written, (r, channels, c)."""
 
 _DIRECTION_OF = DIRECTION_OF.ravel()
 _DIRECTION_OF.flags.writeable = False
@@ -71,6 +74,7 @@ def _direction_histograms(
     height, width = grey.shape
     columns = width // GRADIENT_CELL_PX + 2
     cells = np.zeros((DIRECTIONS, height // GRADIENT_CELL_PX + 2, columns), np.float32)
+    # A row of cells at a time stays in the first cache; whole images would not.
     sums = np.zeros(DIRECTIONS * columns, np.float32)
     above = np.zeros_like(sums)
     below = np.zeros_like(sums)
@@ -82,6 +86,7 @@ def _direction_histograms(
     for y in range(1, height - 1):
         _gradients(grey, y, magnitudes, places)
         for x in range(1, width - 1):
+            # Bilinear shares: along x here, along y once per row of pixels.
             right = share[x] * magnitudes[x]
             # Whatever the table says, no sum behind the last one is written.
             direction = min(direction_of[places[x]], np.uint8(DIRECTIONS - 1))
@@ -91,6 +96,7 @@ def _direction_histograms(
         place_y = (y + 0.5) / GRADIENT_CELL_PX + 0.5
         row = int(place_y)
         _share_row(sums, np.float32(place_y - row), above, below)
+        # The next row of pixels belongs to other cells: what was gathered is written.
         if int((y + 1.5) / GRADIENT_CELL_PX + 0.5) != row or y == height - 2:
             for o in range(DIRECTIONS):
                 for x in range(columns):
@@ -104,7 +110,8 @@ def _direction_histograms(
 @inlined
 def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     """Inverse norms of the four neighbourhoods of the inner cells, (4, r, c)."""
-    rows, columns = cells.shape[1] - 2, cells.shape[2] - 2
+    rows = cells.shape[1] - 2
+    columns = cells.shape[2] - 2
     energy = np.zeros((rows + 2, columns + 2), np.float32)
     for y in range(1, rows + 1):
         for o in range(_UNSIGNED):
@@ -117,8 +124,10 @@ def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     scales = np.empty((4, rows, columns), np.float32)
     for k in range(4):
         for y in range(rows):
-            top, left = y + k // 2, k % 2
+            top = y + k // 2
+            left = k % 2
             for x in range(columns):
+                # Each cell has four blocks of 2 x 2 cells that contain it.
                 block = energy[top, left + x] + energy[top, left + x + 1]
                 block += energy[top + 1, left + x] + energy[top + 1, left + x + 1]
                 scales[k, y, x] = np.float32(1) / np.sqrt(block + np.float32(NOISE_ENERGY))
@@ -130,7 +139,8 @@ def _normalise(
     cells: npt.NDArray[np.float32], scales: npt.NDArray[np.float32], features: CellFeatures
 ) -> None:
     """Write the channels of the inner cells; the inner loops, along x, are vectorised."""
-    rows, columns = features.shape[0], features.shape[2]
+    rows = features.shape[0]
+    columns = features.shape[2]
     limit = np.float32(TRUNCATION)
     half = np.float32(0.5)
     texture = np.empty((4, columns), np.float32)
@@ -138,9 +148,12 @@ def _normalise(
         texture[:] = 0
         for o in range(DIRECTIONS):
             for x in range(columns):
+                # Summed in the order of the version in numpy, which it has to agree with to 1e-6.
                 value = cells[o, y + 1, x + 1]
-                a, b = min(value * scales[0, y, x], limit), min(value * scales[1, y, x], limit)
-                c, d = min(value * scales[2, y, x], limit), min(value * scales[3, y, x], limit)
+                a = min(value * scales[0, y, x], limit)
+                b = min(value * scales[1, y, x], limit)
+                c = min(value * scales[2, y, x], limit)
+                d = min(value * scales[3, y, x], limit)
                 features[y, o, x] = half * (((a + b) + c) + d)
                 texture[0, x] += a
                 texture[1, x] += b
@@ -149,8 +162,10 @@ def _normalise(
         for o in range(_UNSIGNED):
             for x in range(columns):
                 value = cells[o, y + 1, x + 1] + cells[o + _UNSIGNED, y + 1, x + 1]
-                a, b = min(value * scales[0, y, x], limit), min(value * scales[1, y, x], limit)
-                c, d = min(value * scales[2, y, x], limit), min(value * scales[3, y, x], limit)
+                a = min(value * scales[0, y, x], limit)
+                b = min(value * scales[1, y, x], limit)
+                c = min(value * scales[2, y, x], limit)
+                d = min(value * scales[3, y, x], limit)
                 features[y, DIRECTIONS + o, x] = half * (((a + b) + c) + d)
         for k in range(4):
             for x in range(columns):

@@ -14,13 +14,15 @@ from numba import types
 
 from vehicle_pf_tracker.image.gradients import DIRECTION_BINS
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
-from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
+from vehicle_pf_tracker.image.kernels.numba_types import (
     BIN_TABLE,
+    COUNTS,
+    PAIR,
     RECTANGLES,
+    Counts,
     Rectangles,
     Table,
 )
-from vehicle_pf_tracker.image.kernels.numba_windows import PAIR, Counts
 from vehicle_pf_tracker.image.window import Grey
 
 Gradients: TypeAlias = npt.NDArray[np.int16]
@@ -31,7 +33,9 @@ Tangents: TypeAlias = npt.NDArray[np.float64]
 Numbers: TypeAlias = npt.NDArray[np.int64]
 
 _NUMBERS = types.int64[::1]
+"""One number of each window, (N,)."""
 _TANGENTS = types.Array(types.float64, 1, "C", readonly=True)
+"""Type of `TANGENTS`."""
 
 _NEVER = 1 << 31
 """Limit that nothing passes: squared magnitudes are at most 2 * 1020²."""
@@ -66,6 +70,7 @@ def direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
         first = 16
         along = -gy
         across = gx
+    # Fifteen products and comparisons, in place of an arctangent.
     for tangent in tangents:
         first += across >= along * tangent
     return first
@@ -116,12 +121,14 @@ def _peaks_of(strengths: Strengths, middles: Rectangles, half: tuple[int, int]) 
     Maxima over 1, 2, 4, ... rows, then columns; two of the last that overlap make those over a
     window's. So the work does not grow with the windows, of which thousands share their pixels.
     """
-    (across, up), (height, width) = half, strengths.shape
+    across, up = half
+    height, width = strengths.shape
     x0, y0 = middles[:, 0].min(), middles[:, 1].min()
     x1, y1 = middles[:, 0].max(), middles[:, 1].max()
     # From the first pixel of the first window; 0 beyond the image, where there are no edges.
     rows = np.zeros((y1 - y0 + 2 * up + 1, x1 - x0 + 2 * across + 1), np.int32)
-    left, right = max(x0 - across, 0), min(x1 + across + 1, width)
+    left = max(x0 - across, 0)
+    right = min(x1 + across + 1, width)
     for y in range(max(y0 - up, 0), min(y1 + up + 1, height)):
         for x in range(left, right):
             rows[y - y0 + up, x - x0 + across] = strengths[y, x]
@@ -154,6 +161,7 @@ def _limits_of(peaks: Strengths, rule: tuple[float, float]) -> Numbers:
     limits = np.full(len(peaks), _NEVER, np.int64)
     for i in range(len(peaks)):
         if peaks[i] > 0:
+            # In integers, the comparison of a million pixels needs no conversion.
             limits[i] = np.int64(math.ceil(max(share * np.float32(peaks[i]), least)))
     return limits
 
@@ -163,8 +171,11 @@ def _cut(
     middles: Rectangles, i: int, half: tuple[int, int], shape: tuple[int, int]
 ) -> tuple[int, int, int, int]:
     """Left, top, right, bottom of a window, cut at the border."""
-    (x, y), (across, up), (height, width) = middles[i], half, shape
-    left, right = max(x - across, 0), min(x + across + 1, width)
+    x, y = middles[i]
+    across, up = half
+    height, width = shape
+    left = max(x - across, 0)
+    right = min(x + across + 1, width)
     return left, max(y - up, 0), right, min(y + up + 1, height)
 
 
@@ -210,7 +221,8 @@ def _list_points(
     (H, W + 1), (M,), (M,) arrays
         Number of the first point that is not before a pixel; cells and strengths of the points.
     """
-    (gx, gy, strengths), (table, tangents, signed) = images, directions
+    gx, gy, strengths = images
+    table, tangents, signed = directions
     left, top, right, bottom = area
     index = np.empty((strengths.shape[0], strengths.shape[1] + 1), np.int32)
     size = (right - left) * (bottom - top)
@@ -222,13 +234,15 @@ def _list_points(
         here = 0
         for x in range(left, right):
             index[y, x] = count + here
+            # Written always, kept only where it passes: no branch to be mispredicted.
             found[here] = x
             here += strengths[y, x] >= limit
         index[y, right] = count + here
         for i in range(here):
             x = found[i]
             number = direction_bin(np.int64(gx[y, x]), np.int64(gy[y, x]), tangents, signed)
-            cells[count + i], passed[count + i] = table[number], strengths[y, x]
+            cells[count + i] = table[number]
+            passed[count + i] = strengths[y, x]
         count += here
     return index, cells, passed
 
@@ -260,7 +274,8 @@ def _check(
     counts: Counts,
 ) -> None:
     """Raise an error where an index would lie outside an array."""
-    (height, width), (table, tangents, _) = grey.shape, directions
+    height, width = grey.shape
+    table, tangents, _ = directions
     if len(table) < 4 * (len(tangents) + 1) or table.max() >= counts.shape[1]:
         raise IndexError("the reference has fewer bins than the feature")
     if len(middles) == 0 or len(counts) < len(middles) or min(half) < 0:
@@ -277,7 +292,7 @@ def _check(
         PAIR,
         types.UniTuple(types.float32, 2),
         types.Tuple((BIN_TABLE, _TANGENTS, types.boolean)),
-        types.int32[:, ::1],
+        COUNTS,
     )
 )
 def count_edges(
@@ -320,6 +335,7 @@ def count_edges(
     is_open = limits != _NEVER
     counts[:] = 0
     while True:
+        # From the lowest limit on: each round lists points once for all windows of its range.
         lowest = _lowest(limits, is_open)
         if lowest == _NEVER:
             return totals

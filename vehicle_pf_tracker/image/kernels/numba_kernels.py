@@ -23,12 +23,11 @@ from vehicle_pf_tracker.image.gradients import DIRECTION_BINS, GradientDirection
 from vehicle_pf_tracker.image.kernels import numba_jit
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
-    Cells,
-    Table,
     marginal_cells,
     number_cells,
     pair_cells,
 )
+from vehicle_pf_tracker.image.kernels.numba_types import Cells, Counts, Pixels, Reals, Table
 from vehicle_pf_tracker.image.similarity import Histogram, Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
 from vehicle_pf_tracker.image.window import (
@@ -43,7 +42,6 @@ from vehicle_pf_tracker.image.window import (
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.image.kernels.numba_edges import Numbers
-    from vehicle_pf_tracker.image.kernels.numba_windows import Counts, Pixels, Reals
 
 _MODULES = ("numba_windows", "numba_edges", "numba_mean_shift", "numba_cells")
 """Modules whose kernels are compiled when they are imported, the commonest first."""
@@ -98,6 +96,7 @@ def _every_bin(bins: int) -> Table:
 
 def roots_up_to(count: int) -> Reals:
     """Square roots of 0 to `count` or more, as far as a table of them is worth while."""
+    # Powers of two: windows of nearly one size share a table.
     return _roots(min(1 << int(count).bit_length(), _MOST_ROOTS))
 
 
@@ -133,6 +132,7 @@ def mean_shift(
     kernels = _kernels("numba_mean_shift")
     values = table_of(reference).values
     steps = kernels.shift_kernels(cells, pixels, *kernels.ellipse(window), values)
+    # Pixels are integers from the first one covered; their middles are half a pixel further.
     return np.where(np.isnan(steps), positions, pixels + first + 0.5 + steps)
 
 
@@ -177,6 +177,7 @@ class NumbaKernels(Kernels):
     ) -> Coefficients:
         """Compare windows; see `Kernels.similarity`."""
         table = table_of(reference)
+        # The very type: a subclass may count otherwise.
         if type(feature) in _COUNTED_PIXELS:
             return _compare_pixels(feature, frame, positions, window, table)
         if type(feature) is GradientDirections and feature.in_frame:
@@ -207,6 +208,7 @@ def _histogram_of_pixels(
         cells = marginal_cells(part, CHANNEL_BINS, table)
     else:
         cells = pair_cells(to_grey(part), table)
+    # Of one window there is nothing to share.
     counts = np.bincount(cells.ravel(), minlength=feature.bins)
     return np.asarray(counts / max(cells.size, 1))
 
@@ -235,6 +237,7 @@ def _compare_pixels(
             frame, positions, feature.bits, half, table.cells, scale
         )
         return similarity
+    # Cells are made once for the part that all windows share.
     pixels, (left, top, right, bottom) = kernels.place_windows(
         positions, frame_size(frame), half, 0
     )

@@ -14,15 +14,23 @@ import numpy.typing as npt
 from numba import types
 
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
-from vehicle_pf_tracker.image.kernels.numba_pixel_cells import CELL_PLANES, RECTANGLES, Cells
-from vehicle_pf_tracker.image.kernels.numba_windows import REALS, Pixels, Reals
+from vehicle_pf_tracker.image.kernels.numba_types import (
+    CELL_PLANES,
+    REALS,
+    RECTANGLES,
+    Cells,
+    Pixels,
+    Reals,
+)
 from vehicle_pf_tracker.image.mean_shift import epanechnikov
 from vehicle_pf_tracker.image.window import Window
 
 Offsets: TypeAlias = npt.NDArray[np.int64]
 
 _OFFSETS = types.Array(types.int64, 2, "C", readonly=True)
+"""x, y of the kernel's pixels from its centre, (P, 2); shared between frames."""
 _ARGUMENTS = CELL_PLANES, RECTANGLES, _OFFSETS, REALS, REALS
+"""Both kernels take the same: cells, centres, offsets, profile and values."""
 
 
 @functools.lru_cache(maxsize=8)
@@ -45,6 +53,7 @@ def _weigh_cells(
     total = 0.0
     for j in range(len(offsets)):
         column, row = x + offsets[j, 0], y + offsets[j, 1]
+        # Pixels outside the frame have no mass: the norm is that of the ones that exist.
         if 0 <= column < width and 0 <= row < height:
             masses[cells[0, row, column]] += profile[j]
             total += profile[j]
@@ -87,9 +96,11 @@ def compare_kernels(
         Bhattacharyya coefficients.
     """
     _check(cells, pixels, offsets, profile, values)
+    # Made once, filled for each window.
     masses = np.empty(len(values))
     result = np.empty(len(pixels))
     for i in range(len(pixels)):
+        # One window after the other: kernels overlap, but weigh the same pixel differently.
         x, y = pixels[i]
         total = _weigh_cells(cells, x, y, offsets, profile, masses)
         overlap = 0.0
@@ -119,6 +130,7 @@ def shift_kernels(
         x, y = pixels[i]
         _weigh_cells(cells, x, y, offsets, profile, masses)
         for k in range(len(values)):
+            # sqrt(q / p) of equation 25, once per colour instead of once per pixel.
             weights[k] = values[k] / math.sqrt(masses[k]) if masses[k] > 0 else 0.0
         across = down = total = 0.0
         for j in range(len(offsets)):
@@ -129,5 +141,7 @@ def shift_kernels(
                 down += weight * offsets[j, 1]
                 total += weight
         if total > 0:
-            steps[i, 0], steps[i, 1] = across / total, down / total
+            # Else not a number: the caller leaves such a window where it is.
+            steps[i, 0] = across / total
+            steps[i, 1] = down / total
     return steps

@@ -10,26 +10,22 @@ shape (P, H, W): a window's counts are those of all planes together.
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled
+from vehicle_pf_tracker.image.kernels.numba_types import (
+    BIN_TABLE,
+    CELL_PLANES,
+    GREY_IMAGE,
+    RGB_IMAGE,
+    Cells,
+    Table,
+)
 from vehicle_pf_tracker.image.similarity import Histogram
 from vehicle_pf_tracker.image.window import Grey
-
-Cells: TypeAlias = npt.NDArray[np.uint16]
-Table: TypeAlias = npt.NDArray[np.uint16]
-Rectangles: TypeAlias = npt.NDArray[np.int64]
-
-RGB_IMAGE = types.Array(types.uint8, 3, "A", readonly=True)
-GREY_IMAGE = types.Array(types.uint8, 2, "A", readonly=True)
-BIN_TABLE = types.Array(types.uint16, 1, "C", readonly=True)
-CELL_PLANES = types.uint16[:, :, ::1]
-RECTANGLES = types.int64[:, ::1]
 
 
 @compiled(CELL_PLANES(RGB_IMAGE, types.int64, BIN_TABLE))
@@ -42,6 +38,7 @@ def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
     for y in range(height):
         for x in range(width):
             for channel in range(3):
+                # floor(v * levels / 256) in integers, as `colour.marginal_bins` has it.
                 level = (pixels[y, x, channel] * levels) >> 8
                 cells[channel, y, x] = table[channel * levels + level]
     return cells
@@ -50,7 +47,9 @@ def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
 @compiled(CELL_PLANES(GREY_IMAGE, BIN_TABLE))
 def pair_cells(grey: Grey, table: Table) -> Cells:
     """Cells of the 8 x 8 grey levels of each pixel and the next one in its row, one plane."""
-    height, width = grey.shape[0], max(grey.shape[1] - 1, 0)
+    height = grey.shape[0]
+    width = max(grey.shape[1] - 1, 0)
+    # Checked once per call: numba reads behind the end of an array without a word.
     if len(table) < 64:
         raise IndexError("the reference has fewer bins than the feature")
     cells = np.empty((1, height, width), np.uint16)
@@ -78,6 +77,7 @@ def number_cells(histogram: Histogram, lanes: int) -> tuple[Table, Histogram]:
     for value in histogram:
         active += value != 0
     cells = np.full(len(histogram), active, np.uint16)
+    # Rounded up, so that the loop over cells has no remainder; zeros add nothing.
     values = np.zeros(-(-(active + 1) // lanes) * lanes)
     number = 0
     for k in range(len(histogram)):

@@ -12,42 +12,36 @@ that lie far apart are counted each by itself.
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
-from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
+from vehicle_pf_tracker.image.kernels.numba_types import (
     BIN_TABLE,
     CELL_PLANES,
+    COUNTS,
+    EXTENT,
+    PAIR,
+    POSITIONS,
+    REACH,
     RECTANGLES,
     RGB_IMAGE,
+    SCALE,
     Cells,
+    Columns,
+    Counts,
+    Extent,
+    Pixels,
+    Reach,
+    Reals,
     Rectangles,
+    Scale,
     Table,
 )
 from vehicle_pf_tracker.image.window import Positions
 
-Pixels: TypeAlias = npt.NDArray[np.int64]
-Reals: TypeAlias = npt.NDArray[np.float64]
-Counts: TypeAlias = npt.NDArray[np.int32]
-Reach: TypeAlias = tuple[int, int, int]
-Scale: TypeAlias = tuple[Reals, Reals]
-Extent: TypeAlias = tuple[int, int, int, int]
-Columns: TypeAlias = npt.NDArray[np.uint16]
-
-_POSITIONS = types.Array(types.float64, 2, "A", readonly=True)
-_REACH = types.UniTuple(types.int64, 3)
-PAIR = types.UniTuple(types.int64, 2)
-REALS = types.Array(types.float64, 1, "C", readonly=True)
-_SCALE = types.UniTuple(REALS, 2)
-_EXTENT = types.UniTuple(types.int64, 4)
-_COUNTS = types.int32[:, ::1]
-
-# Costs, roughly in cycles; they decide about the route, and not about the result.
 # Costs, roughly in cycles; they decide about the way to a result, and not about the result.
 _PIXEL = 4
 """Entering or leaving of a pixel in a histogram."""
@@ -68,7 +62,7 @@ def _extent(pixels: Pixels) -> Extent:
     return x0, y0, x1, y1
 
 
-@compiled(types.Tuple((RECTANGLES, _EXTENT))(_POSITIONS, PAIR, PAIR, types.int64))
+@compiled(types.Tuple((RECTANGLES, EXTENT))(POSITIONS, PAIR, PAIR, types.int64))
 def place_windows(
     positions: Positions, size: tuple[int, int], half: tuple[int, int], margin: int
 ) -> tuple[Pixels, Extent]:
@@ -90,7 +84,8 @@ def place_windows(
     covered : (int, int, int, int)
         Left, top, right, bottom of the part, as far as the frame goes.
     """
-    (width, height), (beside, above) = size, half
+    width, height = size
+    beside, above = half
     if len(positions) == 0 or positions.shape[1] != 2 or min(width, height) < 1:
         raise IndexError("there is no window, or no pixel")
     pixels = np.empty((len(positions), 2), np.int64)
@@ -116,7 +111,9 @@ def joint_cells(pixels: Frame, bits: int, table: Table) -> Cells:
     drop = 8 - bits
     for y in range(height):
         for x in range(width):
-            red, green, blue = pixels[y, x, 0], pixels[y, x, 1], pixels[y, x, 2]
+            red = pixels[y, x, 0]
+            green = pixels[y, x, 1]
+            blue = pixels[y, x, 2]
             number = ((red >> drop) << (2 * bits)) | ((green >> drop) << bits) | (blue >> drop)
             cells[0, y, x] = table[number]
     return cells
@@ -138,6 +135,7 @@ def _check_cells(cells: Cells, values: Reals) -> None:
 def _overlap(counts: Counts, values: Reals, total: int, roots: Reals) -> float:
     """Bhattacharyya coefficient of counts with a reference, whose roots are `values`."""
     overlap = 0.0
+    # A table of roots is faster than roots, as far as it stays in the cache.
     if total < len(roots):
         for k in range(len(values)):
             overlap += values[k] * roots[counts[k]]
@@ -201,7 +199,9 @@ def _listed(pixels: Pixels, x0: int, y0: int, heads: Rectangles) -> Pixels:
 def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Scale) -> Reals:
     """Compare windows that lie close together; parameters as for `compare_windows`."""
     planes, height, width = cells.shape
-    (left, right, up), (x0, y0, x1, y1), (values, roots) = reach, extent, scale
+    left, right, up = reach
+    x0, y0, x1, y1 = extent
+    values, roots = scale
     heads = np.empty((y1 - y0 + 1, x1 - x0 + 1), np.int64)
     others = _listed(pixels, x0, y0, heads)
     columns = np.zeros((width, len(values)), np.uint16)
@@ -209,16 +209,19 @@ def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Sc
     rows = np.zeros(2, np.int64)
     result = np.empty(len(pixels))
     for y in range(y0, y1 + 1):
+        # Between the first and the last window of a row the sum slides; beyond, nothing is asked.
         asked = np.flatnonzero(heads[y - y0] >= 0)
         if not len(asked):
             continue
-        top, bottom = max(y - up, 0), min(y + up + 1, height)
+        top = max(y - up, 0)
+        bottom = min(y + up + 1, height)
         _follow_rows(columns, cells, rows, top, bottom)
         first = x0 + asked[0]
         _gather(sums, columns, max(first - left, 0), min(first + right, width))
         for x in range(first, x0 + asked[-1] + 1):
             if x > first:
                 _shift(sums, columns, x - left - 1, x + right - 1)
+            # Windows on one pixel are the same: compared once, however many particles sit there.
             i = heads[y - y0, x - x0]
             if i >= 0:
                 across = min(x + right, width) - max(x - left, 0)
@@ -229,7 +232,7 @@ def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Sc
     return result
 
 
-@compiled(types.float64[::1](_COUNTS, types.int64[::1], _SCALE))
+@compiled(types.float64[::1](COUNTS, types.int64[::1], SCALE))
 def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
     """Compare windows that are counted already; `totals` are those of all bins, shape (N,)."""
     values, roots = scale
@@ -237,7 +240,8 @@ def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
         raise IndexError("the counts are not those of the reference's cells")
     result = np.empty(len(counts))
     for i in range(len(counts)):
-        least, most = np.int32(0), np.int32(0)
+        least = np.int32(0)
+        most = np.int32(0)
         for k in range(len(values)):
             least, most = min(least, counts[i, k]), max(most, counts[i, k])
         if least < 0 or most > totals[i]:
@@ -246,7 +250,7 @@ def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
     return result
 
 
-@compiled(types.float64[::1](CELL_PLANES, RECTANGLES, _SCALE))
+@compiled(types.float64[::1](CELL_PLANES, RECTANGLES, SCALE))
 def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale) -> Reals:
     """Compare windows one after the other; parameters as for `compare_windows`."""
     planes, height, width = cells.shape
@@ -281,7 +285,7 @@ def _is_sliding_worthwhile(
     return sliding <= count * (_PIXEL * len(cells) * across * (2 * reach[2] + 1) + bins)
 
 
-@compiled(types.float64[::1](CELL_PLANES, RECTANGLES, _REACH, _SCALE))
+@compiled(types.float64[::1](CELL_PLANES, RECTANGLES, REACH, SCALE))
 def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) -> Reals:
     """Compare windows with a reference.
 
@@ -319,7 +323,7 @@ def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) ->
     return compare_rectangles(cells, rectangles, scale)
 
 
-@compiled(types.float64[::1](RGB_IMAGE, _POSITIONS, types.int64, PAIR, BIN_TABLE, _SCALE))
+@compiled(types.float64[::1](RGB_IMAGE, POSITIONS, types.int64, PAIR, BIN_TABLE, SCALE))
 def compare_joint(
     frame: Frame, positions: Positions, bits: int, half: tuple[int, int], table: Table, scale: Scale
 ) -> Reals:
