@@ -100,7 +100,7 @@ DECISIONS: tuple[Decision, ...] = (
     Decision("trackers.traffic.parts:_INSIDE", (0.55, 0.85), 1e9),
     Decision("trackers.traffic.pixel_hold:_HELD_SHARE", (0.2, 0.45)),
 )
-"""What is fitted. Values are a factor of about 1.4 apart, which is as fine as a clip can tell."""
+"""Values that are tried, by parameter: a factor of about 1.4 apart, as fine as a clip can tell."""
 
 
 class Clip(NamedTuple):

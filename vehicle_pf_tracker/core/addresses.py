@@ -19,7 +19,7 @@ _USERINFO = re.compile(
     rf"({_SCHEME})(?:[^\s/?#]*@|[^\s/?#:@]*:(?!\d+(?:[/?#\s]|$))(?:\S*@|[^@\n]{{1,80}}@))"
 )
 _WHOLE_USERINFO = re.compile(rf"^({_SCHEME})(?:[^/?#]*@|[^/?#:@]*:(?!\d+[/?#]).*@)", re.DOTALL)
-"""The same of a text that is an address as a whole, where a password may have spaces."""
+"""Password in a text that is an address as a whole, where it may have spaces."""
 _SECRET = re.compile(
     # Cameras take the password as part of the query, or of the path, with & or _ between the parts.
     r"(?i)((?:^|[?&;/_])(?:[a-z]*pass(?:word|wd|phrase)?|pwd|[a-z_-]*token|[a-z_-]*key|secret"

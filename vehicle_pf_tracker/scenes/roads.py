@@ -28,7 +28,7 @@ STEEL: Colour = (176, 180, 182)
 _FAR_ROAD = slice(82, 194)
 """Rows of asphalt of the far carriageway on the highway, px: three lanes at its scale."""
 _NEAR_ROAD = slice(224, 352)
-"""The same of the near one, whose scale is larger."""
+"""Rows of asphalt of the near carriageway, whose scale is larger, px."""
 _FAR_EDGES = (102, 186)
 """Rows of the far edge lines, px; the wheels of `FAR_LANES` stand between the markings."""
 _FAR_DIVIDERS = (130, 156)

@@ -17,7 +17,7 @@ _SIZE = 160, 120
 _BOX = Box(60.0, 45.0, 40.0, 30.0)
 """Target in the middle of it: of the proportions of a car."""
 _FRAMES = (True, True, False, True)
-"""Whether the target is visible: kernels of the search after an occlusion are compiled too."""
+"""Visibility of the target by frame: kernels of the search after an occlusion are compiled too."""
 
 
 def rehearse(variant: Variant, parameters: Any) -> None:
