@@ -24,7 +24,7 @@ VAGUE_ELSEWHERE = {
     "MODELS", "NOTHING", "START", "TABLE",
 }  # fmt: skip
 """Words that name a decision in its own module only, not where it is imported."""
-MOST_TUPLES = 138
+MOST_TUPLES = 66
 """Tuples assigned to as many names without need; the number may only become smaller."""
 
 

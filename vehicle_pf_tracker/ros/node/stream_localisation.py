@@ -16,7 +16,8 @@ from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
 from vehicle_pf_tracker.trackers.estimate import Estimate
-from vehicle_pf_tracker.trackers.localisation import Localisation, RoadEstimate
+from vehicle_pf_tracker.trackers.localisation import Localisation
+from vehicle_pf_tracker.trackers.road_follower import RoadEstimate
 
 
 class StreamLocalisation:
