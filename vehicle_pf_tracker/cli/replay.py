@@ -94,6 +94,10 @@ class Request(TopicOption, OverwriteOption, RosOptions):
     lockstep: bool = switch(
         help="publish an image only when every node has answered the one before"
     )
+    start_paused: bool = switch(
+        "-p",
+        help="begin paused; the space bar, or ~/toggle_paused of the player, pauses and continues",
+    )
     decompress: bool = switch(help="publish compressed images as raw ones")
     nodes: Sequence[str] = option(
         "--node", action="append", default=[], metavar="NAME",

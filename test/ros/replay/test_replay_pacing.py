@@ -57,6 +57,35 @@ def test_a_loop_takes_the_first_log_time_as_now_again():
     assert pace.due(0) == 105.0
 
 
+def test_time_stands_still_in_a_pause_and_goes_on_from_there():
+    watch = Watch()
+    pace = Pace(2.0, watch)
+    pace.due(0)
+    pace.due(8_000_000_000)
+    watch.now = 101.0
+    pace.set_paused(True)
+    watch.now = 150.0
+    assert pace.is_paused
+    assert pace.log_time_ns() == 2_000_000_000
+    pace.set_paused(False)
+    assert not pace.is_paused
+    assert pace.due(8_000_000_000) == 100.0 + 4.0 + 49.0
+    watch.now = 151.0
+    assert pace.log_time_ns() == 4_000_000_000
+    pace.set_paused(False)  # of none changes nothing
+    assert pace.log_time_ns() == 4_000_000_000
+
+
+def test_a_replay_that_begins_paused_begins_with_its_end():
+    watch = Watch()
+    pace = Pace(1.0, watch)
+    pace.set_paused(True)
+    pace.due(5_000_000_000)
+    watch.now = 130.0
+    pace.set_paused(False)
+    assert pace.due(5_000_000_000) == 130.0
+
+
 @pytest.mark.parametrize(
     ("stamps", "stamp", "frame"),
     [

@@ -30,6 +30,25 @@ class ReplayPace:
         self._clock = clock
         self._begin: tuple[int, float] | None = None
         self._latest_ns = 0
+        self._paused_at: float | None = None
+        self._paused_for = 0.0
+
+    @property
+    def is_paused(self) -> bool:
+        """True while nothing is to be published."""
+        return self._paused_at is not None
+
+    def set_paused(self, paused: bool) -> None:
+        """Let log time stand still, or go on from where it stood."""
+        now = self._clock()
+        if self._paused_at is not None:
+            self._paused_for += now - self._paused_at
+        self._paused_at = now if paused else None
+
+    def _now(self) -> float:
+        """Return the clock less all pauses, s."""
+        at = self._clock() if self._paused_at is None else self._paused_at
+        return at - self._paused_for
 
     def restart(self) -> None:
         """Take the next log time as now, as each pass of a loop does."""
@@ -37,14 +56,13 @@ class ReplayPace:
 
     def due(self, log_time_ns: int) -> float:
         """Moment on the clock, in s, at which a message with this log time is due."""
-        now = self._clock()
         if self._begin is None:
-            self._begin = log_time_ns, now
+            self._begin = log_time_ns, self._now()
         self._latest_ns = log_time_ns
         if self._rate is None:
-            return now
+            return self._clock()
         first_ns, began = self._begin
-        return began + (log_time_ns - first_ns) * 1e-9 / self._rate
+        return self._paused_for + began + (log_time_ns - first_ns) * 1e-9 / self._rate
 
     def log_time_ns(self) -> int | None:
         """Present log time, never beyond the message asked for last; None before the first.
@@ -54,7 +72,7 @@ class ReplayPace:
         if self._begin is None or self._rate is None:
             return self._latest_ns if self._begin else None
         first_ns, began = self._begin
-        return min(first_ns + round((self._clock() - began) * self._rate * 1e9), self._latest_ns)
+        return min(first_ns + round((self._now() - began) * self._rate * 1e9), self._latest_ns)
 
 
 class PlaybackClock:

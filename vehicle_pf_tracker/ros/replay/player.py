@@ -15,6 +15,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Spinner
 from vehicle_pf_tracker.ros.replay.pace import PlaybackClock, ReplayPace
+from vehicle_pf_tracker.ros.replay.pausing import offer_pausing
 from vehicle_pf_tracker.ros.replay.publishing import make_publishers
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, ReplayReport
 from vehicle_pf_tracker.ros.replay.starting_target import Targets, played, starting_target
@@ -66,6 +67,8 @@ class Player:
         self._frame = 0  # in this pass
         self._skipped: list[str] = []
         self._pace = ReplayPace(options.rate or (None if options.lockstep else 1.0))
+        self._pace.set_paused(options.start_paused)
+        offer_pausing(node, self._pace, tell)
         self._clock = PlaybackClock(node, self._pace, options.clock) if options.clock else None
 
     def run(self) -> ReplayReport:
@@ -139,12 +142,19 @@ class Player:
             is_image = message.topic == self._recording.image_topic
             if is_image:
                 targets.before(self._frame + 1)
-            self._spinner.until_time(self._pace.due(message.log_time_ns))
+            self._await_due(message.log_time_ns)
             if self._publish(message, is_image=is_image) and is_image:
                 self._follow(message)
             if is_image:
                 position_ns = message.log_time_ns - begin_ns
                 self._on_progress(self._frames, position_ns / length_ns if position_ns else None)
+
+    def _await_due(self, log_time_ns: int) -> None:
+        """Wait until a message is due, and while the replay is paused."""
+        self._spinner.until_time(self._pace.due(log_time_ns))
+        while self._pace.is_paused:
+            self._spinner.until(lambda: not self._pace.is_paused)
+            self._spinner.until_time(self._pace.due(log_time_ns))
 
     def _publish(self, message: RecordedMessage, *, is_image: bool) -> bool:
         """Publish a message; False if it cannot be converted."""

@@ -39,6 +39,8 @@ class ReplayOptions:
         Begin when somebody subscribes to the images, however long that takes.
     lockstep : bool
         Publish an image only when every node has answered the one before.
+    start_paused : bool
+        Begin paused.
     decompress : bool
         Publish compressed images as raw ones.
     nodes : tuple of str
@@ -63,6 +65,7 @@ class ReplayOptions:
     clock: float | None = None
     wait_for_subscribers: bool = False
     lockstep: bool = False
+    start_paused: bool = False
     decompress: bool = False
     nodes: tuple[str, ...] = ()
     target: Box | None = None

@@ -19,6 +19,7 @@ from vehicle_pf_tracker.core.signals import ending_signals, handled
 from vehicle_pf_tracker.recordings.messages import COMPRESSED_IMAGE
 from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.ros.replay.discovery import Spinner
+from vehicle_pf_tracker.ros.replay.pausing import keys_at_once
 from vehicle_pf_tracker.ros.replay.player import Player
 from vehicle_pf_tracker.ros.replay.publishing import decompressed
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, ReplayReport
@@ -75,7 +76,8 @@ def replay(
     with noted_interrupts() as stop, _ros_node(recording, options, tell) as node:
         spinner = Spinner(node, stop)
         try:
-            return Player(node, spinner, recording, options, on_progress, tell).run()
+            with keys_at_once():
+                return Player(node, spinner, recording, options, on_progress, tell).run()
         finally:
             spinner.close()
 
