@@ -59,7 +59,7 @@ def test_a_loop_takes_the_first_log_time_as_now_again():
 
 def test_time_stands_still_in_a_pause_and_goes_on_from_there():
     watch = Watch()
-    pace = Pace(2.0, watch)
+    pace = ReplayPace(2.0, watch)
     pace.due(0)
     pace.due(8_000_000_000)
     watch.now = 101.0
@@ -78,7 +78,7 @@ def test_time_stands_still_in_a_pause_and_goes_on_from_there():
 
 def test_a_replay_that_begins_paused_begins_with_its_end():
     watch = Watch()
-    pace = Pace(1.0, watch)
+    pace = ReplayPace(1.0, watch)
     pace.set_paused(True)
     pace.due(5_000_000_000)
     watch.now = 130.0
