@@ -70,10 +70,12 @@ class Runs:
         """Return squared Mahalanobis distances of the errors, and determinants, px⁴."""
         doubt = spread.doubt * (1 - self["confidence"])
         level = self["width"] * self["height"]
-        grown, changed = spread.growth * self.hidden_for, spread.change * self.change
+        grown = spread.growth * self.hidden_for
+        changed = spread.change * self.change
         level = level * (spread.size**2 + doubt**2 + changed**2 + grown**2)
         way = spread.drift * self.hidden_for / self["period"]
-        vx, vy = way * self["vx"], way * self["vy"]
+        vx = way * self["vx"]
+        vy = way * self["vy"]
         xx = spread.cloud**2 * self["xx"] + level + vx * vx
         xy = spread.cloud**2 * self["xy"] + vx * vy
         yy = spread.cloud**2 * self["yy"] + level + vy * vy
@@ -101,7 +103,8 @@ def _read(path: Path) -> Array:
 
 def _hidden_for(table: Array) -> Array:
     """Return the time since the last claim of TRACKING, s."""
-    stamps, visible = table[:, 0], table[:, COLUMNS.index("mode")] == 0
+    stamps = table[:, 0]
+    visible = table[:, COLUMNS.index("mode")] == 0
     seen = np.maximum.accumulate(np.where(visible, stamps, stamps[0]))
     since: Array = stamps - seen
     return since

@@ -26,6 +26,7 @@ _SHOWN = {"fusion": "tab:blue", "apf": "tab:orange"}
 _DRIVE = "bridge"
 """Scene of the drive: one total occlusion in the middle."""
 _LEVELS = np.linspace(0.02, 0.99, 60)
+"""Probabilities whose ellipses are compared: from the middle of the cloud to nearly all of it."""
 
 
 def draw(path: Path, paths: Mapping[str, list[Path]]) -> None:

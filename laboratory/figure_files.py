@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from vehicle_pf_tracker.results.output_files import replacing
 
 _DPI = 150
+"""Dots per inch: figures are sharp on a screen at the width of a page."""
 
 
 def save(figure: Figure, path: Path) -> None:

@@ -28,6 +28,7 @@ from vehicle_pf_tracker.parameters.table import Value
 from vehicle_pf_tracker.results.output_files import write_text
 
 DEFAULT = "default"
+# One change a row: what a mechanism is worth shows where it alone is off.
 CHANGES: Mapping[str, Mapping[str, Value]] = {
     DEFAULT: {},
     "no camera motion": {"motion.camera": False},
@@ -61,7 +62,8 @@ def ablation_cases(options: argparse.Namespace) -> list[Case]:
 def row(name: str, results: Sequence[Result]) -> list[str]:
     """Means of one system, and its differences to the default."""
     scores = [result.score for result in results if result.system == name]
-    recovered, judged = sum(s.recovered for s in scores), sum(s.judged for s in scores)
+    recovered = sum(s.recovered for s in scores)
+    judged = sum(s.judged for s in scores)
     cells = [
         name, f"{statistics.fmean(s.on_target or 0.0 for s in scores):.3f}",
         f"{statistics.fmean(s.mean_iou or 0.0 for s in scores):.3f}", f"{recovered} of {judged}",

@@ -95,7 +95,8 @@ class Run:
 
     def take(self, frame: int, estimate: Estimate | EstimateRow, boxes: Boxes) -> None:
         """Judge an estimate."""
-        tracking, true = estimate.mode is Mode.TRACKING, boxes[self.identity].get(frame)
+        tracking = estimate.mode is Mode.TRACKING
+        true = boxes[self.identity].get(frame)
         box = estimate.box
         assert box is not None
         if frame <= self.last and true is not None:
@@ -111,7 +112,8 @@ class Run:
 
 def filmed(path: Path, model: str, output: Path) -> Clip:
     """Read a clip, and let `traffic` say where vehicles are, or read what it said before."""
-    footage, folder = open_footage(path), output / path.stem
+    footage = open_footage(path)
+    folder = output / path.stem
     if not (folder / TRACKS).exists():
         status = run_command(["traffic", str(path), "--model", model, "-o", str(folder)])
         if status:
@@ -123,7 +125,8 @@ def filmed(path: Path, model: str, output: Path) -> Clip:
             score = float(row["score"] or "nan")
             if math.isnan(score):  # predicted
                 continue
-            identity, frame = int(row["id"]), int(row["frame"]) - 1
+            identity = int(row["id"])
+            frame = int(row["frame"]) - 1
             x, y, width, height = (float(row[name]) for name in ("x", "y", "width", "height"))
             boxes[identity][frame] = Box.around((x, y), width, height)
             if score >= SURE:
@@ -133,7 +136,8 @@ def filmed(path: Path, model: str, output: Path) -> Clip:
 
 def look_alikes(frames: int = 600) -> Clip:
     """Make a road with cars of one kind and paint, of which some twenty drive each way."""
-    rng, actors = np.random.default_rng(0), []
+    rng = np.random.default_rng(0)
+    actors = []
     for lane in (Lane(100.0, SCALE, rightward=True), Lane(175.0, SCALE, rightward=False)):
         actors += convoy(lane, 4.0, frames, WIDTH, rng, (60, 160), (lambda _: saloon(PAINTS[4]),))
     scene = make_traffic_scene("traffic-pair", settings={"frames": frames})
@@ -177,7 +181,8 @@ def is_free(identity: int, frame: int, boxes: Boxes) -> bool:
 
 def is_at_border(box: Box, size: tuple[int, int]) -> bool:
     """Test whether a box is about to leave an image of this width and height."""
-    (x, y), (width, height) = box.centre, size
+    x, y = box.centre
+    width, height = size
     return (
         min(x, width - x) < AT_BORDER * box.width or min(y, height - y) < AT_BORDER * box.height
     )  # fmt: skip

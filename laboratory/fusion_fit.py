@@ -189,7 +189,8 @@ def _row(name: str, results: Sequence[Result]) -> str:
         known = [value for value in values if value is not None]
         return f"{statistics.fmean(known):.3f}" if known else "–"
 
-    recovered, judged = sum(s.recovered for s in scores), sum(s.judged for s in scores)
+    recovered = sum(s.recovered for s in scores)
+    judged = sum(s.judged for s in scores)
     cells = [
         name, f"{len(scores)}", mean([s.on_target for s in scores]),
         mean([s.mean_iou for s in scores]), f"{sum(bool(s.lost) for s in scores)}",

@@ -33,6 +33,7 @@ from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.estimate import Mode
 
 _COLUMNS = 3
+"""Frames side by side: six make two rows, and a car can still be seen."""
 _VIEW = 210, 140
 """Width and height in px of what is shown of a frame."""
 _GAP_PX, _ARM_PX = 2.5, 6.0
@@ -59,6 +60,7 @@ class Picture:
     frames: Sequence[int]
 
 
+# Frames before, during and after what each picture is about; the same seeds as in the table.
 PICTURES = (
     Picture("fusion_occlusion", "bus", 2, (36, 42, 50, 58, 62, 75)),
     Picture("fusion_neighbour", "bridge", 0, (36, 47, 58, 66, 69, 80)),
@@ -117,7 +119,8 @@ def _box(row: EstimateRow) -> Box:
 
 def _draw(axes: Axes, made: SceneFrame, row: EstimateRow) -> None:
     left, top = _corner(made, _box(row))
-    right, bottom = left + _VIEW[0], top + _VIEW[1]
+    right = left + _VIEW[0]
+    bottom = top + _VIEW[1]
     part = np.ascontiguousarray(made.frame[top:bottom, left:right])
     axes.imshow(part, extent=(left, right, bottom, top), interpolation="bicubic")
     axes.set(xlim=(left, right), ylim=(bottom, top), xticks=[], yticks=[])
@@ -149,8 +152,10 @@ def _corner(made: SceneFrame, box: Box) -> tuple[int, int]:
 
 def _draw_corners(axes: Axes, box: Box) -> None:
     """Draw the corners of a box a little outside of it, where no other box covers them."""
-    left, right = box.x - _GAP_PX, box.x + box.width + _GAP_PX
-    top, bottom = box.y - _GAP_PX, box.y + box.height + _GAP_PX
+    left = box.x - _GAP_PX
+    right = box.x + box.width + _GAP_PX
+    top = box.y - _GAP_PX
+    bottom = box.y + box.height + _GAP_PX
     for x, arm_x in ((left, _ARM_PX), (right, -_ARM_PX)):
         for y, arm_y in ((top, _ARM_PX), (bottom, -_ARM_PX)):
             corner = [x + arm_x, x, x], [y, y, y + arm_y]

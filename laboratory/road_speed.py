@@ -39,6 +39,7 @@ from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session
 
 SPEEDS = (20.0, 40.0, 60.0, 80.0, 100.0, 130.0)
+"""Speeds of the drives, km/h: from a street in a town to a motorway."""
 SETTLED = 1.0
 """Time from the start on after which the speed is judged, s."""
 READING = 0.5

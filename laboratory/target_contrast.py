@@ -29,14 +29,16 @@ THROWN = 5
 def measured(folder: Path) -> tuple[list[float], list[float]]:
     """Return the contrasts of true boxes and of thrown ones in a sequence."""
     rng = np.random.default_rng(0)
-    true, thrown = [], []
+    true = []
+    thrown = []
     for index, picture in enumerate(FrameFolder(folder).frames()):
         if index % EVERY or not isinstance(picture, Picture):
             continue
         truth = picture.truth
         if truth is None or truth.occlusion is Occlusion.TOTAL:
             continue
-        box, (width, height) = truth.box, frame_size(picture.frame)
+        box = truth.box
+        width, height = frame_size(picture.frame)
         true.append(contrast(picture.frame, box))
         top = min(0.4 * height, height - box.height)
         for _ in range(THROWN):

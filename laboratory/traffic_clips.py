@@ -125,7 +125,8 @@ def report(path: Path, seed: int, truth: list[Row], tracks: list[np.ndarray]) ->
             continue
         known = [one for row in before if (one := under[row.frame]) is not None]
         then = Counter(one for row in after[:WINDOW] if (one := under[row.frame]) is not None)
-        first, last = (known[-1] if known else None), (then.most_common(1)[0][0] if then else None)
+        first = known[-1] if known else None
+        last = then.most_common(1)[0][0] if then else None
         kept = "yes" if first is not None and first == last else "no"
         span = f"{hidden[0].frame} to {hidden[-1].frame}"
         cells = (path.parent.name, seed, span, first or "–", last or "–", kept)

@@ -128,7 +128,8 @@ def rows_of(variant: Variant, frames: Sequence[SceneFrame], seed: int) -> Iterat
 
 def _row(estimate: Estimate, each: SceneFrame, period: float) -> tuple[float, ...]:
     truth = each.truth
-    (x, y), (true_x, true_y) = estimate.position, truth.box.centre
+    x, y = estimate.position
+    true_x, true_y = truth.box.centre
     (xx, xy), (_, yy) = cloud_covariance(estimate)
     return (
         truth.stamp_ns * 1e-9, x - true_x, y - true_y, xx, xy, yy,

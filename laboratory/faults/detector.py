@@ -34,7 +34,10 @@ LOW = 0.05
 """Score of a flood's boxes: that of what a detector gives without a threshold."""
 STAMP = 4
 """Byte at which the stamp is in a serialized message."""
-NAN, HUGE = math.nan, 1e300
+NAN = math.nan
+HUGE = 1e300
+"""Coordinate whose square overflows."""
+# Boxes that no detector should send; none may harm those beside it in a message.
 UNUSABLE = {
     "NaN": (NAN, 5.0, 9.0, 9.0),
     "infinite size": (5.0, 5.0, math.inf, 9.0),
@@ -97,7 +100,9 @@ class Detector:
     """
 
     def __init__(self, tester: Tester, messages: Any, rate: int) -> None:
-        self._messages, self._rate, self._turn = messages, rate, 0
+        self._messages = messages
+        self._rate = rate
+        self._turn = 0
         self._topic = tester.publisher(messages.Detection2DArray, "detections")
         self.faults: dict[str, Fault] = {
             "10 000 boxes, once a second": self._flood(10_000),
@@ -132,7 +137,8 @@ class Detector:
 
     def _stray(self, header: Header, boxes: Array) -> None:
         other = Header(frame_id=header.frame_id)
-        other.stamp.sec, other.stamp.nanosec = header.stamp.sec, header.stamp.nanosec ^ 1
+        other.stamp.sec = header.stamp.sec
+        other.stamp.nanosec = header.stamp.nanosec ^ 1
         self.right(other, boxes)
 
     def message(self, header: Header, boxes: Array, score: float = 0.8) -> Any:
@@ -140,10 +146,13 @@ class Detector:
         made = self._messages.Detection2DArray(header=header)
         for x, y, width, height in boxes.tolist():
             one = self._messages.Detection2D()
-            one.bbox.center.position.x, one.bbox.center.position.y = x + width / 2, y + height / 2
-            one.bbox.size_x, one.bbox.size_y = width, height
+            one.bbox.center.position.x = x + width / 2
+            one.bbox.center.position.y = y + height / 2
+            one.bbox.size_x = width
+            one.bbox.size_y = height
             result = self._messages.ObjectHypothesisWithPose()
-            result.hypothesis.class_id, result.hypothesis.score = "car", score
+            result.hypothesis.class_id = "car"
+            result.hypothesis.score = score
             one.results = [result]
             made.detections.append(one)
         return made

@@ -28,6 +28,7 @@ from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
 RATE = 12.0
+"""Images a second: a node and this client keep up with it on one core."""
 ROAD = Road(320, 180, lanes=6, size=(32.0, 20.0), speed=0.8, every=22.0, missed=0.0, false=0.0)
 """A vehicle takes half a minute to cross: most are in view before, during and after a fault."""
 SETTLED = 180
@@ -91,7 +92,9 @@ class Trial:
     """
 
     def __init__(self, tester: Tester, kind: str, seconds: float, right: Fault) -> None:
-        self._tester, self._right, self._count = tester, right, round(seconds * RATE)
+        self._tester = tester
+        self._right = right
+        self._count = round(seconds * RATE)
         self._node = NodeProcess(tester, TRAFFIC.name, f"detector.kind:={kind}", "queue_depth:=20")
         self._ledger = Ledger(self._node, may_wait=True)
         self._traffic = Traffic(ROAD, 10**6, 0)
@@ -106,7 +109,9 @@ class Trial:
 
     def give(self, words: str, fault: Fault | None = None, shift: int = 0) -> None:
         """Give a fault for a while, then none, and print what came of it."""
-        before, said, began = self._vehicles(), len(self._node.output), time.monotonic()
+        before = self._vehicles()
+        said = len(self._node.output)
+        began = time.monotonic()
         self._play(self._count, fault or self._right, shift)
         self._play(AFTER, self._right, 0)
         after = self._vehicles()
@@ -157,7 +162,8 @@ class Trial:
         """Paint the vehicles, each with windows and shadows of its own, as pixels hold it by."""
         frame = ROAD.painted(self._empty, corners)
         for number, (x, y) in corners.items():
-            left, top = int(x), int(y)
+            left = int(x)
+            top = int(y)
             texture = np.random.default_rng(number).integers(0, 60, (5, 8, 1), np.uint8)
             texture = np.kron(texture, np.ones((4, 4, 1), np.uint8))
             part = frame[top : top + 20, max(left, 0) : max(left + 32, 0)]

@@ -19,12 +19,19 @@ from vehicle_pf_tracker.image.encodings import ENCODINGS
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 
 WIDTH, HEIGHT = 64, 48
+"""Size of the right images, px: small, so that thousands are sent in a minute."""
 TARGET = (4.0, 18.0, 12.0, 10.0)
+"""Target in them: x, y, width, height, px."""
 PERIOD_NS = 33_000_000
+"""Time from one image to the next, ns: 30 Hz."""
 FIRST_NS = 1_700_000_000_000_000_000
+"""Stamp of the first image, ns: of today, whose digits a float64 does not hold."""
 DAY_NS = 86_400_000_000_000
+"""Leap of a stamp that is a day off, ns."""
 _TURN = 36
+"""Offsets of the pattern: the target sways over its width and back."""
 _LARGEST = 2**32 - 1
+"""Largest uint32, as sizes are in messages."""
 _NUMBERS = (0.0, -1.0, 31.5, 1e30, -1e30, float("nan"), float("inf"), float("-inf"))
 
 
@@ -143,19 +150,22 @@ class Faults:
     def _mixed(self, image: Image) -> None:
         draw = self._random
         image.encoding = draw.choice([*ENCODINGS, "", "mono32"])
-        image.height, image.width = draw.randrange(48), draw.randrange(64)
+        image.height = draw.randrange(48)
+        image.width = draw.randrange(64)
         image.step = draw.choice((0, image.width, 3 * image.width, 4 * image.width + 5))
         image.is_bigendian = draw.choice((0, 1, 255))
         image.data = self._bytes(draw.choice((0, image.step * image.height, 5, 20_000)))
 
     def _other_size(self, image: Image) -> None:
-        image.height, image.width = self._random.randrange(1, 48), self._random.randrange(1, 64)
+        image.height = self._random.randrange(1, 48)
+        image.width = self._random.randrange(1, 64)
         image.step = 3 * image.width
         image.data = self._bytes(image.step * image.height)
 
     def _other_time(self, image: Image) -> None:
         now = FIRST_NS
-        early, late = -(2**31) * 10**9, (2**31 - 1) * 10**9
+        early = -(2**31) * 10**9
+        late = (2**31 - 1) * 10**9
         choices = (0, early, late, now - DAY_NS, now - 1, self._random.randrange(early, now))
         image.header = header_at(self._random.choice(choices))
 

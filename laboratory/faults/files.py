@@ -43,7 +43,9 @@ from vehicle_pf_tracker.trackers.registry import find_variant
 
 VARIANT = find_variant("pf")
 FRAMES = 12
+"""Images of the recordings: enough for a start and a few steps."""
 LONGEST = 30
+"""Seconds that reading a file may take: a stack trace then ends the process."""
 _VALUES = (
     "0", "-1", "1e400", ".nan", "-.inf", "true", "~", "''", "'1'", "[1, 2.5]", "[]", "{}", "{a: 1}",
     "99999999999999999999", "0x10", "1_000", "!!python/object/apply:os.abort []", "&a [*a]", "wörd",
@@ -112,7 +114,8 @@ def _in_python(path: Path) -> str:
 
 
 def _in_node(path: Path) -> str:
-    context, node = rclpy.Context(), None
+    context = rclpy.Context()
+    node = None
     try:
         read_yaml_file(path, "parameter file")  # as the node's program does first
         with _quiet():
@@ -154,7 +157,8 @@ def try_recording(path: Path, folder: Path) -> str:
 
 @contextlib.contextmanager
 def _captured() -> Iterator[tuple[io.StringIO, io.StringIO]]:
-    told, errors = io.StringIO(), io.StringIO()
+    told = io.StringIO()
+    errors = io.StringIO()
     with contextlib.redirect_stdout(told), contextlib.redirect_stderr(errors):
         yield told, errors
 
@@ -190,7 +194,8 @@ def give_files(kind: str, count: int, seed: int) -> bool:
     FaultError
         At the first that is not dealt with as it should be; that file is kept.
     """
-    draw, results = random.Random(seed), Counter[str]()
+    draw = random.Random(seed)
+    results = Counter[str]()
     with tempfile.TemporaryDirectory(prefix="faults_") as folder:
         make, judge, suffix = _kinds(Path(folder))[kind]
         path = Path(folder, f"fuzzed{suffix}")

@@ -120,7 +120,8 @@ class Traffic:
         rows = []
         for x, y in corners.values():
             if self._rng.random() >= self._road.missed:
-                left, right = max(x, 0.0), min(x + width, self._road.width)
+                left = max(x, 0.0)
+                right = min(x + width, self._road.width)
                 noise = self._rng.normal(0, 0.3, 4)
                 rows.append(np.array([left, y, right - left, height]) + noise)
         if self._rng.random() < self._road.false:
@@ -185,7 +186,8 @@ class Numbers:
 
     def report(self) -> None:
         """Print what became of the numbers."""
-        missing, split = (self.of == 0).sum(), (self.of > 1).sum()
+        missing = (self.of == 0).sum()
+        split = (self.of > 1).sum()
         print(f"numbers issued: {self.issued}; twice: {self.reissued}")
         print(f"vehicles without a number: {missing}; with more than one: {split}")
         print(f"numbers that went over to another vehicle: {self.handed_on}")

@@ -21,6 +21,7 @@ from vehicle_pf_tracker.ros.messages import NOT_READY, REJECTED, WAITING, stamp_
 ALIKE = re.compile(r"^.*?\]: |\d+")
 """Parts in which sentences of one kind, that a node says, differ."""
 MB = 1e6
+"""Bytes of a megabyte."""
 SETTLED = 600.0
 """Seconds until memory has to stay as it is; a shorter run shows its second half."""
 GROWTH = 5.0

@@ -24,7 +24,8 @@ def give_messages(tester: Tester, variant: str, count: int, seed: int) -> bool:
     FaultError
         At the first that is not.
     """
-    drive, draw = Drive(), random.Random(seed)
+    drive = Drive()
+    draw = random.Random(seed)
     faults = Faults(drive.image, seed)
     sides = zip(("x", "y", "width", "height"), TARGET, strict=True)
     words = [f"target.{name}:={value}" for name, value in sides]

@@ -33,6 +33,7 @@ RELIABLE = "qos_overrides./image.subscription.reliability:=reliable"
 An image without an answer would then say nothing about the node.
 """
 _DEPTH = QoSProfile(depth=100)
+"""More messages than one case sends: none of the answers is dropped here."""
 _TARGETS = {
     RegionOfInterest: "set_target",
     PolygonStamped: "set_box",

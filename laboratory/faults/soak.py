@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from laboratory.faults.request import Request
 
 WIDTH, HEIGHT = 320, 180
+"""Size of the images, px: both nodes keep up with it beside the load."""
 BRIDGE = slice(150, 180)
 """Columns under the bridge: a vehicle of 32 px is hidden for a few images."""
 LEAST = 3.0
@@ -41,6 +42,7 @@ TARGET_EVERY = CHANGE_EVERY = 5.0
 """Seconds between two targets, and between two changes of a parameter."""
 _DEPTH, _LONG_DEPTH = 10, 100
 """Images that wait for a node: two thirds of a second of a camera, and more than any pause."""
+# Changes in their order, of every effect, each undone later.
 CHANGES: list[tuple[str, object]] = [
     ("num_particles", 300),
     ("histogram_bits", 4),  # of the reference's effect "relearns"
@@ -126,9 +128,12 @@ class Soak:
 
     def __init__(self, tester: Tester, request: Request, folder: Path) -> None:
         total = max(1, round(request.minutes * 60 * request.rate / request.every))
-        self._tester, self._rate, self._share = tester, request.rate, request.share
+        self._tester = tester
+        self._rate = request.rate
+        self._share = request.share
         self._scene = scene = Scene(total, request.every, request.rate)
-        self._faults, self._random = Faults(scene.image, request.seed), random.Random(request.seed)
+        self._faults = Faults(scene.image, request.seed)
+        self._random = random.Random(request.seed)
         names = request.nodes.split(",")
         lines = folder / "lines.yaml"
         lines.write_text(f"lines: {{exit: {{from: [{LINE}, {HEIGHT}], to: [{LINE}, 0]}}}}\n")
@@ -161,7 +166,8 @@ class Soak:
         first = self._scene.step(0)
         for ledger in self._ledgers.values():
             ledger.begin(self._tester, first)
-        began, number = time.monotonic(), 0
+        began = time.monotonic()
+        number = 0
         while not self._scene.traffic.is_over:
             number += 1
             if self._random.random() < self._share:
@@ -203,7 +209,8 @@ class Soak:
         """Publish the detections of an image, or what a detector that fails makes of them."""
         if self._detector is None:
             return
-        boxes, since = self._scene.detect(), number % round(FAULT_EVERY * self._rate)
+        boxes = self._scene.detect()
+        since = number % round(FAULT_EVERY * self._rate)
         if not self._share or number < FAULT_EVERY * self._rate or since > LASTS * self._rate:
             self._detector.right(image.header, boxes)
             return

@@ -134,7 +134,8 @@ def _add_spot(
 
 def foliage(size: tuple[int, int], seed: int) -> Condition:
     """Hang a crown of leaves into the upper left corner, which sways in gusts."""
-    width, height = int(size[0] * _CROWN[0]), int(size[1] * _CROWN[1])
+    width = int(size[0] * _CROWN[0])
+    height = int(size[1] * _CROWN[1])
     rng = stream(seed, "foliage")
     margin = int(2 * _SWAY)
     leaves = rng.normal(size=(height + 2 * margin, width + 2 * margin)).astype(np.float32)

@@ -134,7 +134,8 @@ class AccelerationParameters(DriveParameters):
 
 def acceleration(parameters: AccelerationParameters, seed: int) -> Scene:
     """Make the scene: the target speeds up, holds the speed, and brakes."""
-    low, high = parameters.speed, parameters.speed * parameters.change
+    low = parameters.speed
+    high = parameters.speed * parameters.change
     knots = (0.0, low), (14.0, low), (34.0, high), (48.0, high), (64.0, low)
     return Drive(parameters, seed, Pace(knots)).scene()
 
@@ -167,8 +168,10 @@ def dense(parameters: DriveParameters, seed: int) -> Scene:
     """Make the scene: full lanes, of which the nearer one hides parts of the target."""
     drive = Drive(parameters, seed)
     rng = stream(seed, "dense")
-    slow, fast = parameters.speed * rng.uniform(0.7, 0.8), parameters.speed * rng.uniform(1.3, 1.5)
-    stage, gaps = (drive.frame_count, drive.width), (14, 60)
+    slow = parameters.speed * rng.uniform(0.7, 0.8)
+    fast = parameters.speed * rng.uniform(1.3, 1.5)
+    stage = (drive.frame_count, drive.width)
+    gaps = (14, 60)
     far = convoy(drive.road.lane(LANE - 1), slow, *stage, rng, gaps)
     near = convoy(drive.road.lane(LANE + 1), fast, *stage, rng, gaps, (van, suv))
     ahead = _own_lane(drive, rng)
@@ -194,7 +197,8 @@ CROSSING = math.radians(28)
 def cross(parameters: DriveParameters, seed: int) -> Scene:
     """Make the scene: the target slows down for a coach that crosses the road before it."""
     base = Drive(parameters, seed)
-    speed, slow = parameters.speed, 0.5 * parameters.speed
+    speed = parameters.speed
+    slow = 0.5 * parameters.speed
     brake = base.frame_at(base.along(0.33))
     pace = Pace(((0.0, speed), (brake, speed), (brake + 12, slow), (brake + 26, slow),
                  (brake + 38, speed)))  # fmt: skip
@@ -222,7 +226,8 @@ def _crossroads(drive: Drive, frame: float) -> Image:
     picture = drive.backdrop()
     x, y = _crossing(drive, frame)
     slope = math.tan(CROSSING) * math.sin(ELEVATION) * (-1 if drive.rightward else 1)
-    top, bottom = -1.0, drive.height + 1.0
+    top = -1.0
+    bottom = drive.height + 1.0
     ends = (x + (top - y) / slope, top), (x + (bottom - y) / slope, bottom)
     side_road(
         picture, *ends, 7.5 * drive.scale / math.sin(CROSSING), stream(drive.seed, "crossing")

@@ -83,7 +83,8 @@ class _Traffic:
     """State of all drivers while they are simulated."""
 
     def __init__(self, drivers: Sequence[Driver], lanes: int, period: float) -> None:
-        self.lanes, self.period = lanes, period
+        self.lanes = lanes
+        self.period = period
         lanes_of, self.front, self.length, self.wanted = np.transpose(np.array(drivers))
         self.speed = self.wanted.copy()
         self.origin = lanes_of.astype(np.int64)
@@ -194,7 +195,8 @@ def simulate(
     traffic = _Traffic(drivers, lanes, 1 / frame_rate)
     front, lane = np.empty((2, len(drivers), frame_count))
     for index in range(frame_count):
-        front[:, index], lane[:, index] = traffic.front, traffic.lane
+        front[:, index] = traffic.front
+        lane[:, index] = traffic.lane
         if changing:
             traffic.change_lanes()
         traffic.step(holds)
@@ -293,7 +295,8 @@ def drive(
     slow = parameters.lanes - 1 if own_lane else parameters.lanes
     ahead = rng.uniform(*_FIRST, parameters.lanes + 1) * visible
     ahead[slow] += _LORRIES_AHEAD * visible * (1 if parameters.lorry_speed < 1 else -1)
-    drivers, car_count = [], 0
+    drivers = []
+    car_count = 0
     for length, large in zip(lengths, is_lorry, strict=True):
         alone = large and not parameters.mixed
         lane = slow % parameters.lanes if alone else car_count % min(slow, parameters.lanes)

@@ -138,7 +138,8 @@ def _merged(
         ]  # fmt: skip
         if others and rng.uniform() < merges:
             other, seen_of_it = groups.pop(others[0])
-            low, high = np.minimum(box[:2], other[:2]), np.maximum(box[2:], other[2:])
+            low = np.minimum(box[:2], other[:2])
+            high = np.maximum(box[2:], other[2:])
             groups[index] = np.concatenate([low, high]), max(visible, seen_of_it)
         else:
             index += 1
@@ -154,7 +155,8 @@ def _noisy(corners: Array, noise: float, rng: np.random.Generator) -> Array:
     """Move each edge, and return left, top, width and height."""
     sides = np.tile(corners[2:] - corners[:2], 2)
     moved = corners + noise * sides * rng.standard_normal(4)
-    low, high = np.minimum(moved[:2], moved[2:] - 1), np.maximum(moved[2:], moved[:2] + 1)
+    low = np.minimum(moved[:2], moved[2:] - 1)
+    high = np.maximum(moved[2:], moved[:2] + 1)
     return np.concatenate([low, high - low])
 
 
@@ -165,8 +167,10 @@ def _score(visible: float, rng: np.random.Generator) -> float:
 
 def false_alarm(size: tuple[int, int], rng: np.random.Generator) -> tuple[Array, float]:
     """Place a box of a vehicle's size anywhere."""
-    width, height = rng.uniform(15, 60), rng.uniform(10, 30)
-    left, top = rng.uniform(0, size[0] - width), rng.uniform(0, size[1] - height)
+    width = rng.uniform(15, 60)
+    height = rng.uniform(10, 30)
+    left = rng.uniform(0, size[0] - width)
+    top = rng.uniform(0, size[1] - height)
     mean = _FALSE_SCORE
     score = rng.beta(_CONCENTRATION * mean, _CONCENTRATION * (1 - mean))
     return np.array([left, top, width, height]), float(score)
@@ -278,7 +282,8 @@ def _is_judged(one: VehicleTruth) -> bool:
 
 def _ignored(frame: int, one: VehicleTruth) -> str:
     # A margin for boxes that are not tight: a strip of 2 px is not to be hit exactly.
-    box, margin = one.box, LEAST_SIDE
+    box = one.box
+    margin = LEAST_SIDE
     sides = box.width + 2 * margin, box.height + 2 * margin
     place = f"{box.x - margin:.2f},{box.y - margin:.2f},{sides[0]:.2f},{sides[1]:.2f}"
     return f"{frame},{place},vehicle {one.identity} at the border"

@@ -177,7 +177,8 @@ def _treads(faces: Sequence[Face], axles: Sequence[float]) -> list[Face]:
 
 def bounds(points: Array) -> Box:
     """Return the tight box around points (N, 2), px."""
-    (left, top), (right, bottom) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    left, top = points.min(axis=0).tolist()
+    right, bottom = points.max(axis=0).tolist()
     return Box(left, top, right - left, bottom - top)
 
 
@@ -234,7 +235,9 @@ def _shaded(face: Face, corners: Array, camera: RoadCamera) -> tuple[float, floa
 
 
 _MARK = (214, 214, 206)
+"""Paint of lines, as on the roads that are seen from the side."""
 _SKY = (186, 200, 214)
+"""Hazy sky above the horizon."""
 _CELL = 0.06
 """Size of a texture's cell on the ground, m."""
 _TILE = 512
@@ -266,9 +269,11 @@ def ground_picture(
     camera: RoadCamera, size: tuple[int, int], marks: RoadMarks, rng: np.random.Generator
 ) -> Image:
     """Draw the ground (width, height in px) as the mean of two by two points in each pixel."""
-    tar, green = asphalt((_TILE, _TILE), rng), grass((_TILE, _TILE), rng)
+    tar = asphalt((_TILE, _TILE), rng)
+    green = grass((_TILE, _TILE), rng)
     width, height = size
-    plane, total = camera.plane, np.zeros((height, width, 3))
+    plane = camera.plane
+    total = np.zeros((height, width, 3))
     for down in (0.25, 0.75):
         for right in (0.25, 0.75):
             rows, columns = np.mgrid[0:height, 0:width] + 0.0

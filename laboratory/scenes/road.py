@@ -30,7 +30,9 @@ from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.vehicles import car, saloon, suv
 
 WIDTH, HEIGHT = 640, 480
+"""Size of the images, px: that of the other scenes with one target."""
 LANE_WIDTH = 3.5
+"""Width of a lane, m: a main road."""
 LANES = (-LANE_WIDTH, 0.0, LANE_WIDTH)
 """Middles of the lanes (x), m; the target drives in the middle one."""
 NEAR, FAR = 22.0, 70.0
@@ -46,11 +48,13 @@ _VEHICLES = {
     "suv": (suv, (0.9, 3.6)),
 }
 """Maker and axles (m from the rear) of each kind of vehicle."""
+# The barrel is that of a wide lens; its tangential parts are those of a cheap mount.
 _LENSES = {
     "none": ("none", ()),
     "barrel": ("plumb_bob", (-0.28, 0.09, 0.0004, -0.0006, 0.0)),
 }
 _EDGE = 1.5 * LANE_WIDTH
+"""Distance of the outer lines from the middle of the road, m."""
 _MARKS = RoadMarks(
     tar=((-_EDGE - 1, _EDGE + 1),),
     dashed=(-LANE_WIDTH / 2, LANE_WIDTH / 2),

@@ -31,6 +31,7 @@ from vehicle_pf_tracker.scenes.compositing import Image
 from vehicle_pf_tracker.scenes.random_streams import stream
 
 WIDTH, HEIGHT = 384, 256
+"""Size of the images, px: small, as vehicles are large in them."""
 _FIELD = math.radians(44)
 """Field of view: that of a common camera without zoom."""
 _EXPOSURE = (0.0, 0.4)
@@ -120,7 +121,8 @@ class CloseScene(TrafficScene):
 def close_scene(parameters: CloseParameters, seed: int) -> CloseScene:
     """Make traffic on a road beside a camera, which looks across it."""
     rng = stream(seed, "camera beside traffic")
-    aside, angle = float(rng.uniform(6.0, 9.0)), math.radians(float(rng.uniform(42, 62)))
+    aside = float(rng.uniform(6.0, 9.0))
+    angle = math.radians(float(rng.uniform(42, 62)))
     size = (WIDTH + 2 * MARGIN, HEIGHT + 2 * MARGIN)
     focal = WIDTH / 2 / math.tan(_FIELD / 2)
     lens = Lens((focal, focal), (size[0] / 2 - 0.5, size[1] / 2 - 0.5))
@@ -178,5 +180,6 @@ def _direction(
         middle = flow.front[number] - vehicle.length / 2
         y = far - middle if coming else near + middle
         # Outside of the view all wait at its far end: near the camera they would be behind it.
-        vehicle.x, vehicle.y = np.full(len(y), x), np.where((y > near) & (y < far), y, far + 9)
+        vehicle.x = np.full(len(y), x)
+        vehicle.y = np.where((y > near) & (y < far), y, far + 9)
     return vehicles

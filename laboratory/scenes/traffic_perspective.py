@@ -37,7 +37,9 @@ from vehicle_pf_tracker.scenes.solids import Face
 from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon, tinted, van
 
 WIDTH, HEIGHT = 640, 360
+"""Size of the images, px: that of a common stream of a traffic camera."""
 LANE_WIDTH = 3.5
+"""Width of a lane, m: a motorway."""
 MEDIAN = 4.0
 """Width between the two carriageways, m."""
 NEAR, FAR = 33.0, 140.0
@@ -60,6 +62,7 @@ _CARS = (
 _ROAD_FROM = 0.5
 """Row of the farthest pairs of a road, of the image's height: clearly below its horizon."""
 _LORRY_AXLES = (1.0, 2.2, 7.1, 9.4)
+"""Axles of a lorry, m from the rear."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,13 +83,15 @@ class OnRoad:
 
     def __init__(self, faces: Sequence[Face], axles: Sequence[float]) -> None:
         corners = np.concatenate([np.asarray(face.points) for face in faces])
-        self.faces, self.axles = faces, axles
+        self.faces = faces
+        self.axles = axles
         self.length, self.width = np.ptp(corners[:, :2], axis=0).tolist()
         self.x = self.y = np.zeros(1)
 
     def place(self, x: Array, y: Array) -> None:
         """Set its way: the middle's position in each frame, m."""
-        self.x, self.y = x, np.where(y < _FARTHEST, np.maximum(y, _LOWEST), _LOWEST)
+        self.x = x
+        self.y = np.where(y < _FARTHEST, np.maximum(y, _LOWEST), _LOWEST)
 
     def at(self, frame: float) -> tuple[float, float]:
         """Give its middle's position in `frame`; constant before the first and after the last.
@@ -94,7 +99,8 @@ class OnRoad:
         It leaps from one end of the stretch to the other, with no way between.
         """
         index = int(min(max(frame, 0), len(self.x) - 1))
-        after, share = min(index + 1, len(self.x) - 1), frame - index
+        after = min(index + 1, len(self.x) - 1)
+        share = frame - index
         if not 0 < share < 1 or abs(self.y[after] - self.y[index]) > LANE_WIDTH:
             return float(self.x[index]), float(self.y[index])
         x, y = ((1 - share) * way[index] + share * way[after] for way in (self.x, self.y))
@@ -182,7 +188,8 @@ def _lanes(way: int, parameters: PerspectiveParameters) -> list[float]:
 
 
 def _marks(parameters: PerspectiveParameters) -> RoadMarks:
-    inner, outer = MEDIAN / 2, MEDIAN / 2 + LANE_WIDTH * parameters.lanes
+    inner = MEDIAN / 2
+    outer = MEDIAN / 2 + LANE_WIDTH * parameters.lanes
     ways = (-1, 1)[: parameters.directions]
     between = [inner + LANE_WIDTH * number for number in range(1, parameters.lanes)]
     return RoadMarks(
@@ -248,7 +255,8 @@ def order_of(vehicles: Sequence[OnRoad], camera_x: float) -> Callable[[int], lis
         behind = y[:, np.newaxis] - half[:, np.newaxis] >= y + half
         beside = (~behind & ~behind.T) & (aside[:, np.newaxis] > aside)
         first = behind | beside
-        left, ordered = list(range(len(vehicles))), []
+        left = list(range(len(vehicles)))
+        ordered = []
         while left:
             waits = first[np.ix_(left, left)].sum(axis=0)
             # Zero but for a circle of vehicles, in which none hides all the others.

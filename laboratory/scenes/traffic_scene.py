@@ -32,6 +32,7 @@ _MEDIAN = 34
 SCENERY = "scene"
 """Stands for whatever hides a vehicle and is none."""
 WIDTH, HEIGHT = 640, 360
+"""Size of the images, px: that of a common stream of a traffic camera."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +122,8 @@ class TrafficScene(Stage):
         return sorted(range(len(self.vehicles)), key=foot)
 
     def _cut(self, box: Box) -> Box | None:
-        left, top = max(box.x, 0.0), max(box.y, 0.0)
+        left = max(box.x, 0.0)
+        top = max(box.y, 0.0)
         right = min(box.x + box.width, float(self.width))
         bottom = min(box.y + box.height, float(self.height))
         inside = left < right and top < bottom

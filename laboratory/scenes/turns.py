@@ -69,7 +69,8 @@ class Bend:
 
 
 def _rotated(along: float, across: float, heading: float) -> tuple[float, float]:
-    cosine, sine = math.cos(heading), math.sin(heading)
+    cosine = math.cos(heading)
+    sine = math.sin(heading)
     return along * cosine - across * sine, along * sine + across * cosine
 
 
@@ -81,7 +82,8 @@ def side_road(
     rng: np.random.Generator,
 ) -> None:
     """Draw a road with a dashed middle line from `begin` to `end` (x, y), `width` px across."""
-    (x0, y0), (x1, y1) = begin, end
+    x0, y0 = begin
+    x1, y1 = end
     sides = (-width / 2 - 3, width / 2 + 3), (-width / 2, width / 2)
     for (left, right), light in zip(sides, (1.25, 1.0), strict=True):
         outline = np.array([(x0 + left, y0), (x0 + right, y0), (x1 + right, y1), (x1 + left, y1)])
@@ -146,7 +148,8 @@ def turn_occluded(parameters: DriveParameters, seed: int) -> Scene:
 def house_at_corner(drive: TurningDrive) -> list[Actor]:
     """Build a house on the near side that hides the turn of `drive`."""
     length, height = drive.target.size
-    near, far = drive.corner - 0.7 * length, drive.corner + RADIUS + 0.6 * length
+    near = drive.corner - 0.7 * length
+    far = drive.corner + RADIUS + 0.6 * length
     left = min(drive.x(near), drive.x(far))
     top = drive.row - RADIUS * math.sin(ELEVATION) - 1.2 * height
     box = Box(left, top, far - near, drive.road.rows.stop + 50 - top)
@@ -155,7 +158,8 @@ def house_at_corner(drive: TurningDrive) -> list[Actor]:
 
 def house(box: Box, walls: Colour, rng: np.random.Generator) -> list[Actor]:
     """Make the rear of a house with two rows of windows under a roof of tiles, filling `box`."""
-    rows, columns = round(box.height), round(box.width)
+    rows = round(box.height)
+    columns = round(box.width)
     colour = concrete((rows, columns), rng) / 164 * np.asarray(walls)
     eaves = round(rows * 0.3)
     colour[:eaves] = concrete((eaves, columns), rng) / 164 * np.asarray((138.0, 76.0, 58.0))

@@ -29,8 +29,9 @@ Grey = npt.NDArray[np.uint8]
 _WIDTH = 320
 """Width in px that images are reduced to: flow is exact enough there, and takes 1 ms."""
 _CORNERS = 150
+"""Most corners: a fit that traffic disturbs needs many of the background."""
 _LEAST_CORNERS = 12
-"""At most, for a fit that traffic disturbs; at least three corners for each of four unknowns."""
+"""Least corners: three for each of four unknowns."""
 _CLEARANCE = 0.75
 """Corners closer to the target's centre than this share of its size are the target's."""
 _RANSAC_PX = 1.0
@@ -75,7 +76,9 @@ class Background:
 def background_of(source: Source) -> Background:
     """Measure the motion of a sequence's background."""
     footage = open_footage(source)
-    steps, flows, shares = [], [], []
+    steps = []
+    flows = []
+    shares = []
     for step, flow, share in _steps(footage):
         steps.append(step)
         flows.append(flow)
@@ -128,14 +131,17 @@ def _flow(last: Grey, present: Grey, mask: Grey) -> tuple[Matrix, Matrix]:
         return np.empty((0, 2)), np.empty((0, 2))
     moved, status, _ = cv2.calcOpticalFlowPyrLK(last, present, corners, corners.copy())
     kept = status.ravel() > 0
-    before, after = corners[kept].reshape(-1, 2), moved[kept].reshape(-1, 2)
+    before = corners[kept].reshape(-1, 2)
+    after = moved[kept].reshape(-1, 2)
     return np.asarray(before, np.float64), np.asarray(after, np.float64)
 
 
 def _without_target(grey: Grey, zoom: float, target: Box | None) -> Grey:
     mask = np.full_like(grey, 255)
     if target is not None:
-        (x, y), width, height = target.centre, target.width, target.height
+        x, y = target.centre
+        width = target.width
+        height = target.height
         left, right = (round(zoom * (x + side * _CLEARANCE * width)) for side in (-1, 1))
         top, bottom = (round(zoom * (y + side * _CLEARANCE * height)) for side in (-1, 1))
         mask[max(top, 0) : max(bottom, 0), max(left, 0) : max(right, 0)] = 0

@@ -18,8 +18,9 @@ from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.scenes.random_streams import stream
 
 QUICK_PER_SEQUENCE = 8
+"""Cases of a sequence in the quick battery: one of each turn of `_TURNS`."""
 QUICK_FRAMES = 150
-"""Nineteen sequences make 152 cases of five seconds: minutes instead of an hour."""
+"""Frames of a case in it: nineteen sequences make 152 cases of five seconds, minutes, no hour."""
 _TURNS = ("occluder", "start", "view", "occluder", "image", "occluder", "start", "camera")
 """Groups that a small battery takes cases from in turns: what trackers fail at comes thrice."""
 

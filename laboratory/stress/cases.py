@@ -122,7 +122,8 @@ class Case:
 
     def truths(self) -> list[Truth | None]:
         """Compute the truth of every frame, without decoding one."""
-        footage, fps = open_footage(self.origin.source), self.fps
+        footage = open_footage(self.origin.source)
+        fps = self.fps
         return [
             self._truth(footage.truth[index], index, stamp_of(position, fps))
             for position, index in self._kept()
@@ -137,7 +138,8 @@ class Case:
 
     def play(self) -> Iterator[StressFrame]:
         """Make the frames, one after the other."""
-        footage, fps = open_footage(self.origin.source), self.fps
+        footage = open_footage(self.origin.source)
+        fps = self.fps
         painters = [change.painter(footage, self.seed) for change in self.changes]
         last = -1
         for position, index in self._kept():

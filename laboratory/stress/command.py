@@ -51,7 +51,8 @@ class Request(EvaluationRequest):
 
 def run(request: Request) -> int:
     """Run the missing cases of the battery, write its report, and print its tables."""
-    systems, cases = _systems(request), _cases(request)
+    systems = _systems(request)
+    cases = _cases(request)
     count = request.seeds or FEW_SEEDS
     seeds = range(request.first_seed, request.first_seed + count)
     tell_notices([f"{len(cases)} cases of {len({case.sequence for case in cases})} sequences"])

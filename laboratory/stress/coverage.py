@@ -72,7 +72,8 @@ def coverage(corners: Floats, region: tuple[int, int, int, int]) -> Floats:
 
 def _is_beside(corners: Floats, region: tuple[int, int, int, int]) -> bool:
     """Tell quickly that a rectangle touches no pixel of a region, as in most frames."""
-    (left, top), (right, bottom) = corners.min(axis=0), corners.max(axis=0)
+    left, top = corners.min(axis=0)
+    right, bottom = corners.max(axis=0)
     beside = right < region[0] or region[2] < left
     return bool(beside or bottom < region[1] or region[3] < top)
 
@@ -89,7 +90,8 @@ def _share_inside(one: Floats, end: Floats, x: Floats, y: Floats) -> Floats:
     low, high = sorted((abs(dx) / length, abs(dy) / length))
     if low < _UPRIGHT:
         return np.asarray(np.clip(distance + 0.5, 0, 1))
-    outer, inner = (high + low) / 2, (high - low) / 2
+    outer = (high + low) / 2
+    inner = (high - low) / 2
     squares = [np.maximum(distance + each, 0.0) ** 2 for each in (outer, inner, -inner, -outer)]
     share = (squares[0] - squares[1] - squares[2] + squares[3]) / (2 * low * high)
     return np.asarray(np.clip(share, 0, 1))

@@ -30,6 +30,7 @@ CAMERAS = "cameras.csv"
 _IN_MEMORY = 2
 """Sequences that a process keeps open; a recording's decoded frames are kept with it."""
 _BLOCK = 1 << 22
+"""Bytes that are read at once to make a digest of a file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,7 +231,8 @@ def _read_cameras(path: Path) -> Mapping[str, str]:
         raise InputError(f"cannot read the cameras {path}: {error}") from error
     table: dict[str, str] = {}
     for row in rows:
-        name, camera = row.get("sequence"), row.get("camera")
+        name = row.get("sequence")
+        camera = row.get("camera")
         if not name or not camera:
             raise InputError(f"the cameras {path} need the columns sequence,camera in every line")
         if name in table:

@@ -33,6 +33,7 @@ _DROPPED = 0.2
 _SHIFT = 0.1
 """Shift of OTB's spatial robustness (Wu, Lim and Yang 2013), in widths and heights of the box."""
 _SCALES = (0.8, 0.9, 1.1, 1.2)
+"""Scales of OTB's spatial robustness."""
 _SIDES = {
     "left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1),
     "left_up": (-1, -1), "right_up": (1, -1), "left_down": (-1, 1), "right_down": (1, 1),

@@ -20,6 +20,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 Similarity = tuple[float, float, float, float]
 """a, b, x, y of the map ``(a x - b y + x, b x + a y + y)``."""
 _STANDING: Similarity = (1.0, 0.0, 0.0, 0.0)
+"""Map of a camera that stands."""
 
 
 @dataclass(frozen=True, slots=True)

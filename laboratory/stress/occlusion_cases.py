@@ -63,7 +63,8 @@ def lorries(origin: StressSource, seed: int) -> Iterator[Case]:
 def _cases(
     origin: StressSource, kind: str, spec: OcclusionSpec, variation: str, seed: int, **labels: str
 ) -> Iterator[Case]:
-    footage, background = open_footage(origin.source), background_of(origin.source)
+    footage = open_footage(origin.source)
+    background = background_of(origin.source)
     size = origin.source.width, origin.source.height
     placer = Placer(footage.truth, background, size)
     own = zlib.crc32(f"{seed}/{origin.name}/{kind}/{variation}".encode())
@@ -98,7 +99,8 @@ def _carrier(background: Background) -> str:
 
 def _is_too_large(placed: Placed, footage: StressFootage) -> bool:
     """Return whether the occluder ever covers most of the image."""
-    width, height = footage.source.width, footage.source.height
+    width = footage.source.width
+    height = footage.source.height
     image = np.array([[0, 0], [width, 0], [width, height], [0, height]], np.float32)
     for index in range(placed.first, placed.first + placed.count, 5):
         corners = placed.occluder.corners(index).astype(np.float32)
@@ -111,7 +113,8 @@ def _is_too_large(placed: Placed, footage: StressFootage) -> bool:
 def _with_texture(placed: Placed, footage: StressFootage, seed: int) -> Occluder:
     """Choose the most textured of a few random patches, away from the vehicle."""
     rng = stream(seed, "patch")
-    occluder, source = placed.occluder, footage.source
+    occluder = placed.occluder
+    source = footage.source
     # Not larger than a quarter of the image, so that there is room for it beside the vehicle.
     width = int(np.clip(occluder.rectangle.width, 16, source.width // 2))
     height = int(np.clip(occluder.rectangle.height, 16, source.height // 2))

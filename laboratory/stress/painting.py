@@ -36,6 +36,7 @@ _BODIES = (
 _OWN_PAINT = 0.55
 """Share of a lorry's side that is paint; the rest is the patch of the footage."""
 _FINE_PX = 1.0
+"""Standard deviation of the blur, px, whose remainder is the grain of a surface."""
 _LARGEST_GRAIN = 0.06
 """Share of its level that a surface varies by from pixel to pixel at most: foliage has more."""
 _SOFTNESS_PX = 0.6

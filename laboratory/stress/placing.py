@@ -222,11 +222,14 @@ def _rectangles(
     for length in range(1, max(spec.duration, 1) + 1):
         begin = max(0, anchor - (length - 1) // 2)
         inner = boxes[begin : begin + length]
-        low, high = inner[:, :2].min(axis=0), inner[:, 2:].max(axis=0)
+        low = inner[:, :2].min(axis=0)
+        high = inner[:, 2:].max(axis=0)
         axis = _axis(boxes, anchor) if spec.style != LORRY else 0
         if spec.style == POLE:
-            middle, extent = (low[axis] + high[axis]) / 2, share * (high - low)[axis]
-            low[axis], high[axis] = middle - extent / 2, middle + extent / 2
+            middle = (low[axis] + high[axis]) / 2
+            extent = share * (high - low)[axis]
+            low[axis] = middle - extent / 2
+            high[axis] = middle + extent / 2
         across = 1 - axis
         side = high[across] - low[across]
         low[across] -= margins[0] * side

@@ -157,7 +157,8 @@ def _json(
 
 def _group(group: Group) -> dict[str, Any]:
     recovered, judged = group.recoveries
-    visible, hidden = group.reliability(), group.reliability(hidden=True)
+    visible = group.reliability()
+    hidden = group.reliability(hidden=True)
     return {
         "by": group.by,
         "name": group.name,

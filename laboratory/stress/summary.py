@@ -139,7 +139,8 @@ def difference(results: Sequence[Result], one: str, other: str, measure: str) ->
     camera = {result.case.name: result.case.camera for result in results}
     pairs = []
     for case, seed in itertools.product(camera, seeds):
-        first, second = scores.get((one, case, seed)), scores.get((other, case, seed))
+        first = scores.get((one, case, seed))
+        second = scores.get((other, case, seed))
         if first is not None and second is not None:
             pairs.append((case, first - second))
     by_camera = _means((camera[case], mean) for case, mean in _means(pairs).items())
