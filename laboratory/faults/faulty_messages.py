@@ -29,7 +29,7 @@ FIRST_NS = 1_700_000_000_000_000_000
 DAY_NS = 86_400_000_000_000
 """Leap of a stamp that is a day off, ns."""
 _TURN = 36
-"""Offsets of the pattern: the target sways over its width and back."""
+"""Images from one end of the way to the other: the vehicle drives to and fro."""
 _LARGEST = 2**32 - 1
 """Largest uint32, as sizes are in messages."""
 _NUMBERS = (0.0, -1.0, 31.5, 1e30, -1e30, float("nan"), float("inf"), float("-inf"))

@@ -52,7 +52,7 @@ class Ledger:
     node : NodeProcess
         The node.
     may_wait : bool
-        Whether a good image may be answered without an estimate, as before there is a target.
+        True where a good image may be answered without an estimate, as before there is a target.
     counts : Counter of str
         Answers by the kind of image and their mode, and other events.
     seconds, wrong : list of str

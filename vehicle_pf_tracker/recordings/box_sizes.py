@@ -27,7 +27,7 @@ class Misfit:
     sentence : str
         The reason, without a name of the file.
     is_fatal : bool
-        Whether no box can be used.
+        True where no box can be used.
     """
 
     sentence: str

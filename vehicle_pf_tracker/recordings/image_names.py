@@ -49,7 +49,7 @@ class NamedImages:
     times_ns : list of int or None
         Times that the names state, ns; None where they count frames.
     since_1970 : bool
-        Whether the times count from 1970; else from a start that is not known.
+        True where the times count from 1970; else from a start that is not known.
     notices : list of str
         Assumptions, a sentence each.
     """
@@ -82,7 +82,7 @@ def number_images(
     fps : float or None
         Frame rate that is known, 1/s.
     is_given : bool
-        Whether the user gave it, so that it takes the place of times in the names.
+        True where the user gave it, so that it takes the place of times in the names.
 
     Raises
     ------

@@ -52,7 +52,7 @@ class Times:
     unit : str
         Unit that was recognised: s, ms, µs or ns.
     since_1970 : bool
-        Whether they count from 1970; else from a start that is not known.
+        True where they count from 1970; else from a start that is not known.
     ns : list of int
         The times, ns.
     """

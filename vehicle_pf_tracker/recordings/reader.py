@@ -18,16 +18,13 @@ from vehicle_pf_tracker.recordings import messages
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.footage import StampedFrame
 from vehicle_pf_tracker.recordings.mcap_blocks import Message
-from vehicle_pf_tracker.recordings.mcap_index import McapIndex, merged_messages, read_index
+from vehicle_pf_tracker.recordings.mcap_index import McapIndex, read_index
+from vehicle_pf_tracker.recordings.merged_messages import merged_messages
 from vehicle_pf_tracker.recordings.messages import deserialize
+from vehicle_pf_tracker.recordings.read_notices import ReadNotices
 from vehicle_pf_tracker.recordings.recording_names import SQLITE
 from vehicle_pf_tracker.recordings.sqlite_index import read_sqlite_index
-from vehicle_pf_tracker.recordings.topic_table import (
-    ReadNotices,
-    TopicInfo,
-    choose_image_topic,
-    list_topics,
-)
+from vehicle_pf_tracker.recordings.topic_table import TopicInfo, choose_image_topic, list_topics
 
 __all__ = ["RecordedMessage", "Recording", "StampedFrame"]
 

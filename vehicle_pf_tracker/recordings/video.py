@@ -1,25 +1,21 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Footage of a video file, a camera or a stream, and footage of any kind by its name."""
+"""Footage of a video file, and the opening of footage of any kind by its name."""
 
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings.decoders import (
     Decoder,
-    OpenCVDecoder,
     open_decoder,
-    quiet_opencv,
 )
 from vehicle_pf_tracker.recordings.footage import (
     LAST_STAMP_NS,
@@ -30,6 +26,7 @@ from vehicle_pf_tracker.recordings.footage import (
     stamp_of,
 )
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
+from vehicle_pf_tracker.recordings.live_camera import LiveCamera
 from vehicle_pf_tracker.recordings.recording_names import CONVERSION, is_url
 from vehicle_pf_tracker.recordings.truth_files import Beside, Table, read_truth
 from vehicle_pf_tracker.recordings.truth_labels import Images
@@ -148,55 +145,6 @@ class VideoFile(Footage):
         return open_decoder(self._path)
 
 
-class Camera(Footage):
-    """Frames of a camera or a network stream, stamped by the clock as they arrive.
-
-    Parameters
-    ----------
-    source : int or str
-        Index of a camera, or URL of a stream.
-
-    Raises
-    ------
-    InputError
-        If it cannot be opened.
-    """
-
-    def __init__(self, source: int | str) -> None:
-        self._name = f"the camera {source}" if isinstance(source, int) else f"the stream {source}"
-        try:
-            self._video = OpenCVDecoder(source)
-        except InputError as error:
-            raise InputError(f"{self._name} {error}") from None
-        self.fps = self._video.fps
-        self.frame_count = None
-        self._read = 0
-
-    @property
-    def is_endless(self) -> bool:
-        """True for a live source; False where the URL is that of a video file."""
-        return self._video.frame_count is None
-
-    def frames(self) -> Iterator[Picture]:
-        """Yield frames until the source ends."""
-        last = 0
-        try:
-            while (frame := self._next()) is not None:
-                self._read += 1
-                last = max(time.time_ns(), last + 1)
-                yield Picture(last, frame, f"frame {self._read} of {self._name}")
-        finally:
-            self._video.close()
-        if not self._read:
-            raise InputError(f"{self._name} sends no images")
-        self._notices = [f"{self._name} sent no more images after {self._read}"]
-
-    def _next(self) -> Frame | None:
-        with quiet_opencv():  # it complains of a stream that stalls
-            read = self._video.read()
-        return None if read is None else read[0]
-
-
 def open_footage(
     source: str | Path,
     *,
@@ -228,7 +176,7 @@ def open_footage(
     text = str(source)
     is_index = text.isdecimal() and not Path(text).exists()
     if is_index or is_url(text):
-        camera = Camera(int(text) if is_index else text)
+        camera = LiveCamera(int(text) if is_index else text)
         if not is_index and not camera.is_endless:
             return VideoFile(text, truth, fps, identity)
         if truth is not None:

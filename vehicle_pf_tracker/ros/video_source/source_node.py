@@ -20,8 +20,9 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs
 from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, Footage, StampedFrame
+from vehicle_pf_tracker.recordings.live_camera import LiveCamera
 from vehicle_pf_tracker.recordings.recording_names import is_recording
-from vehicle_pf_tracker.recordings.video import Camera, open_footage
+from vehicle_pf_tracker.recordings.video import open_footage
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
 from vehicle_pf_tracker.ros.video_source.outage import Outage
@@ -148,7 +149,7 @@ class VideoSourceNode(Node):  # type: ignore[misc]
         """Show the source until it ends or breaks; return whether it is to be opened again."""
         try:
             source = self._open()
-            self._is_live = isinstance(source, Camera)
+            self._is_live = isinstance(source, LiveCamera)
             self._goes_on = self._is_live or self._settings.loop
             self._pace.begin(is_live=self._is_live)
             for picture in source.frames():
