@@ -226,6 +226,7 @@ def _polygon(body: Any, what: str) -> tuple[Position, ...]:
         raise InputError(f"{what} needs three corners or more, as [[0, 0], [90, 0], [90, 60]]")
     if len(body) > _MOST_CORNERS:
         raise InputError(f"{what} has more than {_MOST_CORNERS} corners")
+    # Points first: what is no number has neither area nor crossings.
     corners = tuple(_point(corner, what) for corner in body)
     if abs(_area(corners)) < 1:
         raise InputError(f"{what} has no area; its corners lie on a line")

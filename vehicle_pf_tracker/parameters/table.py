@@ -103,6 +103,7 @@ class ParameterSpec:
             allowed.
         """
         value = plain_number(value)
+        # YAML writes 30 for 30.0; True is an int to Python, and no number here.
         if self.kind is float and isinstance(value, int) and not isinstance(value, bool):
             try:
                 value = float(value)
@@ -227,6 +228,7 @@ def from_mapping(
         Naming every unknown name, wrong type and value out of bounds.
     """
     table = specs(cls)
+    # All problems at once: a file is mended in one go.
     problems = [unknown_name(name, table) for name in values if name not in table]
     checked = to_mapping(base if base is not None else cls())
     for name, value in values.items():

@@ -94,6 +94,7 @@ class OpenCVDecoder:
     """
 
     def __init__(self, source: int | str) -> None:
+        # Without FFmpeg the order of OpenCV's own choice is as good as any.
         has_ffmpeg = cv2.CAP_FFMPEG in cv2.videoio_registry.getStreamBackends()
         backend = cv2.CAP_FFMPEG if has_ffmpeg and isinstance(source, str) else cv2.CAP_ANY
         with quiet_opencv():
@@ -149,6 +150,7 @@ class AvDecoder:
             self._container.close()
             raise InputError("has no video")
         stream = self._container.streams.video[0]
+        # Frames are decoded ahead in threads, in the same order.
         stream.thread_type = "AUTO"
         self.fps = float(stream.average_rate or math.nan)
         self.frame_count = stream.frames or None
@@ -166,6 +168,7 @@ class AvDecoder:
             return None
         if frame is None:
             return None
+        # Phones store upright videos on their side; OpenCV turns them too.
         image = np.rot90(frame.to_ndarray(format="rgb24"), round(frame.rotation / _QUARTER_TURN))
         time_ms = math.nan if frame.time is None else (frame.time - self._start_s) * 1e3
         return np.ascontiguousarray(image), time_ms
@@ -206,6 +209,7 @@ def _tried(kind: Callable[[str], Decoder], name: str) -> tuple[str, str]:
         decoder = kind(name)
     except InputError as error:
         return "", str(error)
+    # A frame, not the header, tells whether the codec is there.
     is_decoded = decoder.read() is not None
     decoder.close()
     return decoder.codec, "" if is_decoded else "cannot decode it"

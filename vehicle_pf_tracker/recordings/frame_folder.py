@@ -88,6 +88,7 @@ class FrameFolder(Footage):
         beside: Beside = Beside.NEEDED,
     ) -> None:
         stated = _frame_rate(folder) if fps is None else check_fps(fps, "--fps")
+        # A rate that the user gives takes the place of times in the names.
         named = number_images(_listed(folder), stated, is_given=fps is not None)
         self.images = named.images
         self.frame_count = len(self.images)
@@ -101,6 +102,7 @@ class FrameFolder(Footage):
         names = {path.name: number for number, path in self.images.items()}
         images = Images(list(self.images), self._size, names)
         if truth is None:
+            # OTB and others have the images in img/ and the truth beside that folder.
             home = folder.parent if folder.name in IMAGE_FOLDERS else folder
             table, said = truth_beside(home, images, identity, beside)
         else:
@@ -128,6 +130,7 @@ class FrameFolder(Footage):
                 picture = StampedFrame(stamp, None)
                 unread.append(str(error))
                 said = f"images that cannot be read: {len(unread)}; {unread[0]}"
+                # A new list: whoever took the one before keeps it as it was.
                 self._notices = [*self._found, said]
             yield picture
         if len(unread) == self.frame_count:
@@ -181,10 +184,12 @@ def _stamps(named: NamedImages, stated: float | None) -> tuple[list[int], float]
         fps = stated or ASSUMED_FPS
         first = min(named.images)
         return [stamp_of(number - first, fps) for number in named.images], fps
+    # Times from an unknown start are moved to ours; those since 1970 mean something.
     origin = 0 if named.since_1970 else START_NS - times[0]
     if times[-1] + origin > LAST_STAMP_NS:
         raise InputError(f"{named.images[len(times)]} is later than the last time of ROS, 2^31 s")
     steps = [after - before for before, after in pairwise(times)]
+    # The median: dropped images lengthen some steps, and must not slow all down.
     fps = 1e9 / statistics.median(steps) if steps else stated or ASSUMED_FPS
     return [time + origin for time in times], fps
 

@@ -128,6 +128,7 @@ def _by_order(paths: Sequence[Path], notices: list[str]) -> NamedImages:
 
 def _by_count(numbers: Sequence[int], paths: Sequence[Path], notices: list[str]) -> NamedImages:
     steps = [after - before for before, after in pairwise(numbers)] or [1]
+    # Gaps may be dropped images or every n-th one: the stamps keep them, and the user is told.
     if (usual := statistics.mode(steps)) != 1:
         notices.append(
             f"the numbers of the images in {paths[0].parent} usually go up by {usual}, and so many "
@@ -182,6 +183,7 @@ def _column(paths: Sequence[Path], *, is_given: bool) -> list[Numeral] | None:
     names = [_PARTS.split(path.stem) for path in paths]
     if any(len(parts) == 1 for parts in names):
         return None
+    # Names of different words: only their last number can order all of them.
     if any(parts[::2] != names[0][::2] for parts in names):
         last = [_numeral(parts[-2]) for parts in names]
         if len(set(last)) > 1 and not any(parts[-1] for parts in names):
@@ -191,6 +193,7 @@ def _column(paths: Sequence[Path], *, is_given: bool) -> list[Numeral] | None:
         raise InputError(_refusal(paths, "different words have the same numbers"))
     columns = _with_fractions(list(zip(*[parts[1::2] for parts in names], strict=True)))
     varying = [column for column in columns if len(set(column)) > 1] or columns[-1:]
+    # Times since 1970 before others: a counter beside them says less.
     chosen = next((column for column in varying if epoch_unit(column)), varying[-1])
     # Other numbers that change may only grow along, as of parts of one video.
     rows = sorted(zip(chosen, *varying, strict=True))

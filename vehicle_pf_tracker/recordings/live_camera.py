@@ -55,6 +55,7 @@ class LiveCamera(Footage):
         try:
             while (frame := self._next()) is not None:
                 self._read += 1
+                # A clock that is set back must not send stamps back: one ns more than the last.
                 last = max(time.time_ns(), last + 1)
                 yield Picture(last, frame, f"frame {self._read} of {self._name}")
         finally:

@@ -86,6 +86,7 @@ def read_block(path: Path, block: Block) -> Iterator[Message]:
         record = memoryview(read_span(path, block.offset, block.length))
     except OSError as error:
         raise DamageError(f"it cannot be read ({error.strerror})") from error
+    # An index may promise more than a file that was cut still has.
     if len(record) < max(block.length, RECORD_HEAD):
         raise DamageError("the file ends before it")
     if record[0] not in {Opcode.CHUNK, Opcode.MESSAGE}:
@@ -113,6 +114,7 @@ def block_records(opcode: int, content: memoryview) -> Iterator[tuple[int, memor
         position += RECORD_HEAD
         if opcode not in _IN_CHUNKS and opcode < _FOREIGN:
             raise DamageError(f"it holds a record of kind {opcode}")  # a gigabyte of zeros, too
+        # What follows a record that is cut off cannot be found: there is no mark to look for.
         if position + length > len(records):
             break
         yield opcode, records[position : position + length]
@@ -143,6 +145,7 @@ def _unpack_chunk(content: memoryview) -> memoryview:
         raise DamageError("its head is broken") from None
     packed = content[name_end + 8 : name_end + 8 + packed_size]
     records = _decompress(compression, packed, size)
+    # A checksum of 0 says that none was written.
     if len(records) != size or (checksum and zlib.crc32(records) != checksum):
         raise DamageError("its checksum is wrong")
     return records

@@ -92,8 +92,10 @@ def read_index(path: Path) -> McapIndex:
         with path.open("rb") as stream:
             size = stream.seek(0, io.SEEK_END)
             stream.seek(0)
+            # The magic first: parsing anything else as MCAP gives sentences that help nobody.
             if stream.read(len(MAGIC)) != MAGIC:
                 raise InputError(f"the recording {path} is not an MCAP file")
+            # The summary is a few kB at the end; a pass over the file reads all of it.
             return _from_summary(path, stream, size) or _scanned(path, stream, size)
     except OSError as error:
         raise InputError(f"cannot read the recording {path}: {error.strerror}") from error
@@ -121,6 +123,7 @@ def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
 
 def _read_summary(stream: BinaryIO, size: int) -> Summary | None:
     """Read the summary, if the footer's checksum does not contradict it."""
+    # The footer of a complete file has a fixed length, so that it is read from the end.
     stream.seek(max(size - _TAIL, 0))
     tail = stream.read()
     if not (len(tail) == _TAIL and tail.startswith(_FOOTER) and tail.endswith(MAGIC)):
@@ -135,6 +138,7 @@ def _read_summary(stream: BinaryIO, size: int) -> Summary | None:
     stream.seek(0)
     try:
         return SeekingReader(stream, record_size_limit=size).get_summary()
+    # A summary that cannot be read is as good as none: the file is scanned.
     except (McapError, struct.error, ValueError, KeyError, OverflowError):
         return None
 
@@ -169,6 +173,7 @@ def _scanned(path: Path, stream: BinaryIO, size: int) -> McapIndex:
         if not opcode or end > size:  # a file system leaves zeros after a power failure
             return index
         if opcode == Opcode.DATA_END:
+            # Data that end, in a file without the magic at its end: it was cut as it was closed.
             index.is_truncated = read_span(path, size - len(MAGIC), len(MAGIC)) != MAGIC
             return index
         if opcode in _READERS:

@@ -51,6 +51,7 @@ def merged_messages(
         {number for number, one in index.channels.items() if topics is None or one.topic in topics}
         for index in files
     ]
+    # Only blocks of the topics and times that are asked for are ever opened.
     heap: list[_Entry] = [
         (block.start_ns, number, block.offset, _WHOLE_BLOCK, block)
         for number, index in enumerate(files)

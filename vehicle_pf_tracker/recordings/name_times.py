@@ -94,6 +94,7 @@ def times_of(values: Sequence[Numeral], fps: float | None) -> Times | None:
 def epoch_unit(values: Sequence[Numeral]) -> str | None:
     """Return the unit in which all numbers are times since 1970; None if there is none."""
     for unit, length in _UNITS.items():
+        # In integers: 19 digits of ns do not fit a float64.
         first, last = (bound * 10**9 // length for bound in _EPOCH_S)
         if all(first <= integer < last for integer, _ in values):
             return unit
@@ -124,6 +125,7 @@ def _unit_of(steps: Sequence[int], fps: float | None) -> str | None:
     if fps is not None:
         if unit := _unit_of_period(step, fps):
             return unit
+        # Beside a stated rate a count is likelier than times of another rate.
         if step < _LONGEST_COUNT or len(steps) < _LEAST_STEPS:
             return None
     if step < _SHORTEST_MS:

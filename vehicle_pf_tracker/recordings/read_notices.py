@@ -72,10 +72,12 @@ class ReadNotices:
     def add_image(self, log_time_ns: int, start_ns: int, error: InputError) -> None:
         """Note an image that could not be decoded."""
         seconds = (log_time_ns - start_ns) / 1e9
+        # By time: reading twice must not count an image twice.
         self._unreadable[log_time_ns] = f"{seconds:.3f} s after the start: {error}"
 
     def add_missing(self, count: int) -> None:
         """Note images that should be there, unless a damage explains it."""
+        # A damaged part explains what is missing; two sentences would be one too many.
         if count > 0 and not self._damages:
             self._damages[self._path, -1] = (
                 f"recording {self._path}: {count} images that its index lists are missing"

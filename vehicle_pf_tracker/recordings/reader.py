@@ -95,6 +95,7 @@ class Recording:
         self.files = [
             read_sqlite_index(file) if file.suffix == SQLITE else read_index(file) for file in files
         ]
+        # Before the topics: a recording without a message has none to choose from.
         self._check_readable()
         self.topics: tuple[TopicInfo, ...] = list_topics(self.files)
         chosen = choose_image_topic(self.path, self.topics, topic)
@@ -165,6 +166,7 @@ class Recording:
             if early and found[1].log_time_ns > early[0][1].log_time_ns + 500_000_000:
                 break
             early.append(found)
+        # By the stamp, not by the time of recording: topics of one stamp come one after the other.
         stamps = [header_stamp_ns(message.data) or 0 for _, message in early]
         first = [found for found, stamp in zip(early, stamps, strict=True) if stamp == min(stamps)]
         return next(iter(self._assemble(first)), None)
@@ -202,6 +204,7 @@ class Recording:
         duration: float | None = None,
     ) -> Iterator[tuple[McapIndex, Message]]:
         first = self.start_ns + round(start_offset * 1e9)
+        # The end is exclusive, and the last message shall be read.
         end = self.end_ns + 1
         if duration is not None:
             end = min(end, first + round(duration * 1e9))

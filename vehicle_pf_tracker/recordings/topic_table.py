@@ -43,6 +43,7 @@ def list_topics(files: Sequence[McapIndex]) -> tuple[TopicInfo, ...]:
     for index in files:
         for channel_id, channel in index.channels.items():
             count = index.counts[channel_id]
+            # A file that was split, or a publisher that restarted, has a channel more.
             known = found.get(channel.topic) or _describe(index, channel)
             found[channel.topic] = replace(known, message_count=known.message_count + count)
     return tuple(found.values())
@@ -72,6 +73,7 @@ def choose_image_topic(path: Path, topics: Sequence[TopicInfo], wanted: str | No
         if not found.message_count:
             raise InputError(f"the image topic {wanted} of {path} has no messages")
         return found
+    # Recorders list topics on which nothing came: those are no choice.
     filled = [topic for topic in images if topic.message_count]
     if not filled:
         names = _listed(topics)

@@ -40,6 +40,7 @@ def recordings_at(url: str) -> list[str]:
     def look() -> list[str]:
         if not system.exists(path):
             raise InputError(f"there is no recording {url}")
+        # A folder that is one recording is not searched for others.
         if not system.isdir(path) or _holds_recording(children(path)):
             return [path]
         return [
@@ -85,6 +86,7 @@ def fetched(url: str, folder: Path) -> Path:
             return target
         target.mkdir()
         for child in system.ls(path, detail=False):
+            # What is not of the recording stays where it is: it may be large.
             if child.endswith((".mcap", "metadata.yaml")):
                 system.get_file(child, str(target / child.rsplit("/", 1)[-1]))
         return target

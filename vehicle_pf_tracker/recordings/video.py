@@ -76,6 +76,7 @@ class VideoFile(Footage):
         if not math.isfinite(self.fps) or self.fps <= 0:
             raise InputError(f"the video {path} states no frame rate; give it with --fps")
         check_fps(self.fps, path)
+        # Before decoding nobody knows how many frames there are: truth is checked against the most.
         images = Images(range(1, self._most_frames() + 1), lambda: size, {})
         table: Table = {}
         self._found: list[str] = []
@@ -95,6 +96,7 @@ class VideoFile(Footage):
                 frame, time_ms = read
                 stamp = self._stamp(time_ms, number, last)
                 if stamp is None:
+                    # Stamps have to increase: trackers take a repeated one for a repeated frame.
                     stamp = last + round(1e9 / self.fps) if last else START_NS
                     untimed += 1
                 number = number + 1
@@ -124,6 +126,7 @@ class VideoFile(Footage):
             return even
         if not math.isfinite(time_ms):
             return None
+        # Even stamps where the stated ones differ by rounding only: intervals are then equal.
         stated = START_NS + round(time_ms * 1e6)
         if abs(stated - even) <= _ROUNDING_NS and even > last:
             return even
@@ -174,6 +177,7 @@ def open_footage(
         If there is no such source, it is a bag, or a truth is given for a live source.
     """
     text = str(source)
+    # A file that is called 0 is a file.
     is_index = text.isdecimal() and not Path(text).exists()
     if is_index or is_url(text):
         camera = LiveCamera(int(text) if is_index else text)

@@ -30,6 +30,7 @@ def _check_replaceable(target: Path, overwrite: bool) -> None:
     if not overwrite:
         check_free(target)
     names = [path.name for path in target.iterdir()]
+    # Never a folder with anything else in it, whatever --overwrite says.
     if any(name != BAG_INFORMATION and not name.endswith(".mcap") for name in names):
         raise InputError(f"the output folder {target} holds more than a recording; choose another")
 
@@ -77,6 +78,7 @@ class RecordingWriter:
         self._times: tuple[int, int] | None = None
         with output_errors(self.folder), ExitStack() as output:
             _check_replaceable(target, overwrite)
+            # Written beside the target, and moved there when all is well.
             self._partial = output.enter_context(whole_folder(target))
             self._stream = (self._partial / self._file_name).open("wb")
             output.callback(self._close)
@@ -155,6 +157,7 @@ class RecordingWriter:
                 )
             metadata = {
                 "offered_qos_profiles": to_yaml(RELIABLE_QOS),
+                # As rosbag2 writes it: types of one name may differ.
                 "topic_type_hash": type_hash(type_name),
             }
             channel_id = self._mcap.register_channel(

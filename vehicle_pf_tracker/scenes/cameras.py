@@ -43,6 +43,7 @@ class Camera:
     def capture(self, picture: Image, index: int) -> Frame:
         """Turn the composed `picture` of frame `index` into an 8-bit frame; alters `picture`."""
         if self.noise > 0:
+            # A stream by frame: the noise of one does not depend on which were rendered before.
             grain = stream(self.seed, "sensor noise", index)
             noise = grain.standard_normal(picture.shape, dtype=np.float32)
             noise *= np.float32(self.noise)
@@ -94,6 +95,7 @@ class OutdoorCamera:
         shake = self.disturbance.shake
         if shake == 0:
             return float(MARGIN), float(MARGIN)
+        # Two rates without a common period, as a mast swings: no frame repeats another.
         phases = stream(self.seed, "mast").uniform(0, 2 * math.pi, (2, 2))
         tremble = stream(self.seed, "tremble", index).uniform(-0.2, 0.2, 2)
         x, y = (
@@ -126,6 +128,7 @@ def _shown(picture: Image, offset: tuple[float, float]) -> Image:
     if right == 0 and down == 0:
         whole: Image = image[:-1, :-1].copy()
         return whole
+    # Along y and then along x: bilinear in two passes over the picture.
     rows: Image = image[:-1] * (1 - down)
     rows += image[1:] * down
     shown: Image = rows[:, :-1] * (1 - right)

@@ -44,6 +44,7 @@ class PixelWindow:
     @classmethod
     def between(cls, low: Position, high: Position, width: int, height: int) -> PixelWindow:
         """Make the window of all pixels that the rectangle between two corners touches."""
+        # Outwards: a pixel that is touched by a hundredth is one of its pixels.
         left, top = (max(math.floor(side), 0) for side in low)
         return cls(left, top, min(math.ceil(high[0]), width), min(math.ceil(high[1]), height))
 
@@ -84,6 +85,7 @@ class Sprite:
         cells = np.concatenate([self._colour * alpha, alpha], axis=2)
         rows, columns, channels = cells.shape
         integral: Array = np.zeros((rows + 1, columns + 1, channels))
+        # In float64: sums of thousands of cells, of which differences are taken.
         np.cumsum(cells.cumsum(axis=0), axis=1, out=integral[1:, 1:])
         return integral
 
@@ -123,6 +125,7 @@ class Sprite:
         columns = integral.shape[1] - 1
         x = (np.arange(window.left, window.right + 1) - box.x) * (columns / box.width)
         y = (np.arange(window.top, window.bottom + 1) - box.y) * (rows / box.height)
+        # Between cells the integral is linear in each direction, so that interpolation is exact.
         corners = interpolate(integral, y.clip(0, rows), x.clip(0, columns))
         sums: Array = np.diff(np.diff(corners, axis=0), axis=1)
         sums *= box.area / (rows * columns)

@@ -78,6 +78,7 @@ class Pace:
         distance = speed * min(frame - start, 0.0) + last_speed * max(frame - end, 0.0)
         for (t0, v0), (t1, v1) in pairwise(self.knots):
             spent = min(max(frame, t0), t1) - t0
+            # Area under a speed that changes linearly.
             distance += v0 * spent + (v1 - v0) * spent**2 / (2 * (t1 - t0))
         return distance
 
@@ -85,6 +86,8 @@ class Pace:
         """Give the frame in which `distance` (px, at least 0) is covered, for speeds over 0."""
         low = self.knots[0][0]
         high = self.knots[0][0] + 1.0
+        # Doubled until it is passed, then halved to the rounding: a pace has no inverse in closed
+        # form.
         while self(high) < distance:
             high += high - low
         for _ in range(60):
@@ -100,6 +103,7 @@ def straight(start: Pose, pace: Pace) -> Course:
 
     def course(frame: float) -> Pose:
         gone = pace(frame)
+        # The ground is seen from above at an angle: ways into the depth are foreshortened.
         y = start.y - gone * north * math.sin(ELEVATION)
         return replace(start, x=start.x + gone * east, y=y)
 

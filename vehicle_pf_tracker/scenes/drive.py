@@ -101,6 +101,7 @@ class Drive:
         self.rightward = parameters.heading == "right"
         self.road, self.opposite = self._roads()
         self.scale = self.road.scale
+        # Drawn in a fixed order below: another number here would change every scene.
         self.rng = stream(seed, "drive")
         self.faces = target_faces(parameters.vehicle, self.rng)
         self.target = Model(self.faces, self.scale)
@@ -198,6 +199,7 @@ class Drive:
         )
 
     def _roads(self) -> tuple[Carriageway, Carriageway]:
+        # Larger images show vehicles a little larger, not more of the road.
         scale = 11.5 if self.image_size[0] == 640 else 12.5
         road = Carriageway(round(0.34 * self.height), 3, scale, self.rightward)
         other = Carriageway(road.rows.stop + 30, 2, scale, not self.rightward)

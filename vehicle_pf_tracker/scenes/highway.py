@@ -105,6 +105,7 @@ def _middle_lane(rng: np.random.Generator) -> list[Actor]:
     truck = Vehicle(lorry((176, 120, 40), (204, 200, 190), (122, 40, 52)), lane)
     speed = SPEED + OVERTAKING * rng.uniform(0.95, 1.05)
     meeting = START_PX + SPEED * HIDDEN_AT + rng.uniform(-6, 6)
+    # Backwards from where the lorry's box has to be in that frame.
     left = meeting - LOAD_MIDDLE * truck.size[0] - speed * HIDDEN_AT
     actors = list(truck.on(moving(truck.box(left, lane), speed)))
     for model, place in (

@@ -131,6 +131,7 @@ def convoy(
 
     Gaps are left to chance between two limits (px). The lane runs across a stage of `width` px.
     """
+    # Four models a lane: sprites are drawn once and used for many vehicles.
     models = [any_car(lane, rng, kinds) for _ in range(4)]
     velocity = speed if lane.rightward else -speed
     actors: list[Actor] = []

@@ -36,6 +36,8 @@ def all_round(faces: Sequence[Face]) -> list[Face]:
         for face in faces
         for half in (
             (face, face.moved(lambda x, y, z: (x, width - y, z)))
+            # The near flank has a counterpart on the far side, which the view from its side never
+            # shows.
             if normal_of(face)[1] < -0.3
             else (face,)
         )
@@ -117,6 +119,8 @@ class Model:
     def _sprite(self, heading: float, *, shade: bool) -> Sprite:
         key = round(heading / HEADING_STEP), shade
         if key not in self._sprites:
+            # Drawn for the rounded heading; the box, and with it the truth, is that of the exact
+            # one.
             faces = turned(self._faces, key[0] * HEADING_STEP)
             faces = shadow(faces) if shade else faces
             bounds = extent(faces)

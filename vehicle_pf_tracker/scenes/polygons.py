@@ -33,10 +33,12 @@ def cells_inside(
     low = outline.min(axis=0).tolist()
     high = outline.max(axis=0).tolist()
     window = PixelWindow.between(low, high, columns, rows)
+    # Middles of cells: one on an edge belongs to one of two polygons that share it.
     x: Array = np.arange(window.left, window.right, dtype=np.float64) + 0.5
     y: Array = np.arange(window.top, window.bottom, dtype=np.float64) + 0.5
     crossings = _crossings(outline, y)
     inside = np.zeros((crossings.shape[1], x.size), dtype=np.bool_)
+    # Crossings in pairs: between the first and the second is inside (even-odd rule).
     for enter, leave in zip(crossings[::2], crossings[1::2], strict=False):
         inside |= (x >= enter[:, np.newaxis]) & (x < leave[:, np.newaxis])
     return window, inside
@@ -53,6 +55,7 @@ def _crossings(outline: Array, y: Array) -> Array:
     x0, y0 = outline.T[..., np.newaxis]
     x1, y1 = np.roll(outline, -1, axis=0).T[..., np.newaxis]
     crosses = (y0 <= y) != (y1 <= y)
+    # A level edge crosses no row; its rise only keeps the division defined.
     rise = np.where(y1 == y0, 1.0, y1 - y0)
     places = np.where(crosses, x0 + (y - y0) * (x1 - x0) / rise, np.inf)
     places.sort(axis=0)

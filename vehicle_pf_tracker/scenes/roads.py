@@ -56,6 +56,7 @@ def dual_carriageway(width: int, height: int, rng: np.random.Generator) -> Image
 def hedge(picture: Image, top: int, bottom: int, rng: np.random.Generator) -> None:
     """Grow a hedge with ragged edges and its shadow on the side of the viewer."""
     height, width = picture.shape[:2]
+    # Large and small raggedness: crowns, and twigs on them.
     ragged = 5 * value_noise((1, width), (1, 14), rng) + 2 * value_noise((1, width), (1, 4), rng)
     rows = np.arange(height)[:, np.newaxis] + ragged
     shaded = (rows >= bottom) & (rows < bottom + 9)

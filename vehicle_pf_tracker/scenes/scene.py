@@ -174,9 +174,11 @@ class Scene(Stage):
         if window.empty:
             return 0.0
         sprite = self.actors[self.target].seen(index)
+        # Of the silhouette, not of the box: a wheel's gap that is covered hides nothing.
         seen = sprite.coverage(box, window)
         for actor in self.actors[self.target + 1 :]:
             place = self._in_image(actor.path(index), index)
+            # Boxes first: most actors are nowhere near the target.
             if actor.hides and place.iou(box) > 0:
                 seen = seen * (1 - actor.seen(index).coverage(place, window))
         # Rounded because sums of floats must not make a free vehicle look 1e-16 hidden.

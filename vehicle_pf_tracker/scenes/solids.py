@@ -118,6 +118,7 @@ def draw(faces: Sequence[Face], width: float, height: float, opacity: float = 1.
         if inside.any():
             x = bounds.x + _middles(window.left, window.right) / cells_per_metre[0]
             y = bounds.y + _middles(window.top, window.bottom) / cells_per_metre[1]
+            # Deeper faces lose; what is painted on a face is drawn later and as near, and wins.
             near, depth = _nearness(face, x, y[:, np.newaxis])
             inside &= near > nearness[window.slices] - depth
             nearness[window.slices][inside] = near[inside]
@@ -148,6 +149,7 @@ def _project(face: Face) -> Array:
 
 def lit(colour: Colour, normal: Array) -> Colour:
     """Return `colour` as the sun lights a face of this unit normal."""
+    # Ambient light and the sun's share by the angle (Lambert).
     light = 0.68 + 0.42 * max(0.0, float(normal @ _SUN))
     red, green, blue = (min(255.0, round(level * light)) for level in colour)
     return red, green, blue

@@ -63,6 +63,7 @@ class Target:
         self.box = box
         # A copy of the part, not of the frame: it is kept as long as the track.
         self.patch: Frame = frame[top:bottom, left:right].copy()
+        # In coordinates of the patch, where references are measured again.
         self.centre = box.centre[0] - left, box.centre[1] - top
 
     def window(self, size: WindowParameters) -> Window:
@@ -100,6 +101,7 @@ class Cloud:
 
     def mean(self) -> tuple[float, float]:
         """Weighted mean of the positions (P1 eq. 5)."""
+        # A product and a sum: a dot product of BLAS would depend on its threads.
         x, y = (self.weights[:, np.newaxis] * self.positions).sum(axis=0).tolist()
         return x, y
 
@@ -166,6 +168,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
         self.parameters = parameters
         self.frame_period = DEFAULT_PERIOD
         self.seed = drawn_seed(parameters.seed)
+        # One generator for all draws of a tracker: same seed and frames, same bits.
         self._rng = np.random.default_rng(self.seed)
         self.kernels = load_kernels(parameters.kernels)
         self._target: Target | None = None
@@ -207,6 +210,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
             If the box cannot be a target in this frame.
         """
         began = time.perf_counter()
+        # Before anything is changed: a refused box leaves the track as it is.
         check_target(box, *frame_size(check_frame(frame)))
         self._target = Target(frame, box)
         # Kept until the next frame: new parameters before it start again, see `reconfigure`.
@@ -232,8 +236,10 @@ class BaseTracker(ABC, Generic[ParametersT]):
         # The variant says it, since only there the mean is known before it is clipped.
         left_image = outcome.left_image
         mode = self._judge.judge(outcome.evidence, seconds, self.parameters, left_image=left_image)
+        # Weights without information say nothing of where the vehicle is.
         confidence = self._judge.confidence(outcome.evidence) if outcome.cloud.sound else 0.0
         estimate = self._estimate(outcome, mode, confidence, began)
+        # Last: a step that fails leaves the cloud of the frame before.
         self._cloud = outcome.cloud
         return estimate
 
@@ -242,6 +248,7 @@ class BaseTracker(ABC, Generic[ParametersT]):
 
         Before the second frame nothing has been followed yet, and the tracker starts with them.
         """
+        # The table says what each parameter needs: nothing, references or random numbers.
         table = specs(type(parameters))
         # What is in effect counts: a switch such as `as_printed` changes others unseen.
         before = to_mapping(self._settings)

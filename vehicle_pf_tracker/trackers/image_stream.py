@@ -127,6 +127,7 @@ class ImageStream:
         InputError
             If it is not usable, or its stamp is no integer.
         """
+        # First: a stamp in seconds would be judged as one of 1970.
         stamp_ns = checked_stamp(stamp_ns)
         aside = self._aside
         self._aside = None
@@ -164,7 +165,9 @@ class ImageStream:
             self._clock = self._clock_before or StampClock(self._frame_rate)
         self._clock_before = copy.deepcopy(self._clock) if leaps else None
         is_timed = continuation is not Continuation.UNTIMED
+        # Without a clock each image counts as one period.
         tick = self._clock.tick(stamp_ns) if is_timed else Tick(1.0, StampEvent.UNUSABLE)
+        # Told once per image: the track goes on, at speeds that make no sense.
         if self._last_ns is not None and 0 < stamp_ns - self._last_ns < _SHORTEST_NS:
             events.append(_OTHER_UNIT)
         self._last_ns = stamp_ns
@@ -178,6 +181,7 @@ class ImageStream:
         size = frame_size(frame)
         before = self._last_size
         self._last_size = size
+        # Pixels of another size are other places: nothing of the track can be carried over.
         if is_tracking and before is not None and before != size:
             change = f"from {size_words(before)} to {size_words(size)}"
             events.append(f"image size changed {change}; starting again")

@@ -82,6 +82,7 @@ class Variant:
         try:
             return getattr(import_module(module, _PACKAGE), prefix + role)
         except Exception as error:
+            # Our own import errors are bugs and keep their traceback.
             if not self.is_plug_in:
                 raise
             raise InputError(f"{self.name}, a {self.summary}, cannot be loaded: {error}") from error
@@ -205,6 +206,7 @@ def plug_ins() -> Mapping[str, Variant]:
     found: dict[str, Variant] = {}
     for point in entry_points(group=PLUG_INS):
         owner = f"plug-in of {point.dist.name} {point.dist.version}" if point.dist else "plug-in"
+        # A name that is taken would decide by chance what users get.
         if point.name in NODES or point.name in found or not point.name.isidentifier():
             words = "%r, a %s, is left out: its name is taken, or is not of letters, digits and _"
             logging.getLogger(__name__).warning(words, point.name, owner)

@@ -35,7 +35,9 @@ def rehearse(variant: Variant, parameters: Any) -> None:
         Its parameters.
     """
     width, height = _SIZE
+    # Noise has edges and colours of every kind, so that no feature is empty.
     textured = np.random.default_rng(0).integers(0, 256, (height, width, 3), np.uint8)
+    # A plain frame is an occlusion to every variant.
     plain = np.full_like(textured, 128)
     tracker = variant.tracker(parameters)
     tracker.start(textured, _BOX)

@@ -50,6 +50,7 @@ class RoadEstimate:
 
     def scalars(self) -> Mapping[str, float]:
         """Return every scalar by the name that `~/mode` and the tables use."""
+        # In the order of `ROAD_COLUMNS`.
         values = *self.position, *self.velocity, self.speed, self.speed_deviation
         return dict(zip(ROAD_COLUMNS, map(float, values), strict=True))
 
@@ -186,6 +187,7 @@ class RoadFollower:
         self._last_ns = stamp_ns
         # After a gap the old velocity says nothing, and one of time that went back is wrong.
         motion = self._motion if 0 <= seconds <= _LONGEST_GAP else None
+        # A repeated stamp measures nothing new.
         if motion is not None and seconds > 0:
             motion = motion.predicted(seconds, self._acceleration)
             if position is not None:

@@ -85,6 +85,7 @@ class Calibration:
 
 def cloud_covariance(estimate: Estimate) -> Array:
     """Return the weighted covariance (2, 2) of the particles, px²."""
+    # About the weighted mean; a cloud that sits on one point has none, and the other terms remain.
     apart = estimate.particles - estimate.weights @ estimate.particles
     covariance: Array = (estimate.weights[:, np.newaxis] * apart).T @ apart
     return covariance

@@ -74,6 +74,7 @@ class Kernels:
         (N,) array
             Bhattacharyya coefficients, 0 to 1.
         """
+        # The reference implementation, which every other one has to agree with.
         return feature.similarity(frame, positions, window, reference)
 
     def histogram(
@@ -133,6 +134,7 @@ def compile_all(choice: str) -> Kernels:
 
 def may_compile(choice: str) -> bool:
     """Tell whether the first use of these kernels imports numba, and perhaps compiles."""
+    # Looked for only: importing numba takes half a second.
     return choice != "opencv" and importlib.util.find_spec("numba") is not None
 
 

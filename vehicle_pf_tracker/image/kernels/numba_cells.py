@@ -98,6 +98,7 @@ def _direction_histograms(
         _share_row(sums, np.float32(place_y - row), above, below)
         # The next row of pixels belongs to other cells: what was gathered is written.
         if int((y + 1.5) / GRADIENT_CELL_PX + 0.5) != row or y == height - 2:
+            # Channel by channel: the innermost loop runs along memory.
             for o in range(DIRECTIONS):
                 for x in range(columns):
                     cells[o, row, x] += above[o * columns + x]
@@ -112,6 +113,7 @@ def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     """Inverse norms of the four neighbourhoods of the inner cells, (4, r, c)."""
     rows = cells.shape[1] - 2
     columns = cells.shape[2] - 2
+    # Of unsigned directions: the sign of an edge does not make it stronger.
     energy = np.zeros((rows + 2, columns + 2), np.float32)
     for y in range(1, rows + 1):
         for o in range(_UNSIGNED):
@@ -176,6 +178,7 @@ def _normalise(
 
 @compiled(_CELLS(_IMAGE, _BYTES, numba.intp))
 def _features(grey: Grey, direction_of: npt.NDArray[np.uint8], channels: int) -> CellFeatures:
+    # Numba does not check indices; a short table would be read beyond its end.
     if len(direction_of) < 511 * 511:
         raise IndexError("the table of directions is too short")
     if channels < DIRECTIONS + _UNSIGNED + 4:

@@ -36,6 +36,7 @@ def compiled(*signatures: Any) -> Callable[[FunctionT], FunctionT]:
     def compile_it(function: FunctionT) -> FunctionT:
         build = functools.partial(numba.njit, list(signatures), fastmath=_FASTMATH)
         try:
+            # Compiled here, at import, for the types that are given: a step never waits for it.
             result: FunctionT = build(cache=True)(function)
         except Exception as error:  # no folder, a full disk, or what a torn file makes of pickle
             if not _notices:

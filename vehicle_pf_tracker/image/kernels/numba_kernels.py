@@ -90,6 +90,7 @@ def table_of(reference: Reference) -> CellTable:
 def _every_bin(bins: int) -> Table:
     """Table in which the cell of each bin is its own number, to count all."""
     table = np.arange(bins, dtype=np.uint16)
+    # Cached arrays are shared between trackers.
     table.flags.writeable = False
     return table
 
@@ -229,6 +230,7 @@ def _compare_pixels(
 ) -> Reals:
     """Compare windows by their pixels."""
     kernels = _kernels("numba_windows")
+    # Each pixel counts once in each of its planes.
     planes = 3 if type(feature) is RgbMarginals else 1
     scale = table.values, roots_up_to(planes * window.width * window.height)
     half = window.half_width, window.half_height
@@ -261,8 +263,10 @@ def _compare_edges(
     table: CellTable,
 ) -> Reals:
     """Compare windows by the directions of their edge points, the gradient taken in the frame."""
+    # Filled by the kernel, so that it allocates nothing per window.
     counts = np.empty((len(positions), len(table.values)), np.int32)
     totals = _count_edges(feature, frame, positions, window, table.cells, counts)
+    # Edge points are at most the pixels of a window.
     scale = table.values, roots_up_to(window.width * window.height)
     similarity: Reals = _kernels("numba_windows").compare_counts(counts, totals, scale)
     return similarity

@@ -63,6 +63,7 @@ def _weigh_cells(
 @inlined
 def _check(cells: Cells, pixels: Pixels, offsets: Offsets, profile: Reals, values: Reals) -> None:
     """Raise an error where a cell has no value, or an array is too short."""
+    # Once per call: the loops below trust every index.
     if cells.size and cells.max() >= len(values):
         raise IndexError("a cell is not among those of the reference")
     if len(cells) == 0 or pixels.shape[1] != 2 or offsets.shape[1] != 2:
@@ -106,6 +107,7 @@ def compare_kernels(
         overlap = 0.0
         for k in range(len(values)):
             overlap += values[k] * math.sqrt(masses[k])
+        # The total is not zero: the centre pixel always exists.
         result[i] = min(overlap / math.sqrt(total), 1.0)
     return result
 

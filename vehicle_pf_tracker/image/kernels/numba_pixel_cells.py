@@ -55,6 +55,7 @@ def pair_cells(grey: Grey, table: Table) -> Cells:
     cells = np.empty((1, height, width), np.uint16)
     for y in range(height):
         for x in range(width):
+            # As `textures.pair_bins`: three bits of each of two neighbours.
             cells[0, y, x] = table[((grey[y, x] >> 5) << 3) | (grey[y, x + 1] >> 5)]
     return cells
 
@@ -75,6 +76,7 @@ def number_cells(histogram: Histogram, lanes: int) -> tuple[Table, Histogram]:
         raise IndexError("there are more bins than cells can number")
     active = 0
     for value in histogram:
+        # Counted first: other bins get the number after the last active one.
         active += value != 0
     cells = np.full(len(histogram), active, np.uint16)
     # Rounded up, so that the loop over cells has no remainder; zeros add nothing.
