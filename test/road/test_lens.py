@@ -77,3 +77,15 @@ def test_without_distortion_pixels_stay_to_the_bit():
 def test_what_is_no_lens(arguments, words):
     with pytest.raises(InputError, match=words):
         Lens(*arguments)
+
+
+def test_a_fisheye_bends_without_coefficients_too():
+    # A ray at 45 degrees is drawn pi / 4 focal lengths from the centre, not one.
+    lens = Lens((100.0, 100.0), (-0.5, -0.5), "equidistant", (0.0,) * 4)
+    assert lens.to_pixels(np.array([100.0, 0.0])) == pytest.approx([25 * np.pi, 0.0])
+    assert lens.to_ideal(np.array([25 * np.pi, 0.0])) == pytest.approx([100.0, 0.0])
+
+
+def test_the_camera_matrix_counts_from_the_corner_of_the_first_pixel():
+    expected = np.array([[800.0, 0, 320.0], [0, 820.0, 240.0], [0, 0, 1]])
+    assert np.array_equal(Lens(FOCAL, CENTRE).matrix, expected)

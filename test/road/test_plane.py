@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from road_samples import BENT, LENS, camera_plane, pairs_of, pose
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.road.plane import RoadPlane, convex_hull, is_inside, residuals
+from vehicle_pf_tracker.road.lens import Lens
+from vehicle_pf_tracker.road.plane import Pair, RoadPlane, convex_hull, is_inside, residuals
 from vehicle_pf_tracker.road.poses import Pose
 
 CORNERS = [(-5.0, 20.0), (5.0, 20.0), (5.0, 60.0), (-5.0, 60.0)]
@@ -85,3 +86,46 @@ def test_a_hull_holds_its_points(seed, count):
 def test_round_trip_through_lens_and_plane(x, y):
     plane = camera_plane(BENT)
     assert plane.to_road(plane.to_image(np.array([x, y]))) == pytest.approx([x, y], abs=1e-6)
+
+
+def test_pixels_without_a_ray_are_outside():
+    # 1.2 focal lengths beside the axis, k1 = -0.5 has folded the image long before.
+    lens = Lens((800.0, 800.0), (319.5, 239.5), "plumb_bob", (-0.5, 0.0, 0.0, 0.0))
+    pairs = pairs_of(camera_plane(), CORNERS)
+    far = Pair((320.0 + 960.0, 240.0), (50.0, 20.0))
+    with pytest.raises(InputError, match="outside what the lens can show"):
+        RoadPlane.of_pairs([*pairs, far], lens, margin=0.0, coarsest=1.0)
+    plane = camera_plane(lens)
+    assert plane.objection(plane.ideal(np.array(far.pixel))) == "outside what the lens can show"
+
+
+def test_a_camera_that_looks_along_the_road_plane():
+    # In the plane z = 0 itself nothing of it is seen; a hair above, the view is along it.
+    along = Pose(np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]]), np.array([0.0, 0.0, 1e-15]))
+    with pytest.raises(InputError, match="view lies within the road's plane"):
+        RoadPlane.of_camera(LENS, along, coarsest=1.0)
+
+
+def test_the_margin_is_a_share_of_the_way_from_the_middle():
+    square = [Pair(place, place) for place in ((0, 0), (100, 0), (100, 100), (0, 100))]
+    plane = RoadPlane.of_pairs(square, None, margin=0.2, coarsest=10.0)
+    assert sorted(map(tuple, np.round(plane.hull, 6))) == [
+        (-10, -10), (-10, 110), (110, -10), (110, 110)
+    ]  # fmt: skip
+    assert plane.objection(np.array([109.0, 50.0])) == ""
+    assert plane.objection(np.array([111.0, 50.0])) == "outside the calibrated area"
+
+
+def test_an_edge_belongs_to_the_hull():
+    square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
+    for inside in ((5.0, 0.0), (10.0, 10.0), (0.0, 3.0)):
+        assert is_inside(square, np.array(inside))
+    for outside in ((5.0, -1e-9), (10.0 + 1e-9, 5.0), (-1e-9, 3.0), (5.0, 10.0 + 1e-9)):
+        assert not is_inside(square, np.array(outside))
+
+
+def test_residuals_are_distances_in_px_and_m():
+    square = [Pair((10 * x, 10 * y), (x, y)) for x, y in ((0, 0), (10, 0), (10, 10), (0, 10))]
+    plane = RoadPlane.of_pairs(square, None, margin=0.0, coarsest=10.0)
+    in_image, on_road = residuals(plane, [Pair((53.0, 54.0), (5.0, 5.0))])
+    assert (in_image[0], on_road[0]) == pytest.approx((5.0, 0.5))

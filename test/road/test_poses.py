@@ -1,6 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
+import cv2
 import numpy as np
 import pytest
 
@@ -42,3 +43,53 @@ def test_frames_that_are_not_connected():
     tree.put("b", "a", still)  # a loop ends too
     with pytest.raises(InputError, match="does not connect"):
         tree.find("a", "road")
+
+
+def test_a_third_of_a_turn_about_the_diagonal_exchanges_the_axes():
+    pose = Pose.of((0.0, 0.0, 0.0), (0.5, 0.5, 0.5, 0.5))
+    assert pose.rotation == pytest.approx(np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]]))
+
+
+@pytest.mark.parametrize("turn", [(0.3, 0.0, 0.0), (0.0, 1.1, 0.0), (0.4, -0.7, 1.9)])
+def test_turns_are_those_of_rodrigues(turn):
+    angle = np.linalg.norm(turn)
+    axis = np.array(turn) / angle
+    pose = Pose.of((0.0, 0.0, 0.0), (*(axis * np.sin(angle / 2)), np.cos(angle / 2)))
+    assert pose.rotation == pytest.approx(cv2.Rodrigues(np.array(turn))[0])
+
+
+def test_a_rounded_quaternion_is_brought_to_length_one():
+    pose = Pose.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.71, 0.71))  # of length 1.004
+    assert pose.rotation == pytest.approx(np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]]))
+    with pytest.raises(InputError, match="of length 1"):
+        Pose.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.72, 0.72))  # 1.018
+    with pytest.raises(InputError, match="finite"):
+        Pose.of((np.inf, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+
+
+def test_an_inverse_undoes_a_pose():
+    pose = Pose.of((1.0, 2.0, 3.0), (0.5, 0.5, 0.5, 0.5))
+    # A child's (4, 5, 6) is the parent's (6 + 1, 4 + 2, 5 + 3).
+    there = pose.rotation @ [4, 5, 6] + pose.position
+    assert there == pytest.approx([7, 6, 8])
+    assert pose.inverse.rotation @ there + pose.inverse.position == pytest.approx([4, 5, 6])
+    both = pose @ pose.inverse
+    assert both.rotation == pytest.approx(np.eye(3))
+    assert both.position == pytest.approx(np.zeros(3))
+
+
+def test_poses_are_equal_to_the_last_digit():
+    pose = Pose.of((1.0, 2.0, 3.0), (0.0, 0.0, HALF, HALF))
+    assert pose.equals(Pose.of((1.0, 2.0, 3.0), (0.0, 0.0, HALF, HALF)))
+    assert not pose.equals(Pose.of((1.0, 2.0, 3.0 + 1e-15), (0.0, 0.0, HALF, HALF)))
+    assert not pose.equals(Pose.of((1.0, 2.0, 3.0), (0.0, HALF, 0.0, HALF)))
+    assert not pose.equals(None)
+
+
+def test_frames_are_named_with_a_slash_or_without():
+    tree = PoseTree()
+    tree.put("map", "camera", Pose.of((1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)))
+    assert tree.find("/camera", "/map").position == pytest.approx([1, 0, 0])
+    assert tree.find("camera", "camera").position == pytest.approx([0, 0, 0])
+    with pytest.raises(InputError, match="the frames 'camera' and 'moon'"):
+        tree.find("camera", "moon")

@@ -72,3 +72,34 @@ def test_no_times_and_measurements_end_a_covariance(steps):
         correlations = motion.covariance / np.outer(deviations, deviations)
         assert np.abs(correlations - correlations.T).max() < 1e-6
         assert np.linalg.eigvalsh(correlations).min() > -1e-6
+
+
+def test_a_start_knows_its_position_and_no_speed():
+    motion = RoadMotion.at(np.array([3.0, -4.0]), np.array([[0.04, 0.01], [0.01, 0.09]]))
+    assert motion.state == pytest.approx([3.0, -4.0, 0.0, 0.0])
+    expected = np.diag([0.04, 0.09, 1600.0, 1600.0])  # 40 m/s
+    expected[0, 1] = expected[1, 0] = 0.01
+    assert motion.covariance == pytest.approx(expected)
+
+
+def test_a_random_walk_of_the_velocity_by_hand():
+    # Within t = 3 s, of 2 m/s a second: 4 t in the velocity, 4 t^2 / 2 between both, 4 t^3 / 3.
+    motion = RoadMotion(np.array([1.0, 2.0, 10.0, -5.0]), np.zeros((4, 4))).predicted(3.0, 2.0)
+    assert motion.state == pytest.approx([31.0, -13.0, 10.0, -5.0])
+    one = np.array([[36.0, 18.0], [18.0, 12.0]])
+    assert motion.covariance[::2, ::2] == pytest.approx(one)
+    assert motion.covariance[1::2, 1::2] == pytest.approx(one)
+    assert motion.covariance[::2, 1::2] == pytest.approx(np.zeros((2, 2)))
+
+
+def test_a_known_speed_widens_the_position():
+    # A deviation of 2 m/s is one of 6 m after 3 s, and goes with it.
+    motion = RoadMotion(np.zeros(4), np.diag([0.0, 0.0, 4.0, 0.0])).predicted(3.0, 0.0)
+    assert motion.covariance[::2, ::2] == pytest.approx(np.array([[36.0, 12.0], [12.0, 4.0]]))
+
+
+def test_a_measurement_as_sure_as_the_prediction_goes_half_way():
+    motion = RoadMotion(np.zeros(4), np.diag([1.0, 1.0, 4.0, 4.0]))
+    after = motion.measured(np.array([2.0, -6.0]), np.eye(2))
+    assert after.state == pytest.approx([1.0, -3.0, 0.0, 0.0])
+    assert np.diag(after.covariance) == pytest.approx([0.5, 0.5, 4.0, 4.0])
