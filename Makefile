@@ -78,7 +78,8 @@ test-ros test-footage test-programs: .venv/installed
 test-research: .venv/installed kernels  ## tests of reproduction, laboratory and benchmarks, slow ones too
 	$(BIN)/python -m pytest $(or $(PYTEST_ARGS),$(RESEARCH))
 
-# Hours for a room of trackers; the toy is one module, so that the target is known to work.
+# Hours for a room of trackers, and a fifth of that with ROOMS="papers --sample 37"; the toy is one module,
+# so that the target is known to work.
 mutants: .venv/mutants  ## mutation testing of ROOMS=toy, filtering, road, counting or papers
 	$(BIN)/python -m tools.mutants $(or $(ROOMS),toy)
 
