@@ -6,7 +6,7 @@
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.following.detectors import DetectionFile
+from vehicle_pf_tracker.following.detection_file import DetectionFile
 
 
 @pytest.fixture

@@ -18,8 +18,8 @@ pytest.importorskip("pooch", reason="the extra [video] is not installed")
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.following import fetching
-from vehicle_pf_tracker.following.detectors import open_network
 from vehicle_pf_tracker.following.model_files import cached, model_file
+from vehicle_pf_tracker.following.opened_network import open_network
 
 CONTENT = bytes(range(8, 256)) * 4000
 SUM = hashlib.sha256(CONTENT).hexdigest()

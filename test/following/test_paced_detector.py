@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.following.detectors import PacedDetector
+from vehicle_pf_tracker.following.paced_detector import PacedDetector
 
 FRAME = np.zeros((9, 9, 3), np.uint8)
 

@@ -27,9 +27,10 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.detection.parameters import MODEL, MOTION, NONE, TOPIC
 from vehicle_pf_tracker.following.counted_vehicles import session_and_counter
-from vehicle_pf_tracker.following.detectors import DetectionFile, call
+from vehicle_pf_tracker.following.detection_file import DetectionFile
 from vehicle_pf_tracker.following.known_networks import NETWORKS
 from vehicle_pf_tracker.following.model_files import model_file
+from vehicle_pf_tracker.following.paced_detector import call
 from vehicle_pf_tracker.following.traffic_following import TrafficRun
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import to_mapping

@@ -17,9 +17,10 @@ from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.counting.vehicle_class import VehicleClasses
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import Detector
-from vehicle_pf_tracker.following.detectors import PacedDetector, Run, call, detector_maker
+from vehicle_pf_tracker.following.detectors import detector_maker
 from vehicle_pf_tracker.following.fetching import Progress, silent
 from vehicle_pf_tracker.following.live_facts import RecentCrossings, traffic_facts
+from vehicle_pf_tracker.following.paced_detector import PacedDetector, Run, call
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan

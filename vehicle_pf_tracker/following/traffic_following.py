@@ -16,7 +16,7 @@ from vehicle_pf_tracker.counting.counter import Counter
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.parameters import MODEL, MOTION
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles
-from vehicle_pf_tracker.following.detectors import DetectionFile
+from vehicle_pf_tracker.following.detection_file import DetectionFile
 from vehicle_pf_tracker.following.driver import unreached
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.results.estimates import clock_words, start_of_clock

@@ -14,7 +14,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.detection.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.detection.parameters import TOPIC
-from vehicle_pf_tracker.following.detectors import PacedDetector
+from vehicle_pf_tracker.following.paced_detector import PacedDetector
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import Configuration
