@@ -10,7 +10,7 @@ import pytest
 from laboratory.scenes import make_traffic_scene
 from laboratory.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.evaluation import baselines as client
+from vehicle_pf_tracker.evaluation import baseline_process as client
 
 WORKER = """
 import json, sys

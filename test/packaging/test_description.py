@@ -15,7 +15,7 @@ import setuptools
 
 import vehicle_pf_tracker
 from vehicle_pf_tracker.cli.missing_modules import EVALUATION_MODULES, EXTRAS
-from vehicle_pf_tracker.evaluation.baselines import LOCK
+from vehicle_pf_tracker.evaluation.baseline_process import LOCK
 from vehicle_pf_tracker.ros import executables
 from vehicle_pf_tracker.trackers.registry import NODES
 

@@ -16,17 +16,19 @@ import pytest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.evaluation import baseline_process as client
 from vehicle_pf_tracker.evaluation import baseline_worker as worker
-from vehicle_pf_tracker.evaluation import baselines as client
-from vehicle_pf_tracker.evaluation.baselines import (
-    BASELINE_MODELS,
+from vehicle_pf_tracker.evaluation.baseline_process import (
     DEFAULT,
     VARIABLE,
+    baseline_python,
+    install_command,
+)
+from vehicle_pf_tracker.evaluation.baselines import (
+    BASELINE_MODELS,
     Baseline,
     BaselineAnswer,
-    baseline_python,
     baseline_rows,
-    install_command,
 )
 
 PYTHON = Path(sys.executable)

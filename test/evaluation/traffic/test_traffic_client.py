@@ -13,8 +13,8 @@ import pytest
 from scored_scenes import scene
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation import baselines as client
-from vehicle_pf_tracker.evaluation.baselines import DEFAULT, VARIABLE
+from vehicle_pf_tracker.evaluation import baseline_process as client
+from vehicle_pf_tracker.evaluation.baseline_process import DEFAULT, VARIABLE
 from vehicle_pf_tracker.evaluation.traffic.scoring import TRAFFIC_BASELINES, TrafficWorker
 
 PYTHON = Path(sys.executable)

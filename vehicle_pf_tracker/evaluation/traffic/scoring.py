@@ -23,7 +23,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, intersections
 from vehicle_pf_tracker.core.overlaps import overlaps as overlaps_of_edges
 from vehicle_pf_tracker.counting.counter import Counter
-from vehicle_pf_tracker.evaluation.baselines import Worker
+from vehicle_pf_tracker.evaluation.baseline_process import Worker
 from vehicle_pf_tracker.evaluation.traffic.sequence import EVERY_FRAME, TrafficSequence
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
