@@ -26,10 +26,6 @@ from vehicle_pf_tracker.ros.messages import (
     REJECTED,
     WAITING,
     box_message,
-    box_of_detection,
-    box_of_point,
-    box_of_polygon,
-    box_of_region,
     image_message,
     particles_message,
     point_message,
@@ -38,6 +34,12 @@ from vehicle_pf_tracker.ros.messages import (
     velocity_message,
 )
 from vehicle_pf_tracker.ros.node.image_input import read_image
+from vehicle_pf_tracker.ros.target_messages import (
+    box_of_detection,
+    box_of_point,
+    box_of_polygon,
+    box_of_region,
+)
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 

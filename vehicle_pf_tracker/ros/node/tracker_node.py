@@ -13,7 +13,8 @@ from sensor_msgs.msg import RegionOfInterest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros import messages
+from vehicle_pf_tracker.ros import target_messages
+from vehicle_pf_tracker.ros.messages import detection_type
 from vehicle_pf_tracker.ros.node.camera_inputs import CameraInputs
 from vehicle_pf_tracker.ros.node.image_input import image_topic
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
@@ -78,11 +79,11 @@ class TrackerNode(ImageNode):
         self.open_images()
         self.warn_of_overrides(qos=True)
         self._cameras.open(self.table.configuration.session.road)
-        self._take_target("~/set_target", RegionOfInterest, messages.box_of_region)
-        self._take_target("~/set_box", PolygonStamped, messages.box_of_polygon)
+        self._take_target("~/set_target", RegionOfInterest, target_messages.box_of_region)
+        self._take_target("~/set_box", PolygonStamped, target_messages.box_of_polygon)
         self._take_target("~/clicked_point", PointStamped, self._box_at)
-        if (kind := messages.detection_type()) is not None:
-            self._take_target("~/set_detection", kind, messages.box_of_detection)
+        if (kind := detection_type()) is not None:
+            self._take_target("~/set_detection", kind, target_messages.box_of_detection)
         self._has_logged_ready = False
         self._await_kernels()
 
@@ -103,7 +104,9 @@ class TrackerNode(ImageNode):
         self.listen(kind, topic, "target", start)
 
     def _box_at(self, message: PointStamped) -> Box:
-        return messages.box_of_point(message, self.feed.box if self.feed is not None else None)
+        return target_messages.box_of_point(
+            message, self.feed.box if self.feed is not None else None
+        )
 
     def _await_kernels(self) -> None:
         """Log once that the node is ready: active, and with kernels."""

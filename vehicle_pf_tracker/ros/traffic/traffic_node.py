@@ -17,11 +17,12 @@ from vehicle_pf_tracker.detection.parameters import TOPIC
 from vehicle_pf_tracker.following.model_files import is_fetched
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.image_memory import return_memory
-from vehicle_pf_tracker.ros.messages import box_of_region, detections_type, finite
+from vehicle_pf_tracker.ros.messages import detections_type
 from vehicle_pf_tracker.ros.node.image_input import image_topic, subscribe
 from vehicle_pf_tracker.ros.node.image_node import ImageNode
 from vehicle_pf_tracker.ros.node.image_path import ImagePath
 from vehicle_pf_tracker.ros.node.journal import Journal
+from vehicle_pf_tracker.ros.target_messages import box_of_region, finite
 from vehicle_pf_tracker.ros.traffic.detection_queue import DetectionQueue, WaitingMessages
 from vehicle_pf_tracker.ros.traffic.live_page import open_page
 from vehicle_pf_tracker.ros.traffic.messages import LONGEST
