@@ -46,6 +46,7 @@ from vehicle_pf_tracker.results.source_table import SOURCE, SourceTable, read_ta
 from vehicle_pf_tracker.trackers.registry import Variant
 
 _TABLE = "sources.csv"
+"""File of the table over all sources."""
 _MOST_PRINTED = 40
 """Rows of the table on a terminal, what a screen holds; the file has all."""
 Follow: TypeAlias = Callable[[Any], int]

@@ -18,8 +18,11 @@ from vehicle_pf_tracker.results.run_folder import ESTIMATES, METRICS, RUN
 SOURCE = "source.json"
 """File in the folder of a source: its name, the key of its results, and why they are not whole."""
 NAME = "source"
+"""First column."""
 _REASON = "failed"
+"""Last column: why a source has no results."""
 _FOLLOWED = ("frames", "tracked", "occluded", "lost")
+"""Columns of a run of `run`: its frames, and those in each mode."""
 _SCORES = ("on_target", "median_px", "success_auc")
 """Metrics that are shown where there is truth; `metrics.json` has the others."""
 _LARGEST = "most_at_once"
@@ -89,7 +92,8 @@ def read_table(folder: Path, names: Sequence[str]) -> SourceTable:
 def _values(folder: Path) -> Iterator[tuple[str, dict[str, Cell]]]:
     """Give what is shown of each run in a folder, by the name of the vehicle if it has several."""
     for path in sorted(folder.rglob(RUN)):
-        at, document = path.parent, _document(path) or {}
+        at = path.parent
+        document = _document(path) or {}
         part = "" if at == folder else at.relative_to(folder).as_posix()
         if "summary" in document:
             yield part, _of_traffic(document["summary"])

@@ -55,7 +55,8 @@ def offer_pausing(node: Node, pace: ReplayPace, tell: Callable[[str], None]) -> 
     }
 
     def answer(action: Callable[[], bool], response: Trigger.Response) -> Trigger.Response:
-        response.success, response.message = True, set_paused(action())
+        response.success = True
+        response.message = set_paused(action())
         return response
 
     for name, action in actions.items():
