@@ -179,7 +179,7 @@ def test_directions_are_those_of_the_arc_tangent(signed):
     gx, gy = (one.ravel() for one in np.meshgrid(values, values))
     gx, gy = gx[(gx != 0) | (gy != 0)], gy[(gx != 0) | (gy != 0)]
     found = [
-        edges.direction_bin(x, y, edges.TANGENTS, signed)
+        edges.direction_bin.py_func(x, y, edges.TANGENTS, signed)
         for x, y in zip(gx.tolist(), gy.tolist(), strict=True)
     ]
     assert found == direction_bins(gx, gy, signed=signed).tolist()

@@ -80,9 +80,12 @@ def _direction_histograms(
     below = np.zeros_like(sums)
     magnitudes = np.empty(width, np.float32)
     places = np.empty(width, np.uint32)
-    place_x = (np.arange(width) + 0.5) / GRADIENT_CELL_PX + 0.5
-    column = place_x.astype(np.uint64)
-    share = (place_x - column).astype(np.float32)
+    column = np.empty(width, np.uint64)
+    share = np.empty(width, np.float32)
+    for x in range(width):
+        place_x = (x + 0.5) / GRADIENT_CELL_PX + 0.5
+        column[x] = np.uint64(place_x)
+        share[x] = np.float32(place_x - np.floor(place_x))
     for y in range(1, height - 1):
         _gradients(grey, y, magnitudes, places)
         for x in range(1, width - 1):
@@ -103,9 +106,22 @@ def _direction_histograms(
                 for x in range(columns):
                     cells[o, row, x] += above[o * columns + x]
                     cells[o, row + 1, x] += below[o * columns + x]
-            above[:] = 0
-            below[:] = 0
+                    above[o * columns + x] = 0
+                    below[o * columns + x] = 0
     return cells
+
+
+@inlined
+def _repeat_border(energy: npt.NDArray[np.float32]) -> None:
+    """Repeat the outermost inner cells beyond the border."""
+    rows = energy.shape[0] - 2
+    columns = energy.shape[1] - 2
+    for y in range(1, rows + 1):
+        energy[y, 0] = energy[y, 1]
+        energy[y, columns + 1] = energy[y, columns]
+    for x in range(columns + 2):
+        energy[0, x] = energy[1, x]
+        energy[rows + 1, x] = energy[rows, x]
 
 
 @inlined
@@ -120,9 +136,7 @@ def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
             for x in range(1, columns + 1):
                 value = cells[o, y, x] + cells[o + _UNSIGNED, y, x]
                 energy[y, x] += value * value
-    # Beyond the border the outermost cell is repeated.
-    energy[1:-1, 0], energy[1:-1, -1] = energy[1:-1, 1], energy[1:-1, -2]
-    energy[0], energy[-1] = energy[1], energy[-2]
+    _repeat_border(energy)
     scales = np.empty((4, rows, columns), np.float32)
     for k in range(4):
         for y in range(rows):
@@ -137,6 +151,13 @@ def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
 
 
 @inlined
+def _clear(sums: npt.NDArray[np.float32]) -> None:
+    for k in range(sums.shape[0]):
+        for x in range(sums.shape[1]):
+            sums[k, x] = 0
+
+
+@inlined
 def _normalise(
     cells: npt.NDArray[np.float32], scales: npt.NDArray[np.float32], features: CellFeatures
 ) -> None:
@@ -147,7 +168,7 @@ def _normalise(
     half = np.float32(0.5)
     texture = np.empty((4, columns), np.float32)
     for y in range(rows):
-        texture[:] = 0
+        _clear(texture)
         for o in range(DIRECTIONS):
             for x in range(columns):
                 # Summed in the order of the version in numpy, which it has to agree with to 1e-6.

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from numba import types
 
 from vehicle_pf_tracker.image.gradients import DIRECTION_BINS
+from vehicle_pf_tracker.image.kernels.numba_gradients import IMAGES, Images, Strengths
 from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_types import (
     BIN_TABLE,
@@ -23,11 +24,7 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Rectangles,
     Table,
 )
-from vehicle_pf_tracker.image.window import Grey
 
-Gradients: TypeAlias = npt.NDArray[np.int16]
-Strengths: TypeAlias = npt.NDArray[np.int32]
-Images: TypeAlias = tuple[Gradients, Gradients, Strengths]
 Points: TypeAlias = tuple[Strengths, Table, Strengths]
 Tangents: TypeAlias = npt.NDArray[np.float64]
 Numbers: TypeAlias = npt.NDArray[np.int64]
@@ -77,41 +74,28 @@ def direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
 
 
 @inlined
-def _sobel(grey: Grey, images: Images) -> None:
-    """Fill gradient and squared magnitude, the image mirrored at its border as OpenCV does it.
-
-    One pass over three rows at a time, which stay in the first cache, instead of OpenCV's two over
-    all.
-    """
-    gx, gy, strengths = images
-    height, width = grey.shape
-    smooth = np.empty(width + 2, np.int16)
-    slope = np.empty(width + 2, np.int16)
-    for y in range(height):
-        above = y - 1 if y > 0 else min(1, height - 1)
-        below = y + 1 if y < height - 1 else max(height - 2, 0)
-        for x in range(width):
-            over = grey[above, x]
-            here = grey[y, x]
-            under = grey[below, x]
-            smooth[x + 1] = np.int16(over) + np.int16(2) * np.int16(here) + np.int16(under)
-            slope[x + 1] = np.int16(under) - np.int16(over)
-        for row in (smooth, slope):
-            row[0], row[width + 1] = row[1 + min(1, width - 1)], row[1 + max(width - 2, 0)]
-        for x in range(width):
-            # An unsigned index needs no test for counting from the end.
-            column = np.uint64(x)
-            along = smooth[column + np.uint64(2)] - smooth[column]
-            down = slope[column] + 2 * slope[column + np.uint64(1)] + slope[column + np.uint64(2)]
-            gx[y, x], gy[y, x] = along, down
-            strengths[y, x] = np.int32(along) * np.int32(along) + np.int32(down) * np.int32(down)
-
-
-@inlined
 def _raise_to(numbers: Strengths, others: Strengths) -> None:
     """Replace numbers by the larger ones of another array, as far as both go."""
     for x in range(min(len(numbers), len(others))):
         numbers[x] = max(numbers[x], others[x])
+
+
+@inlined
+def _extent(middles: Rectangles) -> tuple[int, int, int, int]:
+    """Least x and y, and largest x and y."""
+    x0, y0 = middles[0]
+    x1, y1 = x0, y0
+    for i in range(len(middles)):
+        x, y = middles[i]
+        x0, y0, x1, y1 = min(x0, x), min(y0, y), max(x1, x), max(y1, y)
+    return x0, y0, x1, y1
+
+
+@inlined
+def _copy(numbers: Strengths, copied: Strengths) -> None:
+    """Copy an array into one of the same length."""
+    for x in range(len(numbers)):
+        copied[x] = numbers[x]
 
 
 @inlined
@@ -123,8 +107,7 @@ def _peaks_of(strengths: Strengths, middles: Rectangles, half: tuple[int, int]) 
     """
     across, up = half
     height, width = strengths.shape
-    x0, y0 = middles[:, 0].min(), middles[:, 1].min()
-    x1, y1 = middles[:, 0].max(), middles[:, 1].max()
+    x0, y0, x1, y1 = _extent(middles)
     # From the first pixel of the first window; 0 beyond the image, where there are no edges.
     rows = np.zeros((y1 - y0 + 2 * up + 1, x1 - x0 + 2 * across + 1), np.int32)
     left = max(x0 - across, 0)
@@ -143,10 +126,10 @@ def _peaks_of(strengths: Strengths, middles: Rectangles, half: tuple[int, int]) 
         _raise_to(row, rows[y + 2 * up + 1 - span])
         along = 1
         while 2 * along <= 2 * across + 1:
-            kept[:] = row
+            _copy(row, kept)
             _raise_to(row, kept[along:])
             along *= 2
-        kept[:] = row
+        _copy(row, kept)
         _raise_to(row, kept[2 * across + 1 - along :])
     peaks = np.empty(len(middles), np.int32)
     for i in range(len(middles)):
@@ -158,8 +141,9 @@ def _peaks_of(strengths: Strengths, middles: Rectangles, half: tuple[int, int]) 
 def _limits_of(peaks: Strengths, rule: tuple[float, float]) -> Numbers:
     """Least squared magnitude that counts in each window; see `GradientDirections.counts`."""
     share, least = rule
-    limits = np.full(len(peaks), _NEVER, np.int64)
+    limits = np.empty(len(peaks), np.int64)
     for i in range(len(peaks)):
+        limits[i] = _NEVER
         if peaks[i] > 0:
             # In integers, the comparison of a million pixels needs no conversion.
             limits[i] = np.int64(math.ceil(max(share * np.float32(peaks[i]), least)))
@@ -254,7 +238,8 @@ def _count_window(
     """Fill the counts of one window's points that pass its limit, and return their number."""
     index, cells, strengths = points
     left, top, right, bottom = window
-    counts[:] = 0
+    for k in range(len(counts)):
+        counts[k] = 0
     total = 0
     for y in range(top, bottom):
         # An unsigned index needs no test for counting from the end.
@@ -267,27 +252,33 @@ def _count_window(
 
 @inlined
 def _check(
-    grey: Grey,
+    images: Images,
     middles: Rectangles,
     half: tuple[int, int],
     directions: tuple[Table, Tangents, bool],
     counts: Counts,
 ) -> None:
     """Raise an error where an index would lie outside an array."""
-    height, width = grey.shape
+    height, width = images[2].shape
     table, tangents, _ = directions
-    if len(table) < 4 * (len(tangents) + 1) or table.max() >= counts.shape[1]:
+    highest = 0
+    for cell in table:
+        highest = max(highest, np.int64(cell))
+    if len(table) < 4 * (len(tangents) + 1) or highest >= counts.shape[1]:
         raise IndexError("the reference has fewer bins than the feature")
+    if images[0].shape != images[2].shape or images[1].shape != images[2].shape:
+        raise IndexError("the gradients are not all of one image")
     if len(middles) == 0 or len(counts) < len(middles) or min(half) < 0:
         raise IndexError("there is no window, or no room for its counts")
-    for x, y in middles:
+    for i in range(len(middles)):
+        x, y = middles[i]
         if not (0 <= x < width and 0 <= y < height):
             raise IndexError("a window is not among the gradients")
 
 
 @compiled(
     _NUMBERS(
-        types.uint8[:, ::1],
+        IMAGES,
         RECTANGLES,
         PAIR,
         types.UniTuple(types.float32, 2),
@@ -296,7 +287,7 @@ def _check(
     )
 )
 def count_edges(
-    grey: Grey,
+    images: Images,
     middles: Rectangles,
     half: tuple[int, int],
     rule: tuple[float, float],
@@ -307,8 +298,9 @@ def count_edges(
 
     Parameters
     ----------
-    grey : (H, W) array
-        The part of the frame that has all windows in it, and one pixel more where there is one.
+    images : three (H, W) arrays
+        As `numba_gradients.gradients` makes them, of the part of the frame that has all windows in
+        it, and one pixel more where there is one.
     middles : (N, 2) array
         x, y of each window's middle pixel; what is beyond the array is not counted.
     half : (int, int)
@@ -326,14 +318,15 @@ def count_edges(
     (N,) array
         Counts of all cells together.
     """
-    _check(grey, middles, half, directions, counts)
-    shape = grey.shape
-    images = np.empty(shape, np.int16), np.empty(shape, np.int16), np.empty(shape, np.int32)
-    _sobel(grey, images)
+    _check(images, middles, half, directions, counts)
+    shape = images[2].shape
     limits = _limits_of(_peaks_of(images[2], middles, half), rule)
     totals = np.zeros(len(middles), np.int64)
-    is_open = limits != _NEVER
-    counts[:] = 0
+    is_open = np.empty(len(limits), np.bool_)
+    for i in range(len(limits)):
+        is_open[i] = limits[i] != _NEVER
+        for k in range(counts.shape[1]):
+            counts[i, k] = 0
     while True:
         # From the lowest limit on: each round lists points once for all windows of its range.
         lowest = _lowest(limits, is_open)

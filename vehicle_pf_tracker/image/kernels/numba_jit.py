@@ -1,7 +1,12 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Typed compilation with numba, cached on disk where a folder can be written."""
+"""Typed compilation with numba, cached on disk where a folder can be written.
+
+How long it takes follows from what numba writes out for each expression. So kernels fill arrays,
+copy them and search them in loops: `a[:] = b` alone takes a second and more, as it brings the
+text of an error with it, and `a[:, 0].min()` as long.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +39,10 @@ def compiled(*signatures: Any) -> Callable[[FunctionT], FunctionT]:
     """
 
     def compile_it(function: FunctionT) -> FunctionT:
-        build = functools.partial(numba.njit, list(signatures), fastmath=_FASTMATH)
+        # No C code calls the kernels, and a wrapper for it takes a twentieth of the compilation.
+        build = functools.partial(
+            numba.njit, list(signatures), fastmath=_FASTMATH, no_cfunc_wrapper=True
+        )
         try:
             # Compiled here, at import, for the types that are given: a step never waits for it.
             result: FunctionT = build(cache=True)(function)
@@ -48,8 +56,9 @@ def compiled(*signatures: Any) -> Callable[[FunctionT], FunctionT]:
 
 
 def inlined(function: FunctionT) -> FunctionT:
-    """Make a part of the compiled functions of the same file."""
-    inner: FunctionT = numba.njit(fastmath=_FASTMATH)(function)
+    """Make a part of the compiled functions of the same file; Python cannot call it."""
+    build = numba.njit(fastmath=_FASTMATH, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    inner: FunctionT = build(function)
     return inner
 
 

@@ -43,7 +43,7 @@ from vehicle_pf_tracker.image.window import (
 if TYPE_CHECKING:
     from vehicle_pf_tracker.image.kernels.numba_edges import Numbers
 
-_MODULES = ("numba_windows", "numba_edges", "numba_mean_shift", "numba_cells")
+_MODULES = ("numba_windows", "numba_gradients", "numba_edges", "numba_mean_shift", "numba_cells")
 """Modules whose kernels are compiled when they are imported, the commonest first."""
 
 _LANES = 16
@@ -287,8 +287,9 @@ def _count_edges(
         positions, frame_size(frame), half, 1
     )
     edges = _kernels("numba_edges")
+    grey = to_grey(frame[top:bottom, left:right])
     totals: Numbers = edges.count_edges(
-        to_grey(frame[top:bottom, left:right]),
+        _kernels("numba_gradients").gradients(grey),
         pixels,
         half,
         (np.float32(feature.threshold) ** 2, np.float32(feature.floor) ** 2),

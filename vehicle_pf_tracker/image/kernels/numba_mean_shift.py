@@ -49,7 +49,8 @@ def _weigh_cells(
 ) -> float:
     """Fill in the kernel mass of each cell, and return that of all pixels that exist."""
     height, width = cells.shape[1:]
-    masses[:] = 0.0
+    for k in range(len(masses)):
+        masses[k] = 0.0
     total = 0.0
     for j in range(len(offsets)):
         column, row = x + offsets[j, 0], y + offsets[j, 1]
@@ -64,7 +65,12 @@ def _weigh_cells(
 def _check(cells: Cells, pixels: Pixels, offsets: Offsets, profile: Reals, values: Reals) -> None:
     """Raise an error where a cell has no value, or an array is too short."""
     # Once per call: the loops below trust every index.
-    if cells.size and cells.max() >= len(values):
+    largest = np.uint16(0)
+    for plane in range(cells.shape[0]):
+        for y in range(cells.shape[1]):
+            for x in range(cells.shape[2]):
+                largest = max(largest, cells[plane, y, x])
+    if cells.size and largest >= len(values):
         raise IndexError("a cell is not among those of the reference")
     if len(cells) == 0 or pixels.shape[1] != 2 or offsets.shape[1] != 2:
         raise IndexError("there is no plane of cells, or no pair of coordinates")
@@ -127,8 +133,9 @@ def shift_kernels(
     height, width = cells.shape[1:]
     masses = np.empty(len(values))
     weights = np.empty(len(values))
-    steps = np.full((len(pixels), 2), np.nan)
+    steps = np.empty((len(pixels), 2))
     for i in range(len(pixels)):
+        steps[i, 0] = steps[i, 1] = np.nan
         x, y = pixels[i]
         _weigh_cells(cells, x, y, offsets, profile, masses)
         for k in range(len(values)):

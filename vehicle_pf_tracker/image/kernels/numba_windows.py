@@ -36,7 +36,6 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Pixels,
     Reach,
     Reals,
-    Rectangles,
     Scale,
     Table,
 )
@@ -79,10 +78,8 @@ def place_windows(
 
     Returns
     -------
-    pixels : (N, 2) array
-        Pixel x, y of each window's middle, from the first pixel covered.
-    covered : (int, int, int, int)
-        Left, top, right, bottom of the part, as far as the frame goes.
+    (N, 2) array, (int, int, int, int)
+        Pixel x, y of each window's middle in the part; left, top, right, bottom of the part.
     """
     width, height = size
     beside, above = half
@@ -184,15 +181,25 @@ def _shift(counts: Counts, columns: Columns, leaving: int, entering: int) -> Non
 
 
 @inlined
-def _listed(pixels: Pixels, x0: int, y0: int, heads: Rectangles) -> Pixels:
-    """List the windows of each pixel: the last one in `heads`, then each one's predecessor."""
+def _listed(pixels: Pixels, x0: int, y0: int, heads: Pixels) -> Pixels:
+    """List the windows of each pixel, from 1: the last in `heads`, then each one's predecessor."""
     others = np.empty(len(pixels), np.int64)
-    heads[:] = -1
     for i in range(len(pixels)):
         x, y = pixels[i, 0] - x0, pixels[i, 1] - y0
         others[i] = heads[y, x]
-        heads[y, x] = i
+        heads[y, x] = i + 1
     return others
+
+
+@inlined
+def _asked(heads: Pixels, row: int) -> tuple[int, int]:
+    """First column of a row that has a window, and the one after the last; equal without any."""
+    first, end = 0, heads.shape[1]
+    while first < end and heads[row, first] == 0:
+        first += 1
+    while end > first and heads[row, end - 1] == 0:
+        end -= 1
+    return first, end
 
 
 @inlined
@@ -202,7 +209,7 @@ def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Sc
     left, right, up = reach
     x0, y0, x1, y1 = extent
     values, roots = scale
-    heads = np.empty((y1 - y0 + 1, x1 - x0 + 1), np.int64)
+    heads = np.zeros((y1 - y0 + 1, x1 - x0 + 1), np.int64)
     others = _listed(pixels, x0, y0, heads)
     columns = np.zeros((width, len(values)), np.uint16)
     sums = np.zeros(len(values), np.int32)
@@ -210,25 +217,25 @@ def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Sc
     result = np.empty(len(pixels))
     for y in range(y0, y1 + 1):
         # Between the first and the last window of a row the sum slides; beyond, nothing is asked.
-        asked = np.flatnonzero(heads[y - y0] >= 0)
-        if not len(asked):
+        skipped, end = _asked(heads, y - y0)
+        if skipped == end:
             continue
         top = max(y - up, 0)
         bottom = min(y + up + 1, height)
         _follow_rows(columns, cells, rows, top, bottom)
-        first = x0 + asked[0]
+        first = x0 + skipped
         _gather(sums, columns, max(first - left, 0), min(first + right, width))
-        for x in range(first, x0 + asked[-1] + 1):
+        for x in range(first, x0 + end):
             if x > first:
                 _shift(sums, columns, x - left - 1, x + right - 1)
             # Windows on one pixel are the same: compared once, however many particles sit there.
             i = heads[y - y0, x - x0]
-            if i >= 0:
+            if i:
                 across = min(x + right, width) - max(x - left, 0)
                 rho = _overlap(sums, values, planes * across * (bottom - top), roots)
-            while i >= 0:
-                result[i] = rho
-                i = others[i]
+            while i:
+                result[i - 1] = rho
+                i = others[i - 1]
     return result
 
 
@@ -251,18 +258,17 @@ def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
 
 
 @compiled(types.float64[::1](CELL_PLANES, RECTANGLES, SCALE))
-def compare_rectangles(cells: Cells, rectangles: Rectangles, scale: Scale) -> Reals:
+def compare_rectangles(cells: Cells, rectangles: Pixels, scale: Scale) -> Reals:
     """Compare windows one after the other; parameters as for `compare_windows`."""
     planes, height, width = cells.shape
     values, roots = scale
     _check_cells(cells, values)
-    sums = np.zeros(len(values), np.int32)
     result = np.empty(len(rectangles))
     for i in range(len(rectangles)):
         left, top, right, bottom = rectangles[i]
         if left < 0 or top < 0 or right > width or bottom > height:
             raise IndexError("a window is not among the cells")
-        sums[:] = 0
+        sums = np.zeros(len(values), np.int32)
         for plane in range(planes):
             for y in range(top, bottom):
                 for x in range(left, right):
@@ -287,7 +293,7 @@ def _is_sliding_worthwhile(
 
 @compiled(types.float64[::1](CELL_PLANES, RECTANGLES, REACH, SCALE))
 def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) -> Reals:
-    """Compare windows with a reference.
+    """Compare windows with a reference, and return their Bhattacharyya coefficients (N,).
 
     Parameters
     ----------
@@ -298,11 +304,6 @@ def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) ->
         itself, and above it (as many as below).
     scale : (K + 1 or more,) array, (M,) array
         Square roots of the reference at the active bins, followed by zeros; and those of 0, 1, 2, …
-
-    Returns
-    -------
-    (N,) array
-        Bhattacharyya coefficients.
     """
     _, height, width = cells.shape
     left, right, up = reach
