@@ -7,18 +7,15 @@ from __future__ import annotations
 
 import csv
 import math
-from collections import deque
 from collections.abc import Iterable, Iterator, Sequence, Set
 from contextlib import ExitStack, contextmanager
-from dataclasses import astuple, replace
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any, TextIO
 
-import numpy as np
-
-from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.counting.counter import CONFIRMED
 from vehicle_pf_tracker.counting.crossing import Crossing
+from vehicle_pf_tracker.results.backdating import Backdating, Frames
 from vehicle_pf_tracker.results.output_files import replacing
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
@@ -69,70 +66,6 @@ _MOT_ROW = "{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.4f},{},{},{}\n"
 """Row of `tracks.txt`, of `mot_numbers`."""
 IN_TRACKS = frozenset({TrackMode.TENTATIVE, *CONFIRMED})
 """Modes of numbered vehicles that `tracks.txt` has."""
-_SEEN = frozenset({TrackMode.TENTATIVE, TrackMode.TRACKING})
-"""Modes in which a box was measured, not predicted."""
-_HELD_FRAMES = 90
-"""Frames that are held back at most until their tentative vehicles are known: 3 s at 30 Hz."""
-FrameEstimates = tuple[int, int, Sequence[TrackEstimate]]
-"""Number of a frame, its stamp in ns, and the vehicles in it."""
-Frames = Iterator[FrameEstimates]
-
-
-class Backdating:
-    """Holds frames back until vehicles and classes in them are known.
-
-    Tentative vehicles that are confirmed get their numbers from their first detection on; the
-    others are left out. A vehicle has the class that was decided for it in all frames. A hidden one
-    that was found again has the boxes of the track that it turned out to be, not its prediction.
-    """
-
-    def __init__(self) -> None:
-        self._held: deque[FrameEstimates] = deque()
-        self._numbers: dict[int, int] = {}
-        self._labels: dict[int, str] = {}
-
-    def add(
-        self,
-        frame: int,
-        stamp_ns: int,
-        estimates: Sequence[TrackEstimate],
-        undecided: Set[int] = frozenset(),
-    ) -> Frames:
-        """Take the next frame, and return those that are known, in order.
-
-        `undecided` has the numbers of the vehicles whose class may still change.
-        """
-        self._held.append((frame, stamp_ns, estimates))
-        known = [one for one in estimates if one.identity]
-        self._numbers.update({one.serial: one.identity for one in known})
-        self._numbers.update({one.joined: one.identity for one in known if one.joined})
-        self._labels.update({one.identity: one.label for one in known if one.label})
-        open_ones = {
-            one.serial for one in estimates if not one.identity or one.identity in undecided
-        }
-        while self._held and (
-            len(self._held) > _HELD_FRAMES
-            or open_ones.isdisjoint(one.serial for one in self._held[0][2])
-        ):
-            yield self._known(*self._held.popleft())
-
-    def rest(self) -> Frames:
-        """Return the frames that are still held back, as the source has ended."""
-        while self._held:
-            yield self._known(*self._held.popleft())
-
-    def _known(
-        self, frame: int, stamp_ns: int, estimates: Sequence[TrackEstimate]
-    ) -> FrameEstimates:
-        by_number: dict[int, TrackEstimate] = {}
-        for one in estimates:
-            number = self._numbers.get(one.serial, 0)
-            other = by_number.get(number)
-            if number and (other is None or other.mode not in _SEEN):
-                label = self._labels.get(number, one.label)
-                is_same = (one.identity, one.label) == (number, label)
-                by_number[number] = one if is_same else replace(one, identity=number, label=label)
-        return frame, stamp_ns, list(by_number.values())
 
 
 class TrackFiles:
@@ -249,61 +182,3 @@ def _count_row(frame: int, crossing: Crossing) -> list[Any]:
 def _exact(value: float) -> str:
     """Return a number with all its digits; "" for one that is not known."""
     return "" if math.isnan(value) else repr(float(value))
-
-
-_INTEGERS = {"frame", "stamp_ns", "id"}
-"""Columns that are read as integers: a stamp in ns has more digits than a float."""
-_TEXTS = {"mode", "label", "hidden_by", "place", "direction"}
-"""Columns that are read as text; all others are floats."""
-
-
-def read_tracks(folder: str | Path, *, pandas: bool = False) -> Any:
-    """Read ``tracks.csv`` of a folder that `traffic` has written.
-
-    Parameters
-    ----------
-    folder : str or Path
-        The folder.
-    pandas : bool
-        Return a data frame instead.
-
-    Returns
-    -------
-    numpy.recarray or pandas.DataFrame
-        A row for each vehicle and frame, with the columns of the file; NaN where it has no number.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read, or pandas is not installed.
-    """
-    return _read(Path(folder) / TRACKS, pandas)
-
-
-def read_counts(folder: str | Path, *, pandas: bool = False) -> Any:
-    """Read ``counts.csv``, a row for each crossing; see `read_tracks`."""
-    return _read(Path(folder) / COUNTS, pandas)
-
-
-def _read(path: Path, as_frame: bool) -> Any:
-    names, *rows = csv.reader(read_text(path, "the table").splitlines())
-    try:
-        columns = {
-            name: _column(name, [row[index] for row in rows]) for index, name in enumerate(names)
-        }
-    except (ValueError, IndexError) as error:
-        raise InputError(f"cannot read the table {path}: {error}") from None
-    if not as_frame:
-        kinds = [(name, column.dtype) for name, column in columns.items()]
-        return np.rec.fromarrays(list(columns.values()), dtype=np.dtype(kinds))
-    try:
-        from pandas import DataFrame  # noqa: PLC0415 - no dependency of ours
-    except ImportError:
-        raise InputError("a data frame needs pandas: pip install pandas") from None
-    return DataFrame(columns)
-
-
-def _column(name: str, cells: list[str]) -> Any:
-    if name in _TEXTS:
-        return np.array(cells, str)
-    return np.array([cell or "nan" for cell in cells], np.int64 if name in _INTEGERS else float)

@@ -30,9 +30,10 @@ from vehicle_pf_tracker.evaluation.traffic.scoring import (
     kept_identities,
 )
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence
+from vehicle_pf_tracker.results.backdating import Backdating, Frames
 from vehicle_pf_tracker.results.output_files import make_folder, write_csv, write_json, write_text
 from vehicle_pf_tracker.results.run_folder import versions
-from vehicle_pf_tracker.results.traffic_results import IN_TRACKS, Backdating, Frames
+from vehicle_pf_tracker.results.traffic_results import IN_TRACKS
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
