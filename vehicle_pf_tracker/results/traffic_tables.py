@@ -16,7 +16,7 @@ from vehicle_pf_tracker.results.traffic_results import COUNTS, TRACKS
 
 _INTEGERS = {"frame", "stamp_ns", "id"}
 """Columns that are read as integers: a stamp in ns has more digits than a float."""
-_TEXTS = {"mode", "label", "hidden_by", "place", "direction"}
+_TEXTS = {"mode", "label", "hidden_by", "place", "direction", "doubt"}
 """Columns that are read as text; all others are floats."""
 
 
