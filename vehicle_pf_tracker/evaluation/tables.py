@@ -156,6 +156,19 @@ def behind_table(aggregates: Aggregates) -> Table:
     return Table(headers, rows)
 
 
+def pairs_table(aggregates: Aggregates) -> Table:
+    """Show how far each system is from each other one, with the interval, in the first metric."""
+    column = COMPARED[0]
+    rows = {
+        label: [
+            TableCell("") if other == label else _with_interval(found[other], column, "+")
+            for other in aggregates.order
+        ]
+        for label, found in aggregates.pairs.items()
+    }
+    return Table([Header(f"to {label}") for label in aggregates.order], rows)
+
+
 def _with_interval(found: Summary | None, column: Column, sign: str) -> TableCell:
     if found is None:
         return TableCell(NO_VALUE)

@@ -21,7 +21,7 @@ from vehicle_pf_tracker.evaluation.report import writing
 from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
 from vehicle_pf_tracker.evaluation.statistics import summarise
-from vehicle_pf_tracker.evaluation.tables import behind_table, overall_table
+from vehicle_pf_tracker.evaluation.tables import behind_table, overall_table, pairs_table
 from vehicle_pf_tracker.results.output_files import write_json
 
 
@@ -85,6 +85,24 @@ def test_the_best_comes_first_and_the_others_are_compared_with_it_by_recording(
         assert mean.text == f"{own.mean:.1f} ({own.low:.1f} to {own.high:.1f})"
 
 
+def test_every_system_is_compared_with_every_other(aggregates, made_evaluation):
+    first, second, third = aggregates.order
+    means = {
+        one: [
+            statistics.fmean(stored(made_evaluation, name, one, "success_auc")) for name in HIDDEN
+        ]
+        for one in aggregates.order
+    }
+    expected = summarise([a - b for a, b in zip(means[second], means[third], strict=True)])
+    assert astuple(aggregates.pairs[second][third]) == pytest.approx(astuple(expected))
+    table = pairs_table(aggregates)
+    assert [header.text for header in table.headers] == [f"to {one}" for one in aggregates.order]
+    cell = table.rows[second][2].text
+    assert cell == f"{expected.mean:+.3f} ({expected.low:.3f} to {expected.high:.3f})"
+    assert table.rows[second][1].text == ""
+    assert aggregates.pairs[second][first] == aggregates.behind[second]["success_auc"]
+
+
 def test_recoveries_are_counted_over_all_runs(aggregates, evaluation):
     judged = [r for run in evaluation.of(system="pf") for r in run.metrics.recovered]
     judged = [r for r in judged if r is not None]
@@ -130,7 +148,8 @@ def test_markdown_has_a_table_for_each_recording_and_every_failed_cell(evaluatio
     text = writing.summary_markdown(evaluation, aggregates)
     assert text.startswith("# Trackers compared: evaluation\n")
     assert [line[3:] for line in text.splitlines() if line.startswith("## ")] == [
-        "Means over recordings", "Differences to the first", *HIDDEN, "Failed cells",
+        "Means over recordings", "Differences to the first",
+        "Differences of all pairs, success AUC", *HIDDEN, "Failed cells",
     ]  # fmt: skip
     tables = [line for line in text.splitlines() if line.startswith("| pf |")]
     assert len(tables) == 2 + len(HIDDEN)

@@ -32,6 +32,8 @@ class Aggregates:
         Summaries over the means of the recordings, so that long ones do not outweigh short ones.
     behind : mapping of str to Summaries
         Differences to the first system over the recordings that both have, by system.
+    pairs : mapping of str to mapping of str to Summary or None
+        Differences of each system to each other one in the metric that orders them.
     recoveries : mapping of str to (int, int)
         Total occlusions recovered from and judged, of all runs of a system.
     """
@@ -40,6 +42,7 @@ class Aggregates:
     recordings: Mapping[str, Mapping[str, Summaries]]
     overall: Mapping[str, Summaries]
     behind: Mapping[str, Summaries]
+    pairs: Mapping[str, Summaries]
     recoveries: Mapping[str, tuple[int, int]]
 
 
@@ -84,6 +87,14 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
                 for column in COMPARED
             }
             for label in order[1:]
+        },
+        pairs={
+            label: {
+                other: _differences(means[label][main], means[other][main])
+                for other in order
+                if other != label
+            }
+            for label in order
         },
         recoveries={label: _recoveries(runs[label]) for label in order},
     )

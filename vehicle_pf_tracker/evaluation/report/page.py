@@ -13,11 +13,12 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from vehicle_pf_tracker.evaluation import tables
-from vehicle_pf_tracker.evaluation.columns import COLUMNS
+from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, safe_name
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.figures import ERRORS, draw_all, styled, svg_element
 from vehicle_pf_tracker.evaluation.report.scored_runs import FailedCell, ScoredEvaluation
+from vehicle_pf_tracker.evaluation.report.stills import embedded_stills
 
 
 def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
@@ -42,6 +43,9 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
         overall=tables.overall_table(aggregates),
         figures=figures,
         behind=tables.behind_table(aggregates),
+        pairs=tables.pairs_table(aggregates),
+        ordered_by=COMPARED[0].label,
+        stills=embedded_stills(evaluation, aggregates),
         curves=[name for name in figures if not name.startswith(ERRORS)],
         recordings=[_section(evaluation, aggregates, entry) for entry in folder.recordings],
         systems=folder.systems,

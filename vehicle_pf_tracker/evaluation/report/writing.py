@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from vehicle_pf_tracker.evaluation import tables
-from vehicle_pf_tracker.evaluation.columns import COLUMNS, NO_VALUE, PAPER
+from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, NO_VALUE, PAPER
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, aggregate
 from vehicle_pf_tracker.evaluation.report.figures import write_figures
 from vehicle_pf_tracker.evaluation.report.page import make_page, title
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, score_folder
+from vehicle_pf_tracker.evaluation.report.stills import write_stills
 from vehicle_pf_tracker.results.output_files import csv_text, write_json, write_text
 from vehicle_pf_tracker.showing.side_products import SideProducts
 
@@ -35,6 +36,7 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     shown = {
         "Means over recordings": tables.overall_table(aggregates),
         "Differences to the first": tables.behind_table(aggregates),
+        f"Differences of all pairs, {COMPARED[0].label}": tables.pairs_table(aggregates),
         **{
             entry.name: tables.recording_table(aggregates, entry.name, COLUMNS)
             for entry in evaluation.folder.recordings
@@ -156,6 +158,8 @@ def write_report(
         folder / "summary.tex": lambda: summary_tex(aggregates),
     }
     side = SideProducts()
+    with side.attempt("the stills"):
+        write_stills(evaluation, aggregates)
     for path, text in texts.items():
         with side.attempt(str(path)):
             write_text(path, text())
