@@ -105,7 +105,7 @@ class NodeProcess:
     name : str
         Full name of the node.
     modes : list of DiagnosticArray
-        Its `~/mode` that nobody has taken yet.
+        Messages of `~/mode` that nobody has taken yet.
     changes : list of bool
         Outcomes of the parameters that were set, in the order of the answers.
     """

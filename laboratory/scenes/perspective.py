@@ -98,7 +98,7 @@ class RoadVehicle:
     heading : float
         Direction it drives to: 0 along x, pi/2 along y, rad.
     drive : Drive
-        Its way.
+        Way of the vehicle.
     camera : RoadCamera
         Camera that sees it.
     """

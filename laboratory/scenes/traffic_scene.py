@@ -44,9 +44,9 @@ class VehicleTruth:
     identity : int
         Number of the vehicle, from 1.
     box : Box
-        Its box, cut at the image's borders, px.
+        Box of the vehicle, cut at the image's borders, px.
     whole : Box
-        Its whole box.
+        Whole box of the vehicle, px.
     visible : float
         Share of it that is not hidden by others, of what is inside the image.
     depth : int

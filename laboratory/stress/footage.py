@@ -40,7 +40,7 @@ class StressFootage:
     Attributes
     ----------
     source : Source
-        Its name, path, size and digest.
+        Name, path, size and digest of the footage.
     fps : float
         Frames per second.
     truth : tuple of Truth or None

@@ -47,7 +47,7 @@ class Kind:
     Attributes
     ----------
     name : str
-        Its name in tables and options.
+        Name of the kind in tables and options.
     group : str
         The group that small batteries draw from in turns.
     summary : str

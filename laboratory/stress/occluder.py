@@ -32,7 +32,7 @@ class Motion:
     anchor : int
         Index of the frame in whose coordinates the rectangle is given.
     velocity : (float, float)
-        Its own motion, px per frame of the sequence.
+        Motion of its own, px per frame of the sequence.
     first : int
         Index of the frame that `carried` begins with.
     carried : tuple of Similarity
@@ -74,9 +74,9 @@ class Occluder:
     rectangle : Box
         In the coordinates of the motion's anchor frame, px.
     motion : Motion
-        Its motion through the sequence.
+        Motion through the sequence.
     texture : Texture
-        Its surface.
+        Surface of the occluder.
     """
 
     rectangle: Box

@@ -49,7 +49,7 @@ class Score:
     doubted : float or None
         Share of visible frames with the mode OCCLUDED or LOST.
     doubted_in_full_view : float or None
-        The same of frames in which nothing is hidden.
+        Share of frames in which nothing is hidden, with the mode OCCLUDED or LOST.
     claimed_hidden : float or None
         Share of totally hidden frames with the mode TRACKING.
     longest_false_tracking : int

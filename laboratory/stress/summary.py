@@ -26,7 +26,7 @@ class Measure:
     Attributes
     ----------
     title : str
-        Its heading in tables.
+        Heading of the column in tables.
     unit : str
         ``px``, ``frames`` or empty for a share.
     of : callable
@@ -80,7 +80,7 @@ class Group:
 
     @property
     def scores(self) -> list[Score]:
-        """Their scores."""
+        """Scores of the runs."""
         return [result.score for result in self.results]
 
     @property

@@ -45,7 +45,7 @@ class StressSystem:
     Attributes
     ----------
     label : str
-        Its name in all tables.
+        Name of the system in all tables.
     make : callable
         Makes a new tracker for a seed. For several processes it has to be picklable: a function or
         a class of a module, or a `functools.partial` of one.
@@ -134,9 +134,9 @@ def variant_system(
     name : str
         As in the registry.
     parameters : mapping of str to Value or None
-        Those that differ from the defaults, by their dotted names.
+        Parameters that differ from the defaults, by their dotted names.
     label : str or None
-        Its name in tables; None takes `name`.
+        Name of the system in tables; None takes `name`.
 
     Raises
     ------

@@ -35,7 +35,7 @@ class Patch:
     image : (side, side, 3) array of uint8
         RGB.
     grey : (side, side) array of uint8
-        Its luminance.
+        Luminance of the patch.
     centre : (2,) array
         Point of the frame that the patch's centre shows, px.
     zoom : (2,) array

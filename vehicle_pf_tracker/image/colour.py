@@ -14,7 +14,6 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.bin_counting import areas, bin_counts, covered_region
 from vehicle_pf_tracker.image.window import Counted, CountedFeature, Positions, Window, bounds
 
-Histogram = npt.NDArray[np.float64]
 BinIndices = npt.NDArray[np.uint16]
 
 

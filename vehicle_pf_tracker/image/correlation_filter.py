@@ -54,9 +54,9 @@ class FilterWeights:
     target : (channels, rows, columns) array of float32
         The weights of the target's cells; outside they are zero.
     faded : (rows, channels, columns) array of float32
-        The same times the window that the image's cells are faded out by.
+        Weights of the target's cells times the window that an image's cells are faded out by.
     spectrum : (channels, n, n // 2 + 1) array of complex64
-        Their half spectrum.
+        Half spectrum of the weights.
     """
 
     target: CellFeatures

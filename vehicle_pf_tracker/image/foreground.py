@@ -35,7 +35,7 @@ _AROUND = 1.5
 _LEAST_CONTRAST = 12.0
 """Difference in grey levels from which a pixel is foreground, at least: that of a shadow's rim."""
 _NOISE_FACTOR = 4.0
-"""The same in units of the median difference around: that is two thirds of the
+"""Least difference of a foreground pixel in median differences around, each two thirds of the
 noise's standard deviation, so that the factor is 2.7 of these."""
 _GROWN = 1.3
 """Size of the box, of itself, whose inside an outline has mostly to lie in."""

@@ -17,8 +17,8 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.colour import Histogram, bin_count, bin_indices
-from vehicle_pf_tracker.image.similarity import Reference, bhattacharyya_coefficient
+from vehicle_pf_tracker.image.colour import bin_count, bin_indices
+from vehicle_pf_tracker.image.similarity import Histogram, Reference, bhattacharyya_coefficient
 from vehicle_pf_tracker.image.window import Centres, Coefficients, Positions, Window, centres
 
 Indices = npt.NDArray[np.intp]

@@ -14,6 +14,9 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 
+Histogram: TypeAlias = npt.NDArray[np.float64]
+"""Shares of bins, (bins,), whose sum is one."""
+
 
 def bhattacharyya_coefficient(p: Array, q: Array) -> Array:
     """Sum of ``sqrt(p q)`` over the bins (P1 eq. 24), from 0 (disjoint) to 1 (equal).
@@ -37,9 +40,6 @@ def hellinger_similarity(p: Array, q: Array) -> float:
     # Scalars without arrays: one pair of histograms in each frame.
     coefficient = min(float(np.sqrt(p * q).sum()), 1.0)
     return 1.0 - math.sqrt(max(1.0 - coefficient, 0.0))
-
-
-Histogram: TypeAlias = npt.NDArray[np.float64]
 
 
 class Reference:

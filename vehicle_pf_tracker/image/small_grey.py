@@ -29,7 +29,7 @@ class SmallGrey:
     image : (h, w) array of uint8
         Luminance.
     zoom : float
-        Its px per px of the frame, at most 1.
+        Px of the reduced frame per px of the frame, at most 1.
     """
 
     image: npt.NDArray[np.uint8]

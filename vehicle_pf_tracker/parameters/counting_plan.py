@@ -41,7 +41,7 @@ class CountingLine:
     name : str
         Name of the line.
     start, end : (float, float)
-        Its ends in px.
+        Ends of the line, px.
     directions : (str, str)
         Name of the crossing from the left to the right of a walk from `start` to `end` in the
         picture (over a line drawn from left to right: downwards), and of the one back.

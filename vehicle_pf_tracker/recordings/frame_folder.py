@@ -68,7 +68,7 @@ class FrameFolder(Footage):
     images : mapping of int to Path
         The image files by their numbers, in order.
     stamps : list of int
-        Their stamps in ns. Unless they are times since 1970, the first is at the start.
+        Stamps of the images, ns. Unless they are times since 1970, the first is at the start.
     truths : mapping of int to Truth
         The truth by the number of its image; empty where there is none.
 

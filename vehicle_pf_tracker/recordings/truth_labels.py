@@ -32,7 +32,7 @@ class Images:
     Attributes
     ----------
     numbers : sequence of int
-        Their numbers, in order.
+        Numbers of the images, in order.
     size : callable
         Reads the width and height in px.
     names : mapping of str to int

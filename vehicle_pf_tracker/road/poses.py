@@ -23,7 +23,7 @@ class Pose:
     Attributes
     ----------
     rotation : (3, 3) array
-        Its columns are the child's axes in the parent.
+        Rotation whose columns are the child's axes in the parent.
     position : (3,) array
         The child's origin in the parent, m.
     """

@@ -98,15 +98,23 @@ class Drive:
         self.seed = seed
         self.image_size = SIZES[parameters.resolution]
         self.width, self.height = (size + 2 * MARGIN for size in self.image_size)
-        self.rightward = parameters.heading == "right"
         self.road, self.opposite = self._roads()
-        self.scale = self.road.scale
         # Drawn in a fixed order below: another number here would change every scene.
         self.rng = stream(seed, "drive")
         self.faces = target_faces(parameters.vehicle, self.rng)
         self.target = Model(self.faces, self.scale)
         self.start = MARGIN + FREE + self.target.size[0] / 2 + self.rng.uniform(2, 6)
         self.pace = pace or Pace.steady(parameters.speed)
+
+    @property
+    def rightward(self) -> bool:
+        """True where the target drives to the right."""
+        return self.parameters.heading == "right"
+
+    @property
+    def scale(self) -> float:
+        """Size of the vehicles, px per metre."""
+        return self.road.scale
 
     @property
     def frame_count(self) -> int:

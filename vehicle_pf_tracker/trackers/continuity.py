@@ -82,7 +82,7 @@ class Continuity:
         size : (int, int)
             Width and height in px.
         stamp_ns : int
-            Its stamp in ns.
+            Stamp of the image, ns.
         timed : bool
             True where its stamp matters: not while nothing is tracked.
 

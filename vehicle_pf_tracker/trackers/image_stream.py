@@ -3,7 +3,7 @@
 
 """Admission of the images of one stream, with the time from one to the next.
 
-The same for one target and for many vehicles, offline and in the nodes.
+One way for one target and for many vehicles, offline and in the nodes.
 """
 
 from __future__ import annotations

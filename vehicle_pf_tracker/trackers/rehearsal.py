@@ -32,7 +32,7 @@ def rehearse(variant: Variant, parameters: Any) -> None:
     variant : Variant
         From the registry.
     parameters : dataclass
-        Its parameters.
+        Parameters of the variant.
     """
     width, height = _SIZE
     # Noise has edges and colours of every kind, so that no feature is empty.
