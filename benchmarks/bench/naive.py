@@ -12,7 +12,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.colour import Histogram
+from vehicle_pf_tracker.image.similarity import Histogram
 from vehicle_pf_tracker.image.window import Positions, Window
 
 _EDGE_SHARE = 0.3
