@@ -52,10 +52,10 @@ def shown_values(document: Any) -> Any:
 
 def short_name(source: str) -> str:
     """Return a name for the results of a source: its last part, or the host of an address."""
-    found = re.match(_SCHEME, source)
-    if found is None:
+    scheme = re.match(_SCHEME, source)
+    if scheme is None:
         return PurePosixPath(source).stem
-    host, _, path = shown(source)[found.end() :].partition("/")
+    host, _, path = shown(source)[scheme.end() :].partition("/")
     path = re.split(r"[?#]", path)[0]
     stem = PurePosixPath(unquote(path)).stem or re.split(r"[?#]", host)[0].rpartition("@")[2]
     return re.sub(r"[^\w.-]+", "_", stem).strip("_")

@@ -50,8 +50,8 @@ def fit_camera_motion(before: Array, after: Array) -> CameraMotion:
     before, after : (N, 2) arrays
         Corners in both frames, px.
     """
-    found = shared_similarity(before, after)
-    return CameraMotion(found[:, :2], found[:, 2])
+    similarity = shared_similarity(before, after)
+    return CameraMotion(similarity[:, :2], similarity[:, 2])
 
 
 class CameraFlow:

@@ -138,9 +138,9 @@ def _jpeg_size(data: bytes) -> tuple[int, int, int]:
     offset = 2
     size = (0, 0)
     # By lengths from marker to marker: thumbnails in segments have markers, too.
-    while found := _MARKER.search(data, offset):
-        marker = found[1][0]
-        offset = found.end()
+    while match := _MARKER.search(data, offset):
+        marker = match[1][0]
+        offset = match.end()
         if marker == _END:
             return *size, offset
         if marker in _ALONE:

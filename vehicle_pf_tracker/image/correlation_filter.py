@@ -117,14 +117,14 @@ class CorrelationFilter:
             Resistance against change; the first image is learnt without any.
         """
         if self.weights is None:
-            wanted = spectrum * self._label
+            right_side = spectrum * self._label
             stiffness = 0.0
             steps = _FIRST_STEPS
             growth = _FIRST_GROWTH
         else:
             # The gradient of the term that ties the filter to the one before (STRCF eq. 5).
             before = self.weights.spectrum * np.float32(stiffness)
-            wanted = spectrum * self._label + before
+            right_side = spectrum * self._label + before
             steps = _STEPS
             growth = _GROWTH
         conjugate = spectrum.conj()
@@ -136,7 +136,7 @@ class CorrelationFilter:
             penalty = self.penalty * growth**step
             # The multiplier is scaled by the penalty, which has just grown.
             multiplier = (multiplier - confined) * np.float32(1 / growth)
-            right = wanted + (confined - multiplier) * np.float32(penalty)
+            right = right_side + (confined - multiplier) * np.float32(penalty)
             # Solve (x x^H / places + total) f = right at each frequency (Sherman and Morrison).
             total = penalty + stiffness
             share = (conjugate * right).sum(axis=0) / (power + np.float32(self._cells**2 * total))

@@ -55,11 +55,13 @@ def find_lines(frame: Frame, windows: Bounds, edge_threshold: float, shortest: i
     grey = cv2.cvtColor(frame[top:bottom, left:right], cv2.COLOR_RGB2GRAY)
     # Hysteresis from a third: the usual ratio, which keeps a line whole where it fades.
     edges = cv2.Canny(grey, edge_threshold / 3, edge_threshold)
-    found = cv2.HoughLinesP(edges, 1, _ANGLE_STEP, shortest, minLineLength=shortest, maxLineGap=1)
-    if found is None:
+    segments = cv2.HoughLinesP(
+        edges, 1, _ANGLE_STEP, shortest, minLineLength=shortest, maxLineGap=1
+    )
+    if segments is None:
         return np.zeros((0, 4))
     # Hough names pixels; their centres lie half a pixel further. OpenCV 4 nests the rows.
-    return np.asarray(np.reshape(found, (-1, 4)) + np.array([left, top, left, top]) + 0.5)
+    return np.asarray(np.reshape(segments, (-1, 4)) + np.array([left, top, left, top]) + 0.5)
 
 
 def lengths_inside(segments: Segments, windows: Bounds) -> Array:

@@ -99,12 +99,12 @@ def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
 def _coefficients(spectrum: Spectrum) -> _Matrix:
     """Coefficients of cosines and sines along y, real and imaginary parts by turns along x."""
     half = spectrum.shape[-1] - 1
-    found = spectrum.copy()
+    coefficients = spectrum.copy()
     low = spectrum[..., 2 : half + 1, :]
     high = spectrum[..., half + 1 :, :]
-    found[..., 2 : half + 1, :] += high
-    np.multiply(low - high, np.complex64(1j), out=found[..., half + 1 :, :])
-    return np.asarray(found.view(np.float32))
+    coefficients[..., 2 : half + 1, :] += high
+    np.multiply(low - high, np.complex64(1j), out=coefficients[..., half + 1 :, :])
+    return np.asarray(coefficients.view(np.float32))
 
 
 @functools.cache

@@ -82,9 +82,9 @@ class Stillness:
         return [SENTENCE] if self.is_suspect and not was_suspect else []
 
     def _is_elsewhere(self, box: Box) -> bool:
-        way = math.dist(self._first.centre, box.centre)
+        distance = math.dist(self._first.centre, box.centre)
         growth = box.width / self._first.width
-        return way > _DRIVEN * self._first.width or not 1 / _GROWN < growth < _GROWN
+        return distance > _DRIVEN * self._first.width or not 1 / _GROWN < growth < _GROWN
 
     def _compare(self, frame: Frame, box: Box) -> bool:
         """Return whether the image, without the target, shows a movement since the last look."""

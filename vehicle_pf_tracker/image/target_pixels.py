@@ -37,14 +37,14 @@ def doubts(frame: Frame, box: Box) -> list[str]:
         Target in px, at least partly inside.
     """
     width, height = frame_size(frame)
-    found = []
+    objections = []
     if min(box.width, box.height) < SMALLEST_SIDE:
-        found.append(f"it is only {box.width:g} x {box.height:g} px large")
+        objections.append(f"it is only {box.width:g} x {box.height:g} px large")
     if box.area > LARGEST_SHARE * width * height:
-        found.append(f"it covers {box.area / (width * height):.0%} of the image")
+        objections.append(f"it covers {box.area / (width * height):.0%} of the image")
     if contrast(frame, box) < LEAST_CONTRAST:
-        found.append("nothing in it stands out, as on an empty road")
-    return found
+        objections.append("nothing in it stands out, as on an empty road")
+    return objections
 
 
 def contrast(frame: Frame, box: Box) -> float:

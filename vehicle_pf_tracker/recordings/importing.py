@@ -95,10 +95,10 @@ def _check_truth(footage: Footage, truths: int) -> None:
 
 
 def _pictures(footage: Footage) -> Iterator[Picture]:
-    for found in footage.frames():
-        if not isinstance(found, Picture):
+    for picture in footage.frames():
+        if not isinstance(picture, Picture):
             raise InputError(footage.notices[-1])
-        yield found
+        yield picture
 
 
 def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:

@@ -47,7 +47,7 @@ def merged_messages(
     on_damage : callable
         Called with a block that cannot be read; reading goes on after it.
     """
-    wanted = [
+    chosen = [
         {number for number, one in index.channels.items() if topics is None or one.topic in topics}
         for index in files
     ]
@@ -58,7 +58,7 @@ def merged_messages(
         for block in index.blocks
         if block.end_ns >= first_ns
         and block.start_ns < end_ns
-        and (block.channels is None or block.channels & wanted[number])
+        and (block.channels is None or block.channels & chosen[number])
     ]
     heapq.heapify(heap)
     while heap:
@@ -69,7 +69,7 @@ def merged_messages(
         try:
             for place, message in enumerate(files[number].read(files[number].path, item)):
                 if (
-                    message.channel_id in wanted[number]
+                    message.channel_id in chosen[number]
                     and first_ns <= message.log_time_ns < end_ns
                 ):
                     heapq.heappush(heap, (message.log_time_ns, number, offset, place, message))

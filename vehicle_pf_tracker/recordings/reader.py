@@ -91,7 +91,7 @@ class Recording:
 
     def __init__(self, path: Path | str, topic: str | None = None) -> None:
         self.path = Path(path)
-        files, found = recording_files(self.path)
+        files, irregularities = recording_files(self.path)
         self.files = [
             read_sqlite_index(file) if file.suffix == SQLITE else read_index(file) for file in files
         ]
@@ -105,7 +105,7 @@ class Recording:
         blocks = [block for index in self.files for block in index.blocks]
         self.start_ns = min(block.start_ns for block in blocks)
         self.end_ns = max(block.end_ns for block in blocks)
-        self._notices = ReadNotices(self.path, self.image_topic, found, self.files)
+        self._notices = ReadNotices(self.path, self.image_topic, irregularities, self.files)
 
     @property
     def notices(self) -> list[str]:
@@ -123,15 +123,15 @@ class Recording:
             If no image can be read.
         """
         # Held back until one can be read, so that a recording of rubbish is an error.
-        held: list[StampedFrame] = []
+        unsent: list[StampedFrame] = []
         readable = False
         count = 0
         for count, (_, message) in enumerate(self._select({self.image_topic}), start=1):
-            held.append(self._decode_or_note(message))
-            readable = readable or held[-1].frame is not None
+            unsent.append(self._decode_or_note(message))
+            readable = readable or unsent[-1].frame is not None
             if readable:
-                yield from held
-                held.clear()
+                yield from unsent
+                unsent.clear()
             elif count == _UNREADABLE_IN_A_ROW:
                 break
         else:
@@ -161,14 +161,14 @@ class Recording:
         if not self._has_truth():
             return None
         early: list[tuple[McapIndex, Message]] = []
-        for found in self._select(messages.TRUTH_TOPICS):
+        for entry in self._select(messages.TRUTH_TOPICS):
             # Topics of one stamp may be recorded some time apart.
-            if early and found[1].log_time_ns > early[0][1].log_time_ns + 500_000_000:
+            if early and entry[1].log_time_ns > early[0][1].log_time_ns + 500_000_000:
                 break
-            early.append(found)
+            early.append(entry)
         # By the stamp, not by the time of recording: topics of one stamp come one after the other.
         stamps = [header_stamp_ns(message.data) or 0 for _, message in early]
-        first = [found for found, stamp in zip(early, stamps, strict=True) if stamp == min(stamps)]
+        first = [entry for entry, stamp in zip(early, stamps, strict=True) if stamp == min(stamps)]
         return next(iter(self._assemble(first)), None)
 
     def messages(
@@ -225,15 +225,15 @@ class Recording:
 
     def _has_truth(self) -> bool:
         """Return whether there is truth; raise if its topics are there but cannot hold any."""
-        found = [info for info in self.topics if info.name in messages.TRUTH_TOPICS]
-        for info in found:
+        truth_topics = [info for info in self.topics if info.name in messages.TRUTH_TOPICS]
+        for info in truth_topics:
             expected = messages.TRUTH_TYPES[info.name]
             if not info.is_cdr or info.type_name != expected:
                 kind = info.type_name or "an unknown type"
                 raise InputError(f"the truth topic {info.name} carries {kind}, not {expected}")
-        if found and not any(info.message_count for info in found):
+        if truth_topics and not any(info.message_count for info in truth_topics):
             raise InputError(f"the truth topics of {self.path} are empty")
-        return bool(found)
+        return bool(truth_topics)
 
     def _assemble(self, found: Iterable[tuple[McapIndex, Message]]) -> tuple[Truth, ...]:
         by_topic = ((index.channels[one.channel_id].topic, one.data) for index, one in found)

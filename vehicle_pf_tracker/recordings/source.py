@@ -77,10 +77,10 @@ def frame_at(
         If there are fewer frames, or it cannot be read.
     """
     count = 0
-    for count, found in enumerate(source.frames(), start=1):
+    for count, picture in enumerate(source.frames(), start=1):
         progress(count, number)
         if count == number:
-            if found.frame is None:
+            if picture.frame is None:
                 raise InputError(f"frame {number} cannot be read")
-            return found.frame
+            return picture.frame
     raise InputError(f"there is no frame {number}; the source has {count}")

@@ -39,14 +39,14 @@ class TopicInfo:
 
 def list_topics(files: Sequence[McapIndex]) -> tuple[TopicInfo, ...]:
     """List the topics of a recording, several channels of one topic added up."""
-    found: dict[str, TopicInfo] = {}
+    by_name: dict[str, TopicInfo] = {}
     for index in files:
         for channel_id, channel in index.channels.items():
             count = index.counts[channel_id]
             # A file that was split, or a publisher that restarted, has a channel more.
-            known = found.get(channel.topic) or _describe(index, channel)
-            found[channel.topic] = replace(known, message_count=known.message_count + count)
-    return tuple(found.values())
+            known = by_name.get(channel.topic) or _describe(index, channel)
+            by_name[channel.topic] = replace(known, message_count=known.message_count + count)
+    return tuple(by_name.values())
 
 
 def choose_image_topic(path: Path, topics: Sequence[TopicInfo], wanted: str | None) -> TopicInfo:
@@ -59,20 +59,20 @@ def choose_image_topic(path: Path, topics: Sequence[TopicInfo], wanted: str | No
     """
     images = [topic for topic in topics if topic.is_image]
     if wanted is not None:
-        found = next((topic for topic in topics if topic.name == wanted), None)
-        if found is None:
+        chosen = next((topic for topic in topics if topic.name == wanted), None)
+        if chosen is None:
             names = _listed(images)
             raise InputError(
                 f"the recording {path} has no topic {wanted}; its image topics are: {names}"
             )
-        if not found.is_image:
+        if not chosen.is_image:
             raise InputError(
-                f"the topic {wanted} of {path} carries {found.type_name or 'an unknown type'}, "
+                f"the topic {wanted} of {path} carries {chosen.type_name or 'an unknown type'}, "
                 f"no images; the image topics are: {_listed(images)}"
             )
-        if not found.message_count:
+        if not chosen.message_count:
             raise InputError(f"the image topic {wanted} of {path} has no messages")
-        return found
+        return chosen
     # Recorders list topics on which nothing came: those are no choice.
     filled = [topic for topic in images if topic.message_count]
     if not filled:

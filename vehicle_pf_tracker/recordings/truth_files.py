@@ -221,12 +221,12 @@ def _check_fit(table: Table, path: Path, images: Images) -> list[str]:
     except InputError:  # of an image that cannot be read, which is said elsewhere
         return notices
     boxes = [(row.box.x, row.box.y, row.box.width, row.box.height) for row in table.values()]
-    found = misfit(np.array(boxes), size)
-    if found is None:
+    doubt = misfit(np.array(boxes), size)
+    if doubt is None:
         return notices
-    if found.is_fatal:
-        raise InputError(f"the truth {path} does not fit the images: {found.sentence}")
-    return [*notices, f"the truth {path} may not fit the images: {found.sentence}"]
+    if doubt.is_fatal:
+        raise InputError(f"the truth {path} does not fit the images: {doubt.sentence}")
+    return [*notices, f"the truth {path} may not fit the images: {doubt.sentence}"]
 
 
 def _row(label: Label) -> tuple[int, int, Truth | None]:

@@ -203,17 +203,17 @@ def plug_ins() -> Mapping[str, Variant]:
     """
     from importlib.metadata import entry_points  # noqa: PLC0415 - 30 ms
 
-    found: dict[str, Variant] = {}
+    by_name: dict[str, Variant] = {}
     for point in entry_points(group=PLUG_INS):
         owner = f"plug-in of {point.dist.name} {point.dist.version}" if point.dist else "plug-in"
         # A name that is taken would decide by chance what users get.
-        if point.name in NODES or point.name in found or not point.name.isidentifier():
+        if point.name in NODES or point.name in by_name or not point.name.isidentifier():
             words = "%r, a %s, is left out: its name is taken, or is not of letters, digits and _"
             logging.getLogger(__name__).warning(words, point.name, owner)
             continue
         classes = point.value.removesuffix("Tracker")
-        found[point.name] = Variant(point.name, classes, owner, "")
-    return found
+        by_name[point.name] = Variant(point.name, classes, owner, "")
+    return by_name
 
 
 def make_tracker(variant: str = "fusion", **parameters: Any) -> BaseTracker[Any]:
@@ -237,5 +237,5 @@ def make_tracker(variant: str = "fusion", **parameters: Any) -> BaseTracker[Any]
     """
     from vehicle_pf_tracker.parameters.table import from_mapping  # noqa: PLC0415 - needs libraries
 
-    found = find_variant(variant)
-    return found.tracker(from_mapping(found.parameters, parameters))
+    entry = find_variant(variant)
+    return entry.tracker(from_mapping(entry.parameters, parameters))
