@@ -18,9 +18,10 @@ import pytest
 import yaml
 from small_recordings import COUNT, frame_folder, frame_of, record
 
-from vehicle_pf_tracker.cli import pick
+from vehicle_pf_tracker.cli import pick, pick_page
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.cli.pick import USES, Editor, FrameStore
+from vehicle_pf_tracker.cli.pick_page import Editor, FrameStore
+from vehicle_pf_tracker.cli.picked_shapes import USES
 from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
 from vehicle_pf_tracker.recordings.reader import StampedFrame
@@ -59,7 +60,7 @@ def answered(monkeypatch):
             threading.Thread(target=answer, args=(url,)).start()
 
         monkeypatch.setenv("DISPLAY", ":0")
-        monkeypatch.setattr(pick.webbrowser, "open", open_browser)
+        monkeypatch.setattr(pick_page.webbrowser, "open", open_browser)
 
     return use
 
@@ -216,7 +217,7 @@ def test_a_browser_that_hangs_up_is_not_a_fault(server, capsys):
 def test_without_a_display_no_browser_is_started(monkeypatch, tmp_path, capsys):
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    monkeypatch.setattr(pick.webbrowser, "open", lambda url: pytest.fail("opened"))
+    monkeypatch.setattr(pick_page.webbrowser, "open", lambda url: pytest.fail("opened"))
     monkeypatch.setattr(Editor, "serve_forever", lambda server, poll_interval: None)
     assert main(["pick", str(record(tmp_path / "bag"))]) == 2
     assert "open http://127.0.0.1:" in capsys.readouterr().out

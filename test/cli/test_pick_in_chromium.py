@@ -9,7 +9,8 @@ from pathlib import Path
 from small_recordings import COUNT, record
 
 from vehicle_pf_tracker.cli import pick
-from vehicle_pf_tracker.cli.pick import USES, Editor, FrameStore
+from vehicle_pf_tracker.cli.pick_page import Editor, FrameStore
+from vehicle_pf_tracker.cli.picked_shapes import USES
 from vehicle_pf_tracker.recordings.source import open_source
 
 _HANDS = """

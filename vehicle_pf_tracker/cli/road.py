@@ -11,8 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.console import counting, tell_notices
+from vehicle_pf_tracker.cli.pick_page import ask
+from vehicle_pf_tracker.cli.picked_shapes import PAIR_FORM, PAIRS, pair_of
 from vehicle_pf_tracker.cli.requests import (
     OverwriteOption,
     SourceOptions,
@@ -57,7 +58,7 @@ class Request(SourceOptions, OverwriteOption, _Action):
         help="a pixel and the point of the road that it shows, px and m; repeatable; without pairs "
         "a page is served on which to click them",
     )  # fmt: skip
-    file: Path | None = option("--pairs", help=f"YAML file with pairs: [{pick.PAIR_FORM}]")
+    file: Path | None = option("--pairs", help=f"YAML file with pairs: [{PAIR_FORM}]")
     intrinsics: str = option(
         default="", metavar="FX,FY,CX,CY",
         help="focal lengths and principal point of the camera, px, as in CameraInfo",
@@ -82,7 +83,7 @@ def run(request: Request) -> int:
     """Fit, print the residuals, and write parameters and picture."""
     pairs = parse_pairs(";".join(request.pairs))
     if request.file:
-        pairs += tuple(read_list(request.file, pick.PAIRS, pick.PAIR_FORM, pick.pair_of))
+        pairs += tuple(read_list(request.file, PAIRS, PAIR_FORM, pair_of))
     source = request.open_source()
     inputs = (request.source, request.file)
     with claimed((request.grid, request.output), inputs, overwrite=request.overwrite):
@@ -93,8 +94,8 @@ def _calibrate(request: Request, source: ImageSource, pairs: tuple[Pair, ...]) -
     with counting("read") as progress:
         frame = frame_at(source, request.frame, progress)
     if not pairs:
-        drawn = pick.ask(source, [pick.PAIRS], request.frame)
-        pairs = tuple(map(pick.pair_of, drawn[pick.PAIRS]))
+        drawn = ask(source, [PAIRS], request.frame)
+        pairs = tuple(map(pair_of, drawn[PAIRS]))
     session = _session(request, pairs)
     road = session.road
     plane = road.plane(road.lens, None)

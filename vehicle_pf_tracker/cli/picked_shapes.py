@@ -1,0 +1,73 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Shapes that were drawn with `pick`: sections of a file, read as their users read them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, TypeAlias
+
+from vehicle_pf_tracker.cli.target_options import TARGET_FORM, list_in, target_of
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.parameters.counting_plan import parse_counting_plan
+from vehicle_pf_tracker.parameters.road import format_pairs
+from vehicle_pf_tracker.road.plane import Pair
+
+Document: TypeAlias = dict[str, Any]
+"""Drawn shapes by section, as in a file of `pick`."""
+
+PAIR_FORM = "{pixel: [u, v], road: [x, y]}, …"
+"""Form of the entries of `PAIRS`, for errors."""
+TARGETS = "targets"
+"""Section of the boxes that vehicles are in at first."""
+PAIRS = "pairs"
+"""Section of pixels with the points of the road that they show."""
+USES: Mapping[str, str] = {
+    TARGETS: "run --targets",
+    **dict.fromkeys(("lines", "zones", "roi"), "traffic --lines"),
+    PAIRS: "road calibrate --pairs",
+}
+"""Verb and option that read a section of the file."""
+
+
+def pair_of(entry: Mapping[str, Any]) -> Pair:
+    """Read a pixel and the point of the road that it shows, as `PAIR_FORM` has them."""
+    (u, v), (x, y) = (map(float, entry[key]) for key in ("pixel", "road"))
+    if not all(map(math.isfinite, (u, v, x, y))):
+        raise ValueError(entry)
+    return Pair((u, v), (x, y))
+
+
+def checked(document: Any, where: str) -> Document:
+    """Return the sections that hold something, after they were read as their users read them.
+
+    Raises
+    ------
+    InputError
+        If one cannot be used.
+    """
+    if not isinstance(document, dict) or not set(document) <= set(USES):
+        raise InputError(f"{where} has other sections than {', '.join(USES)}")
+    found = {key: body for key, body in document.items() if body}
+    for key, form, read in ((TARGETS, TARGET_FORM, target_of), (PAIRS, PAIR_FORM, pair_of)):
+        if key in found:
+            list_in(found, where, key, form, read)
+    plan = {key: body for key, body in found.items() if key not in {TARGETS, PAIRS}}
+    if plan:
+        try:
+            parse_counting_plan(plan)
+        except InputError as error:
+            raise InputError(f"{where}: {error}") from None
+    return found
+
+
+def words_of(document: Document) -> str:
+    """Write targets and pairs as words of a command."""
+    words = [
+        f"--target {one.name}@{one.frame}:{one.box}"
+        for one in map(target_of, document.get(TARGETS, ()))
+    ]
+    pairs = [f"--pair {format_pairs((pair_of(one),))}" for one in document.get(PAIRS, ())]
+    return " ".join([*words, *pairs])
