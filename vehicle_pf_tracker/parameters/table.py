@@ -35,6 +35,10 @@ EFFECTS: Mapping[Effect, str] = {
     "starts": "starts again on the new target",
 }
 
+# A value in an error is cut to 80 letters: it may be a whole file.
+_BRIEF = reprlib.Repr()
+_BRIEF.maxstring = _BRIEF.maxother = _BRIEF.maxlong = 80
+
 _KEY = "parameter"
 _BOOLEANS = {"true": True, "1": True, "yes": True, "false": False, "0": False, "no": False}
 _TYPE_NAMES = {bool: "true or false", int: "an integer", float: "a number", str: "a string"}
@@ -282,10 +286,6 @@ def parse_assignments(
             raise InputError(unknown_name(name, table))
         values[name] = table[name].parse(text)
     return values
-
-
-_BRIEF = reprlib.Repr()
-_BRIEF.maxstring = _BRIEF.maxother = _BRIEF.maxlong = 80
 
 
 def _shown(value: object) -> str:
