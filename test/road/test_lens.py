@@ -59,6 +59,12 @@ def test_no_ray_beyond_the_fold():
     assert np.isnan(lens.to_ideal(np.array([56.0, 0.0]))).all()
 
 
+def test_of_several_pixels_only_those_without_a_ray_have_none():
+    lens = Lens((100.0, 100.0), (-0.5, -0.5), "plumb_bob", (-0.5, 0.0, 0.0, 0.0))
+    found = lens.to_ideal(np.array([[54.0, 0.0], [56.0, 0.0], [0.0, 30.0]]))
+    assert np.isnan(found).all(axis=1).tolist() == [False, True, False]
+
+
 def test_without_distortion_pixels_stay_to_the_bit():
     lens = Lens(FOCAL, CENTRE, "plumb_bob", (0.0,) * 5)
     assert lens.to_ideal(PIXELS) is PIXELS
