@@ -93,3 +93,9 @@ def test_a_long_narrow_lane_is_enough():
     pixels = 800 * np.column_stack([metres[:, 0], below]) / depth[:, np.newaxis]
     found = fit_homography(pixels, metres)
     assert found.to_road(pixels) == pytest.approx(metres, abs=1e-6)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_pixel_on_the_horizon_is_not_finite_and_no_warning():
+    found = Homography(np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -0.25, 1.0]]))
+    assert not np.isfinite(found.to_road(np.array([3.0, 4.0]))).any()
