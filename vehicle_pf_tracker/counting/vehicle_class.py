@@ -21,7 +21,7 @@ _LONGEST = 60
 
 @dataclass(slots=True)
 class _Vote:
-    """What is known of one vehicle's class."""
+    """Votes for the class of one vehicle."""
 
     label: str
     steady: int = 0

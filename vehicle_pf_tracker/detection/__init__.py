@@ -1,4 +1,4 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""What detectors see in an image: motion before a standing camera, and boxes of networks."""
+"""Detectors: motion before a standing camera, and boxes of networks."""

@@ -95,7 +95,7 @@ class Step:
 
 
 class Prediction(NamedTuple):
-    """What a prediction tells beside the state that is predicted.
+    """Findings of a prediction, beside the state that is predicted.
 
     Attributes
     ----------

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a detector has seen is given to the vehicles, and what is left over may be new ones."""
+"""Detections of an image given to the vehicles; those left over may be new ones."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""What usually becomes of what a detector does not see, learnt from how it went."""
+"""Shares learnt from what a detector misses: how much returns, by place, and how much it finds."""
 
 from __future__ import annotations
 

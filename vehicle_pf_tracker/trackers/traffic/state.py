@@ -31,7 +31,7 @@ _FOCAL = 1.2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Experience:
-    """What this camera has taught, by place: all that changes in place.
+    """Experience with this camera, by place: all that changes in place.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Experience:
 
 
 class State(NamedTuple):
-    """What is known after a frame.
+    """State of the tracker after a frame.
 
     Attributes
     ----------

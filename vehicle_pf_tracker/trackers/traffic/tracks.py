@@ -178,7 +178,7 @@ class Absences(Rows):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Looks(Rows):
-    """What N vehicles look like.
+    """Appearance of N vehicles, and their latest detections.
 
     Attributes
     ----------
@@ -200,7 +200,7 @@ class Looks(Rows):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sights(Rows):
-    """What is in sight of N vehicles.
+    """Visibility of N vehicles.
 
     Attributes
     ----------
