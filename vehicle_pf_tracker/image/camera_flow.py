@@ -20,6 +20,9 @@ _LEAST_SIDE = 32
 """Side of the reduced frame in px below which its corners are too close to define a motion."""
 _GRID = (8, 6)
 """Cells along x and y that give one corner each, so that no lorry gives most of them."""
+_ENOUGH = 16
+"""Corners followed below which others are found, a third of the grid's: fewer may all be on one
+side of the image, and tell no zoom."""
 _BORDER = 6
 """Margin in px without corners: a flow window, or most of one."""
 _LEAST_STRENGTH = 1e-4
@@ -60,6 +63,7 @@ class CameraFlow:
     def __init__(self) -> None:
         self._last: npt.NDArray[np.uint8] | None = None
         self._corners = np.empty((0, 2), np.float32)
+        self._number_found = _ENOUGH
         self._age = 0.0
         self._still = 0
         self._motion = CameraMotion()
@@ -110,8 +114,10 @@ class CameraFlow:
     ) -> npt.NDArray[np.float32]:
         """Corners outside the target, found again now and then, (N, 2)."""
         self._age += 1
-        if self._age >= _REFRESHED_AFTER or len(self._corners) < _GRID[0] * _GRID[1] // 3:
+        # Where few were found, as on a bare road, the same few would be found in every frame.
+        if self._age >= _REFRESHED_AFTER or len(self._corners) < min(_ENOUGH, self._number_found):
             self._corners = _find_corners(grey)
+            self._number_found = len(self._corners)
             self._age = 0.0
         x, y = self._corners[:, 0] / zoom, self._corners[:, 1] / zoom
         middle_x, middle_y = target.centre
