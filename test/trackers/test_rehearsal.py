@@ -21,7 +21,7 @@ variant = VARIANTS[sys.argv[1]]
 rehearse(variant, variant.parameters())
 print(*sorted(name.rpartition(".")[2] for name in sys.modules if ".kernels.numba_" in name))
 """
-SHARED = {"numba_jit", "numba_kernels", "numba_pixel_cells"}
+SHARED = {"numba_jit", "numba_kernels", "numba_pixel_cells", "numba_types"}
 
 
 @pytest.mark.parametrize(

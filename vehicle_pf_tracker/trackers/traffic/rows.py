@@ -30,13 +30,26 @@ class Rows:
 
     def take(self: RowsT, rows: Integers | Bools) -> RowsT:
         """Those at `rows`, in this order."""
-        values = [getattr(self, name) for name in self.__dataclass_fields__]
-        return type(self)(
-            *[value[rows] if type(value) is np.ndarray else value.take(rows) for value in values]
-        )
+        return self if self._are_all(rows) else self._taken(rows)
 
     def put(self: RowsT, rows: Integers | Bools, others: RowsT) -> RowsT:
         """All, of which those at `rows` are others."""
+        return others if self._are_all(rows) else self._with(rows, others)
+
+    def _are_all(self, rows: Integers | Bools) -> bool:
+        """Test for all rows in their order: the usual case, in which no array has to be copied."""
+        count = len(self)
+        if len(rows) != count:
+            return False
+        return bool(rows.all() if rows.dtype == np.bool_ else (rows == np.arange(count)).all())
+
+    def _taken(self: RowsT, rows: Integers | Bools) -> RowsT:
+        values = [getattr(self, name) for name in self.__dataclass_fields__]
+        return type(self)(
+            *[value[rows] if type(value) is np.ndarray else value._taken(rows) for value in values]
+        )
+
+    def _with(self: RowsT, rows: Integers | Bools, others: RowsT) -> RowsT:
         replaced = []
         for name in self.__dataclass_fields__:
             value = getattr(self, name)
@@ -45,7 +58,7 @@ class Rows:
                 changed = value.copy()
                 changed[rows] = new
             else:
-                changed = value.put(rows, new)
+                changed = value._with(rows, new)
             replaced.append(changed)
         return type(self)(*replaced)
 
