@@ -85,6 +85,9 @@ def test_a_node_is_fed_and_its_numbers_compared(
     assert node.calls == ["terminate", "wait"]
     out = capsys.readouterr().out
     assert f"the node's numbers {said}" in out
+    assert f"errors over time are in {tmp_path}/evaluation/figures/errors_recording.png" in out
+    assert words[-1][-4:-2] == ["--figures", "png"]
+    assert f"{tmp_path}/offline/summary.png has its key frames" in out
     assert f"+ vehicle-pf-tracker synth highway {tmp_path / 'recording'}\n" in out
 
 

@@ -17,6 +17,7 @@ from pathlib import Path
 from vehicle_pf_tracker.cli.console import PROGRAM, tell_notice
 from vehicle_pf_tracker.cli.missing_modules import EVALUATION_MODULES
 from vehicle_pf_tracker.cli.requests import OverwriteOption, option
+from vehicle_pf_tracker.cli.run import SHEET
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.results.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.results.run_folder import ESTIMATES
@@ -66,11 +67,13 @@ def run(request: Request) -> int:
         same = _numbers(Path(ros)) == _numbers(Path(offline))
         print(f"the node's numbers are {'' if same else 'NOT '}those of `run`")
     if all(importlib.util.find_spec(name) for name in EVALUATION_MODULES):
-        scores = str(folder / "evaluation")
-        _verb("evaluate", recording, "--variants", "fusion,apf,pf", "--seeds", "3", "-o", scores)
+        scores = folder / "evaluation"
+        words = ["--variants", "fusion,apf,pf", "--seeds", "3", "--figures", "png"]
+        _verb("evaluate", recording, *words, "-o", str(scores))
+        print(f"errors over time are in {scores / 'figures' / 'errors_recording.png'}")
     else:
         tell_notice("nothing is scored without the extra [evaluation]")
-    print(f"the video is {video}")
+    print(f"the video is {video}, and {folder / 'offline' / SHEET} has its key frames")
     return 0 if same else 1
 
 
