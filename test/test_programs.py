@@ -47,6 +47,10 @@ class Program(NamedTuple):
 BATTERY = "{toy}/sequences --workers 1 -o {out}"
 ONE_CASE = "--seeds 1 --hard 1"
 PROGRAMS = {
+    "laboratory.count_trust": Program(
+        "toy={toy}/traffic=good,motion two={toy}/traffic=poor@.2 -o {out}",
+        ("calibration.md", "left_out.md", "runs.jsonl"),
+    ),
     "laboratory.fusion_ablation": Program(
         f"{BATTERY} --changes no_camera_motion",
         ("ablation.md", "ablation.jsonl"),

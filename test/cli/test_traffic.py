@@ -155,8 +155,12 @@ def test_counts_at_lines_and_in_zones(run, tmp_path, capsys):
     assert speeds == pytest.approx([75.0, 75.0])  # 3 px in 0.04 s
     info = json.loads((out / "run.json").read_text())["summary"]
     assert {"place": "exit", "direction": "down", "class": "car", "count": 2} in info["counts"]
+    both = [(one["class"], one["direction"]) for one in info["intervals"]]
+    assert both == [(None, "down"), ("car", "down"), (None, "up")]
+    downs = [one for one in info["intervals"] if one["direction"] == "down"]
+    assert all(one["low"] <= 2 <= one["high"] for one in downs)
     text = capsys.readouterr().out
-    assert "line exit: 2 down (2 car), 0 up" in text
+    assert "line exit: 2 down (2 car), 0 up; 90 % intervals " in text
     assert "zone yard: 0 entered, 2 left" in text
 
 
@@ -364,8 +368,8 @@ def test_a_page_shows_picture_and_counts_meanwhile(run, monkeypatch, tmp_path, c
             {"title": "in view", "columns": ["class", "vehicles"], "rows": [["car", 2]]},
             {
                 "title": "lines",
-                "columns": ["line", "direction", "counted", "last minute", "km/h"],
-                "rows": [["exit", "down", 0, 0, None], ["exit", "up", 0, 0, None]],
+                "columns": ["line", "direction", "counted", "last minute", "km/h", "90 %"],
+                "rows": [["exit", to, 0, 0, None, "0 to 0"] for to in ("down", "up")],
             },
             {
                 "title": "zones",

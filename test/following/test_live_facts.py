@@ -52,8 +52,8 @@ def test_lines_have_counts_per_minute_and_mean_speed():
     facts = traffic_facts(counter, recent, estimates, "0:03.0, frame 75")
     assert facts["summary"] == "0:03.0, frame 75, 2 vehicles in view, 1 hidden"
     (lines,) = [table for table in facts["tables"] if table["title"] == "lines"]
-    assert lines["rows"][0] == ("gate", "in", 0, 3, "35")
-    assert lines["rows"][1] == ("gate", "out", 0, 0, None)
+    assert lines["rows"][0] == ("gate", "in", 0, 3, "35", "0 to 0")
+    assert lines["rows"][1] == ("gate", "out", 0, 0, None, "0 to 0")
     json.dumps(facts)
 
 

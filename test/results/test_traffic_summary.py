@@ -224,7 +224,10 @@ def test_two_wheelers_have_counts_of_their_own():
     assert counter.count("line", "in") == 2
     first, *_, last = summary.sentences()
     assert first == "2 vehicles in 20 frames, at most 2 at once (1 car) besides 1 bicycle"
-    assert last == "line line: 2 in (1 car) besides 1 bicycle, 0 out"
+    assert last.startswith("line line: 2 in (1 car) besides 1 bicycle, 0 out; 90 % intervals ")
+    assert {(one["class"], one["low"] > 0) for one in summary.to_json()["intervals"]} == {
+        (None, True), ("car", True), ("bicycle", True), (None, False),
+    }  # fmt: skip
     document = summary.to_json()
     assert (document["vehicles"], document["counted_apart"]) == (2, {"bicycle": 1})
     assert {"place": "line", "direction": "in", "class": "bicycle", "count": 1} in document[

@@ -14,7 +14,7 @@ from vehicle_pf_tracker.trackers.traffic.session import DetectionTotals
 
 _AMBIGUOUS = 0.35
 """Share of images with ambiguous blobs above which a network counts better: on clips with truth, at
-.28 and .30 counts at lines were within one of ten, at .45 and above a third or more was missed."""
+.28 and .30 counts at lines were within one of ten, from .45 on a tenth to all were missed."""
 _OWN = "--detector"
 """Option that chooses motion, and cannot stand beside `--model`."""
 

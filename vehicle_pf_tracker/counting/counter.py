@@ -10,11 +10,14 @@ from collections import Counter as Tally
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 
+from vehicle_pf_tracker.counting.count_signs import Sign
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.counting.foot_point import FootPoint
 from vehicle_pf_tracker.counting.line_watch import LineEdge, LineWatch
 from vehicle_pf_tracker.counting.plausibility import Life, Plausibility
 from vehicle_pf_tracker.counting.recent_path import RecentPath
+from vehicle_pf_tracker.counting.sign_tally import PlacedSign, SignTally
+from vehicle_pf_tracker.counting.trust import OF_BLOBS, OF_BOXES
 from vehicle_pf_tracker.counting.zone_watch import ZONE_ENTRY, ZONE_EXIT, ZoneEdge, ZoneWatch
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
 from vehicle_pf_tracker.road.plane import RoadPlane
@@ -23,6 +26,10 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMod
 _REMEMBERED_NS = 600 * 10**9
 """Time in ns that a vehicle which is not among the estimates is remembered: the longest that a
 tracker keeps the number of a lost one for."""
+
+_PROMISING = 4
+"""Detections of a track that was never confirmed by which it may have been a vehicle: by chance
+false alarms follow each other twice or three times."""
 
 CONFIRMED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
 """Modes of vehicles that count."""
@@ -42,6 +49,7 @@ class _Vehicle:
     last_ns: int
     life: Life
     is_confirmed: bool = False
+    label: str = ""
     waiting: list[Crossing] = field(default_factory=list)
     counted: set[tuple[str, str]] = field(default_factory=set)
 
@@ -55,6 +63,16 @@ class _Vehicle:
             (zone.zone.name, *at) for zone in self.zones for at in zone.follow(foot, self.path)
         ]
         return lines + zones
+
+    def missed(self, *, has_ended: bool) -> list[PlacedSign]:
+        """Return signs of crossings that do not count, and may be true."""
+        if not self.is_confirmed:
+            if not has_ended or self.life.detected < _PROMISING:
+                return []
+            places = [(one.place, one.direction) for one in self.waiting]
+            return [(*at, self.label, Sign.UNCONFIRMED) for at in places]
+        found = [(line.line.name, line.missed(has_ended=has_ended)) for line in self.lines]
+        return [(name, one[0], self.label, one[1]) for name, one in found if one is not None]
 
     def join(self, other: _Vehicle) -> _Passages:
         """Go on as the track that it turned out to be after it was hidden.
@@ -122,6 +140,7 @@ class Counter:
         self._occupancy = {zone.name: 0 for zone in plan.zones}
         self._last_ns: int | None = None
         self._before_ns: int | None = None
+        self._signs = SignTally()
 
     @property
     def directions(self) -> Mapping[str, tuple[str, str]]:
@@ -148,6 +167,25 @@ class Counter:
         classes = self.by_class(place, direction).items()
         return sum(number for label, number in classes if self.is_vehicle(label))
 
+    def signs(self, place: str, direction: str, label: str | None = None) -> Tally[Sign]:
+        """Return the signs at a place in a direction, of vehicles or of one class."""
+        followed = [
+            sign
+            for vehicle in self.vehicles.values()
+            if vehicle.last_ns == self._last_ns
+            for sign in vehicle.missed(has_ended=False)
+        ]
+        is_asked = self.is_vehicle if label is None else label.__eq__
+        return self._signs.at(place, direction, is_asked, followed)
+
+    def interval(self, place: str, direction: str, label: str | None = None) -> tuple[int, int]:
+        """Return the least and largest likely true count of vehicles, or of one class, at a line.
+
+        Nine of ten intervals are to hold the true count; see `counting.trust`.
+        """
+        trust = OF_BLOBS if self._signs.has_blobs else OF_BOXES
+        return trust.interval(self.signs(place, direction, label))
+
     def speed_kmh(self, serial: int) -> float | None:
         """Return the speed of the vehicle with this track; None where it is not known."""
         vehicle = self.vehicles.get(serial)
@@ -155,6 +193,10 @@ class Counter:
 
     def forget_vehicles(self) -> None:
         """Discard where all vehicles were, as when a recording begins again; totals stay."""
+        for serial, vehicle in self.vehicles.items():
+            if vehicle.last_ns == self._last_ns:
+                self._signs.end(serial, vehicle.missed(has_ended=True))
+            self._signs.keep(serial)
         self.vehicles.clear()
         self._occupancy = {zone.name: 0 for zone in self.plan.zones}
         self._last_ns = None
@@ -164,8 +206,15 @@ class Counter:
         """Begin anew, all totals at 0."""
         self.forget_vehicles()
         self.totals.clear()
+        self._signs.clear()
 
-    def update(self, estimates: Sequence[TrackEstimate], stamp_ns: int) -> tuple[Crossing, ...]:
+    def update(
+        self,
+        estimates: Sequence[TrackEstimate],
+        stamp_ns: int,
+        *,
+        ambiguous: int | None = None,
+    ) -> tuple[Crossing, ...]:
         """Take the estimates of the next image.
 
         Parameters
@@ -174,6 +223,9 @@ class Counter:
             All vehicles followed.
         stamp_ns : int
             Stamp of the image in ns. Time that goes back begins all paths anew.
+        ambiguous : int or None
+            Blobs in the image that may hold several vehicles; None of detectors that report
+            vehicles.
 
         Returns
         -------
@@ -186,9 +238,15 @@ class Counter:
         self._last_ns = stamp_ns
         self._occupancy = {zone.name: 0 for zone in self.plan.zones}
         counted = [one for estimate in estimates for one in self._follow(estimate, stamp_ns)]
+        self._signs.has_blobs = self._signs.has_blobs or ambiguous is not None
         for one in counted:
             if not one.doubt:
                 self.totals[one.place, one.direction, one.label] += 1
+                if ambiguous:
+                    self._signs.add((one.place, one.direction, one.label, Sign.JOINED))
+        for serial, vehicle in self.vehicles.items():
+            if vehicle.last_ns == self._before_ns != stamp_ns:
+                self._signs.end(serial, vehicle.missed(has_ended=True))
         self._drop_old(stamp_ns)
         return tuple(counted)
 
@@ -202,11 +260,14 @@ class Counter:
         elif vehicle.last_ns != self._before_ns:  # back after it was lost
             vehicle.path.clear()
             mode = TrackMode.LOST
+            self._signs.withdraw(estimate.serial)
         joined = self.vehicles.pop(estimate.joined, None)
+        self._signs.withdraw(estimate.joined)
         passages = [] if joined is None else vehicle.join(joined)
         foot = replace(FootPoint.of(estimate, stamp_ns), mode=mode)
         passages += vehicle.follow(foot)
         vehicle.last_ns = stamp_ns
+        vehicle.label = estimate.label
         vehicle.life.add(foot, is_detected=not math.isnan(estimate.score))
         vehicle.is_confirmed = vehicle.is_confirmed or estimate.mode in CONFIRMED
         vehicle.waiting += _crossings(passages, vehicle.path, estimate)
@@ -222,8 +283,12 @@ class Counter:
 
     def _judged(self, one: Crossing, estimate: TrackEstimate, life: Life) -> Crossing:
         """Return a crossing by what is known of its vehicle now."""
+        is_vague = life.is_vague or one.mode in (TrackMode.OCCLUDED, TrackMode.LOST)
         one = replace(one, identity=estimate.identity, label=estimate.label or one.label)
-        return replace(one, doubt=self._plausibility.doubt(one, life))
+        doubt = self._plausibility.doubt(one, life)
+        sign = Sign.DOUBTED if doubt else Sign.VAGUE if is_vague else Sign.SEEN
+        self._signs.add((one.place, one.direction, one.label, sign))
+        return replace(one, doubt=doubt)
 
     def _made(self, first: FootPoint) -> _Vehicle:
         lines = [LineWatch(edge) for edge in self._lines]
@@ -239,6 +304,7 @@ class Counter:
         ]
         for identity in old:
             del self.vehicles[identity]
+            self._signs.keep(identity)
 
 
 def _crossings(passages: _Passages, path: RecentPath, estimate: TrackEstimate) -> list[Crossing]:

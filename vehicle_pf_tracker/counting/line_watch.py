@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from vehicle_pf_tracker.core.box import Position
+from vehicle_pf_tracker.counting.count_signs import Sign, missed_at
 from vehicle_pf_tracker.counting.foot_point import FootPoint
 from vehicle_pf_tracker.counting.recent_path import RecentPath
 from vehicle_pf_tracker.counting.side_watch import Passage, SideWatch
@@ -67,10 +68,23 @@ class LineWatch:
         self._done |= before._done
         return self._new(self._watch.resume(before._watch))
 
+    def missed(self, *, has_ended: bool) -> tuple[str, Sign] | None:
+        """Return the direction in which it may have crossed uncounted, and the sign; or None."""
+        ends = self._watch.ends
+        found = None if ends is None else missed_at(self._watch.edge, *ends, has_ended=has_ended)
+        if found is None:
+            return None
+        side, sign = found
+        direction = self._direction(side)
+        return None if direction in self._done else (direction, sign)
+
+    def _direction(self, side: int) -> str:
+        return self.line.directions[0 if side > 0 else 1]
+
     def _new(self, passage: Passage | None) -> list[tuple[str, FootPoint]]:
         if passage is None:
             return []
-        direction = self.line.directions[0 if passage.side > 0 else 1]
+        direction = self._direction(passage.side)
         if direction in self._done:
             return []
         self._done.add(direction)

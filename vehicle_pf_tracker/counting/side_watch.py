@@ -124,6 +124,13 @@ class SideWatch:
         self._note_furthest(foot, distance, is_clear=bool(side))
         return passage
 
+    @property
+    def ends(self) -> tuple[FootPoint, FootPoint] | None:
+        """First and last point at which the vehicle was seen; None where it never was."""
+        if self._first is None or self._seen is None:
+            return None
+        return self._first, self._seen
+
     def _note_furthest(self, foot: FootPoint, distance: float, *, is_clear: bool) -> None:
         """Keep the furthest point on the present side, by which a drive back is measured."""
         if foot.is_seen:

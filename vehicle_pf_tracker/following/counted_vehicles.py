@@ -90,7 +90,7 @@ class CountedVehicles:
             self.begin_anew()
         self.estimates = self.classes.named(self.session.estimates)
         self.trails.add(self.estimates)
-        crossings = self.counter.update(self.estimates, stamp_ns)
+        crossings = self.counter.update(self.estimates, stamp_ns, ambiguous=self.session.ambiguous)
         for crossing in crossings:
             self.classes.decide(crossing.identity)
         self._recent.add(crossings, stamp_ns)

@@ -66,12 +66,13 @@ def traffic_facts(
             counter.count(line.name, to),
             len(last := [one for one in recent.at(line.name, to) if counter.is_vehicle(one.label)]),
             _mean([one.speed_kmh for one in last]),
+            "{} to {}".format(*counter.interval(line.name, to)),
         )
         for line in counter.plan.lines
         for to in line.directions
     ]
     if lines:
-        columns = ("line", "direction", "counted", "last minute", "km/h")
+        columns = ("line", "direction", "counted", "last minute", "km/h", "90 %")
         tables.append(_table("lines", columns, lines))
     zones = [
         (zone.name, counter.occupancy[zone.name], *(counter.count(zone.name, to) for to in both))

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import math
 from collections import Counter as Tally
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from statistics import median
 from typing import Any
 
 from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
+from vehicle_pf_tracker.counting.trust import HELD
 from vehicle_pf_tracker.counting.zone_watch import ZONE_ENTRY, ZONE_EXIT
 from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.parameters.counting_plan import CountingLine
 from vehicle_pf_tracker.results.vehicle_log import VehicleLog, Whereabouts
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
@@ -120,6 +122,7 @@ class TrafficSummary:
         lines = [
             f"line {line.name}: "
             + ", ".join(_direction(counter, line.name, to) for to in line.directions)
+            + f"; 90 % intervals {_intervals_of(counter, line)}"
             for line in counter.plan.lines
         ]
         zones = [
@@ -145,6 +148,12 @@ class TrafficSummary:
                 {"place": place, "direction": direction, "class": label, "count": count}
                 for (place, direction, label), count in sorted(self.counter.totals.items())
             ],
+            "intervals": [
+                {"line": line.name, "direction": to, **each}
+                for line in self.counter.plan.lines
+                for to in line.directions
+                for each in _intervals(self.counter, line.name, to)
+            ],
         }
 
 
@@ -153,6 +162,18 @@ def _direction(counter: Counter, place: str, direction: str) -> str:
     apart = Tally({name: n for name, n in known.items() if not counter.is_vehicle(name)})
     count = counter.count(place, direction)
     return f"{count} {direction}{_listed(known - apart)}{_besides(apart)}"
+
+
+def _intervals_of(counter: Counter, line: CountingLine) -> str:
+    both = [(*counter.interval(line.name, to), to) for to in line.directions]
+    return ", ".join(f"{low} to {high} {to}" for low, high, to in both)
+
+
+def _intervals(counter: Counter, place: str, direction: str) -> Iterator[dict[str, Any]]:
+    """Return the intervals of the true count: of vehicles, and of each class that crossed."""
+    for label in (None, *sorted(filter(None, counter.by_class(place, direction)))):
+        low, high = counter.interval(place, direction, label)
+        yield {"class": label, "low": low, "high": high, "probability": HELD}
 
 
 def _listed(classes: Tally[str]) -> str:

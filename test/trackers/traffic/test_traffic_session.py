@@ -177,6 +177,9 @@ def test_detections_count_in_inner_regions_and_in_no_outer_one():
 def test_images_with_ambiguous_blobs_are_counted():
     session = TrafficSession(Steps(), frame_rate=25.0)
     for index, ambiguous in enumerate((0, 2, 1)):
-        detections = replace(Detections.none(), ambiguous=ambiguous)
+        detections = replace(Detections.none(), are_shapes=True, ambiguous=ambiguous)
         session.feed(FRAME, index * PERIOD_NS, detections)
+        assert session.ambiguous == ambiguous
     assert (session.found.images, session.found.ambiguous) == (3, 2)
+    session.feed(FRAME, 3 * PERIOD_NS, Detections.none())
+    assert session.ambiguous is None

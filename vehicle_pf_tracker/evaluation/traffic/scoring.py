@@ -211,13 +211,14 @@ def _crossings(sequence: TrafficSequence, tracks: Array, line: CountingLine) -> 
     total = 0
     for frame in range(1, sequence.frame_count + 1):
         now = rows[rows[:, 0] == frame]
-        estimates = [_estimate(row) for row in now.tolist()]
+        estimates = [as_estimate(row) for row in now.tolist()]
         crossings = counter.update(estimates, round(frame * 1e9 / sequence.frame_rate))
         total += sum(one.stamp_ns >= _SETTLED_NS and not one.doubt for one in crossings)
     return total
 
 
-def _estimate(row: list[float]) -> TrackEstimate:
+def as_estimate(row: list[float]) -> TrackEstimate:
+    """Take a row (frame, identity, left, top, width, height) for a vehicle in sight."""
     return TrackEstimate(
         identity=int(row[1]),
         box=Box(*row[2:6]),

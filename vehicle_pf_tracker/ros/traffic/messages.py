@@ -146,6 +146,10 @@ def _values(
     for (at, direction, label), number in sorted(counter.totals.items()):
         if at == place and label:
             values[f"{direction} {label}"] = number
+    if place not in counter.occupancy:
+        for name in directions:
+            low, high = counter.interval(place, name)
+            values[f"{name}, 90 % interval"] = f"{low} to {high}"
     if place in counter.occupancy:
         values["occupancy"] = counter.occupancy[place]
     if last is not None:

@@ -48,6 +48,8 @@ class DetectionTotals:
         Those of them that are outside the regions.
     ambiguous : int
         Images with blobs of which the detector is not sure how many vehicles they hold.
+    latest : int or None
+        Such blobs in the latest image; None where its detections are no blobs.
     """
 
     images: int = 0
@@ -55,6 +57,7 @@ class DetectionTotals:
     boxes: int = 0
     outside: int = 0
     ambiguous: int = 0
+    latest: int | None = None
 
 
 class TrafficSession:
@@ -131,6 +134,11 @@ class TrafficSession:
         """True where the tracker failed and started anew in the last image."""
         return self._attempts.recovered
 
+    @property
+    def ambiguous(self) -> int | None:
+        """Blobs of the last image that may hold several vehicles; None where it has no blobs."""
+        return self.found.latest
+
     def add(self, box: Box, label: str = "") -> int:
         """Follow the vehicle in `box` of the last image; see `TrafficTracker.add`."""
         identity = self.tracker.add(box, label)
@@ -192,7 +200,9 @@ class TrafficSession:
     def _step(self, turn: Turn, detections: Detections | None) -> None:
         if detections is None and self.detector is not None:
             detections = self._detected(self.detector, turn.frame)
+        self.found.latest = None
         if detections is not None:
+            self.found.latest = detections.ambiguous if detections.are_shapes else None
             self.found.images += 1
             self.found.boxes += len(detections)
             self.found.ambiguous += detections.ambiguous > 0
