@@ -96,7 +96,8 @@ DECISIONS: tuple[Decision, ...] = (
     Decision("trackers.traffic.correction:_WHOLE", (0.75, 0.95), 0.0),
     Decision("trackers.traffic.correction:_FOLLOWED", (0.15, 0.4)),
     Decision("trackers.traffic.existence:_SCORE_DOUBT", (0.3, 0.7), 0.0),
-    Decision("trackers.traffic.existence:_MISSED", (0.05, 0.3)),
+    Decision("trackers.traffic.existence:_MISSED", (0.15, 0.5)),
+    Decision("trackers.traffic.existence:_STRAIGHT_SHAPE", (14.0, 22.0), 7.0),
     Decision("trackers.traffic.parts:_INSIDE", (0.55, 0.85), 1e9),
     Decision("trackers.traffic.pixel_hold:_HELD_SHARE", (0.2, 0.45)),
 )

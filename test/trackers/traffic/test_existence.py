@@ -69,22 +69,53 @@ def test_what_was_seen_a_few_times_speaks_against_its_scores():
     assert ended_unconfirmed([(20 + 4 * frame, 100) for frame in range(3)]) < -1
 
 
-@pytest.mark.parametrize(
-    ("are_shapes", "rate", "first", "last"),
-    [(True, 30.0, 0.5, 0.6), (True, 10.0, 0.5, 0.8), (False, 30.0, 0.0, 0.3)],
-)
-def test_a_shape_that_drives_may_be_a_piece_of_a_vehicle_for_half_a_second(
-    are_shapes, rate, first, last
-):
+def reported_from(*, are_shapes, rate=30.0, shake=0.0, beside=()):
+    """Number of images in which a drive of a tenth of its width per image is not reported.
+
+    Another box drives with it, of the offset and size `beside`.
+    """
     tracker = TrafficTracker()
     tracker.frame_period = 1 / rate
     frame = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
     for index in range(30):
-        box = (20 + 4 * index, 100, 40, 30)
-        detections = replace(Detections.make([box]), are_shapes=are_shapes)
-        if any(one.identity for one in tracker.step(frame, detections)):
-            break
-    assert first <= index / rate <= last
+        left = 20 + 4 * index + shake * (-1) ** index
+        boxes = [(left, 100, 40, 30)]
+        if beside:
+            boxes.append((left + beside[0], 100, *beside[1:]))
+        detections = replace(Detections.make(boxes), are_shapes=are_shapes)
+        estimates = tracker.step(frame, detections)
+        if any(one.identity and one.box.width > 30 for one in estimates):
+            return index
+    return 30
+
+
+@pytest.mark.parametrize("rate", [30.0, 10.0])
+def test_a_shape_is_a_vehicle_by_its_way_and_not_by_time(rate):
+    assert reported_from(are_shapes=True, rate=rate) == 5
+
+
+@pytest.mark.parametrize(
+    ("are_shapes", "beside", "images"),
+    [
+        (True, (50, 40, 30), 15),  # half a second
+        (True, (65, 40, 30), 5),  # out of reach
+        (True, (50, 14, 14), 5),  # a speck
+        (False, (50, 40, 30), 5),
+    ],
+)
+def test_a_shape_with_another_one_beside_it_may_be_a_piece_for_half_a_second(
+    are_shapes, beside, images
+):
+    assert reported_from(are_shapes=are_shapes, beside=beside) == images
+
+
+def test_a_shape_that_shakes_as_it_drives_has_to_drive_farther():
+    steady, shaking, boxed = (
+        reported_from(are_shapes=True),
+        reported_from(are_shapes=True, shake=4.0),
+        reported_from(are_shapes=False, shake=4.0),
+    )
+    assert steady < boxed < shaking < 15
 
 
 def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_alarm():
