@@ -96,3 +96,13 @@ def test_all_that_moves_has_a_box_now_and_in_the_frames_before():
     assert boxes[0] == pytest.approx([20, 90, 50, 110], abs=2)
     assert boxes[1] == pytest.approx([100, 50, 124, 64], abs=2)
     assert foreground.extent.tolist() == [200, 120]
+
+
+def test_near_a_box_only_what_is_within_three_of_its_longer_sides_has_a_box():
+    foreground, _ = watched()
+    foreground.keep(scene((100, 50, 124, 64), (20, 90, 50, 110)), still=True)
+    foreground.learn_background()
+    # Around x 150, by 3 x 20 px: from 90 on.
+    (near,) = foreground.boxes_near(np.array([150.0, 60.0]), np.array([20.0, 10.0]))
+    assert near.ravel() == pytest.approx([100, 50, 124, 64], abs=2)
+    assert not len(foreground.boxes_near(np.array([400.0, 60.0]), np.array([20.0, 10.0])))

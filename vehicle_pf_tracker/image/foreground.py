@@ -32,6 +32,8 @@ _LATEST = 12
 """Frames kept besides: outlines of just before a doubt are what later ones are compared with."""
 _AROUND = 1.5
 """Half sides of the neighbourhood, of the box's longer side."""
+_WIDER = 2.0
+"""Times as far around what is hidden: it may be 1.5 diagonals away, and twice as large."""
 _LEAST_CONTRAST = 12.0
 """Difference in grey levels from which a pixel is foreground, at least: that of a shadow's rim."""
 _NOISE_FACTOR = 4.0
@@ -126,11 +128,17 @@ class Foreground:
         """
         return self._boxes(self._latest[-1])
 
+    def boxes_near(self, centre: Array, size: Array) -> Array:
+        """Find what moves now within three of its longer sides of a box (px), as `boxes`."""
+        small = self._latest[-1]
+        rows, columns, corner = _neighbourhood(small, centre, _WIDER * size)
+        piece = small.image[rows, columns]
+        if min(piece.shape) < 3:
+            return np.empty((0, 2, 2))
+        return (_pieces(_moving(piece, self._whole[rows, columns])) + corner) / small.zoom
+
     def _boxes(self, small: SmallGrey) -> Array:
-        *_, stats, _ = cv2.connectedComponentsWithStats(_moving(small.image, self._whole))
-        low = stats[1:, :2]
-        size = stats[1:, 2:4]
-        return np.stack([low, low + size], axis=1) / small.zoom
+        return _pieces(_moving(small.image, self._whole)) / small.zoom
 
     def outline(self, centre: Array, size: Array, ago: int = 0) -> Outline | None:
         """Outline of what moves in a box of this centre and size, px, some frames `ago`.
@@ -171,6 +179,13 @@ def _moving(
     # A windscreen of the road's grey would cut a car in two.
     closed = cv2.morphologyEx(moving, cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
     return np.asarray(closed, np.uint8)
+
+
+def _pieces(moving: npt.NDArray[np.uint8]) -> Array:
+    """Left and upper, right and lower side (N, 2, 2) of each connected piece of a mask."""
+    *_, stats, _ = cv2.connectedComponentsWithStats(moving)
+    low = stats[1:, :2]
+    return np.stack([low, low + stats[1:, 2:4]], axis=1).astype(float)
 
 
 def median(images: list[npt.NDArray[np.uint8]]) -> npt.NDArray[np.uint8]:

@@ -182,3 +182,42 @@ def test_an_image_without_any_contrast_gives_finite_responses(level):
     assert np.isfinite(appearance.response_at(blank, np.array([80.0, 60.0]), SIZE))
     appearance.learn(blank, view, np.array([80.0, 60.0]), SIZE, 5.0)
     assert np.isfinite(view_at(appearance, blank, (80, 60)).response).all()
+
+
+def plain(*stripes):
+    """A frame of one grey, with stripes of x, width and colour at the height of the vehicle."""
+    picture = np.full((240, 320, 3), 90, np.uint8)
+    for left, width, colour in stripes:
+        picture[105:135, left : left + width] = colour
+    return picture
+
+
+YELLOW, DULLER, GREY = (200, 180, 40), (176, 158, 35), (140, 140, 140)
+
+
+@pytest.mark.parametrize(
+    ("stripes", "share"),
+    [
+        ([(136, 48, YELLOW)], 1.0),
+        ([(136, 48, GREY)], 0.0),
+        ([(136, 24, YELLOW), (160, 24, GREY)], 0.5),
+        ([(136, 12, DULLER), (148, 36, GREY)], 0.25),
+    ],
+    ids=["the same", "another", "half of it", "a quarter in weaker light"],
+)
+def test_paint_is_told_by_the_share_of_a_box_that_has_it(stripes, share):
+    appearance = Appearance(KERNELS, SIZE, SIZE, PENALTY)
+    appearance.learn_paint(plain((136, 48, YELLOW)), PLACE, SIZE)
+    found = appearance.paint_share(plain(*stripes), SIZE, PLACE)
+    assert found == pytest.approx(share, abs=0.13)
+
+
+def test_the_vehicle_is_found_at_its_side_of_an_outline_with_a_shadow():
+    appearance = learnt()
+    appearance.learn_level(appearance.patch(frame(), PLACE, SIZE))
+    # The outline reaches 20 px farther to the left: its height gives the size.
+    outline = np.stack([PLACE - SIZE / 2 - [20, 0], PLACE + SIZE / 2])
+    found = appearance.found_in(frame(), outline, SIZE / 2)
+    assert found.position == pytest.approx(PLACE, abs=1.5)
+    assert found.size == pytest.approx(SIZE)
+    assert found.response > 0.8

@@ -29,6 +29,7 @@ from vehicle_pf_tracker.image.gradient_cells import (
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.spectra import Spectrum, shifted
 from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
+from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 
 _CELLS = 32
 """Cells along each side of a patch; a power of two for the Fourier transform."""
@@ -69,6 +70,11 @@ _PAINT_SIDE = 8
 _OTHER_CHROMA, _OTHER_LIGHTNESS = 9.0, 18.0
 """Differences of paint, in units of Lab, above which two vehicles are not the same. Over each of 25
 sequences a tenth of the differences is larger; of those between sequences two thirds are."""
+_SHADED = 2.0
+"""Factor of `_OTHER_LIGHTNESS` for single spots: sides of one vehicle differ more than medians."""
+_RIM_REACH = 4
+"""Places beyond an outline within which the filter has to answer: a tenth of the target's side, as
+outlines are good to that."""
 _DIRECTIONS = ((1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
 """Axes that are stretched, one pair of sizes per search in turns: vehicles mostly keep their
 aspect, so that both sides together have every second turn."""
@@ -228,6 +234,31 @@ class Appearance:
         lightness, *chroma = (_paint(frame, position, size) - self._paint).tolist()
         return float(max(abs(lightness) / _OTHER_LIGHTNESS, math.hypot(*chroma) / _OTHER_CHROMA))
 
+    def paint_share(self, frame: Frame, size: Array, position: Array) -> float:
+        """Measure the share of a box that has the paint learnt last, lighter or darker."""
+        off = _colours(frame, position, size) - self._paint
+        alike = np.abs(off[:, 0]) < _SHADED * _OTHER_LIGHTNESS
+        alike &= np.hypot(off[:, 1], off[:, 2]) < _OTHER_CHROMA
+        return float(alike.mean())
+
+    def found_in(self, frame: Frame, sides: Array, size: Array) -> Candidate:
+        """Find the vehicle in an outline (2, 2), with shadows, as the largest box that fits in.
+
+        `size` (2,) gives the ratio of its sides.
+        """
+        whole = sides[1] - sides[0]
+        size = size * float((whole / size).min())
+        view = self.view(self.patch(frame, sides.mean(axis=0), size))
+        free = (whole - size) / 2
+        middle = sides.mean(axis=0)
+        low, high = view.places(np.stack([middle - free, middle + free]))
+        (left, top), (right, bottom) = low - _RIM_REACH, high + _RIM_REACH + 1
+        near = view.response[max(top, 0) : bottom, max(left, 0) : right]
+        row, column = np.unravel_index(int(near.argmax()), near.shape)
+        position = view.position(float(column + max(left, 0)), float(row + max(top, 0)))
+        share = self.paint_share(frame, size, position)
+        return Candidate(position, size, float(near.max()), share)
+
     def _spectrum(self, patch: Patch) -> Spectrum:
         wide = patch.side > self._side
         transform = self._filter.wide_spectrum if wide else self._filter.spectrum
@@ -245,11 +276,16 @@ class Appearance:
 
 def _paint(frame: Frame, position: Array, size: Array) -> Array:
     """Median of the colours in the middle of a box, as L, a and b."""
-    small = cut_image(frame, position, _PAINT_SIDE / (_PAINTED * size), (_PAINT_SIDE, _PAINT_SIDE))
-    lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
     middle = _PAINT_SIDE**2 // 2
-    ordered = np.sort(lab.reshape(-1, 3), axis=0)
+    ordered = np.sort(_colours(frame, position, _PAINTED * size), axis=0)
     return np.asarray(ordered[middle - 1 : middle + 1].mean(axis=0), float)
+
+
+def _colours(frame: Frame, position: Array, size: Array) -> Array:
+    """Colours (N, 3) in a box of this centre and size (px), as L, a and b."""
+    small = cut_image(frame, position, _PAINT_SIDE / size, (_PAINT_SIDE, _PAINT_SIDE))
+    lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
+    return np.asarray(lab.reshape(-1, 3))
 
 
 def searched_size(

@@ -18,6 +18,7 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import PRIOR_DOUBT, hidden_hy
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
 from vehicle_pf_tracker.trackers.fusion.parameters import SIZE_RESPONSE, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
+from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 from vehicle_pf_tracker.trackers.fusion.state import State, Wholeness
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Step
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
@@ -82,6 +83,9 @@ def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> Sta
             return _follow_peak(_with_whole(state, whole, seen, step), seen, step)
         case Hidden() if not seen.was_hidden:
             state = _enter_occlusion(state, step)
+        case Hidden(outlines=Outlines(reappearance=way)) if way is not None:
+            if way.vehicle is not None:
+                state = _look_at(state, *way.vehicle, step)
         case Gone():
             state = state._replace(particles=state.particles.all_visible(0.0))
     return state._replace(position=step.inside(state.particles.mean))
@@ -114,16 +118,22 @@ def _enter_occlusion(state: State, step: Step) -> State:
         whole = state.whole._replace(measured=state.size)
         return state._replace(particles=state.particles.all_visible(PRIOR_DOUBT), whole=whole)
     path, last = fitted
-    if not last.cut:
-        foreground = step.memory.foreground
-        if foreground.is_known:
-            foreground.learn_background()
-        state = state._replace(verdict=Hidden(Outlines.begun(foreground, path, last)))
+    foreground = step.memory.foreground
+    if foreground.is_known:
+        foreground.learn_background()
+    state = state._replace(verdict=Hidden(Outlines.begun(foreground, path, last)))
     size = last.size * path.scale_at(last.age)
     state = state._replace(size=size, whole=state.whole._replace(measured=size))
     count = step.parameters.num_particles
     sigma = step.hidden_velocity_sigma(state.sightings)
     particles = hidden_hypotheses(step.rng, path, last.age, count, state.extent, sigma)
+    return state._replace(particles=particles)
+
+
+def _look_at(state: State, found: Candidate, velocity: Array, step: Step) -> State:
+    """Expect the vehicle where it has come out, at the size that it has there."""
+    state = state._replace(size=step.bounded(found.size), verdict=Hidden())
+    particles = gathered(state, step, found.position, velocity, 1 - PRIOR_DOUBT)
     return state._replace(particles=particles)
 
 

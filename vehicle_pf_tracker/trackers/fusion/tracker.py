@@ -9,7 +9,8 @@ on, and `step.py` the frame and the memory that they share.
 
 - Visible or partly hidden: climb to the peak, follow the size, learn.
 - Turning: follow the outline of what moves, learn fast.
-- Hidden: predict along the road, learn nothing, and wait until hypotheses gather evidence.
+- Hidden: predict along the road, learn nothing, and wait until hypotheses gather evidence, or an
+  outline comes out on the way (`reappearance.py`).
 - Gone: learn nothing, and wait until something comes back from where the vehicle left.
 
 The filter response at each hypothesis is a calibrated log-likelihood ratio of visible against

@@ -9,7 +9,8 @@ outline is cut from one side, and where one drives by it becomes larger at once;
 turns moves as a whole to one side of the predicted path.
 
 One that was hidden as a whole is followed the same way where it comes out beside its path
-(`emergence.py`). Outlines are found before a standing camera.
+(`emergence.py`); where it comes out on its way, it is only expected there (`reappearance.py`).
+Outlines are found before a standing camera.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ from vehicle_pf_tracker.trackers.fusion.perspective import (
     PerspectiveMotion,
     Sighting,
 )
+from vehicle_pf_tracker.trackers.fusion.reappearance import Judge, Reappearance
 
 _ASIDE = 0.15
 """Least distance of both sides from the predicted path, of the size, in a turn: an outline is good
@@ -142,10 +144,11 @@ PaintDifference = Callable[[Array, Array], float]
 
 
 class Outlines(NamedTuple):
-    """Outlines of a vehicle in doubt: beside its path, or coming out there."""
+    """Outlines of a vehicle in doubt: beside its path, or coming out there or on its way."""
 
     branch: Branch | None = None
     emergence: Emergence | None = None
+    reappearance: Reappearance | None = None
 
     @classmethod
     def begun(cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting) -> Outlines:
@@ -155,14 +158,23 @@ class Outlines(NamedTuple):
         """
         if not foreground.is_known:
             return cls()
+        reappearance = Reappearance(last, motion, last.age)
+        if last.cut:  # its outline was not the vehicle's
+            return cls(reappearance=reappearance)
         emergence = Emergence(last, motion, foreground.extent)
         was_alone = emergence.was_alone(foreground.history())
-        return cls(Branch.begun(foreground, motion, last), emergence if was_alone else None)
+        branch = Branch.begun(foreground, motion, last)
+        return cls(branch, emergence if was_alone else None, reappearance)
 
     def followed(
-        self, foreground: Foreground, elapsed: float, view: View, difference: PaintDifference
+        self,
+        foreground: Foreground,
+        elapsed: float,
+        view: View,
+        difference: PaintDifference,
+        judge: Judge,
     ) -> Outlines:
-        """Follow the outline into the present frame.
+        """Follow the outlines into the present frame.
 
         Parameters
         ----------
@@ -170,37 +182,51 @@ class Outlines(NamedTuple):
             Shows whether the filter recognises the vehicle again, which ends the branch.
         difference : callable
             Difference of the paint in a box of a size and position, px, from the vehicle's.
+        judge : callable
+            Finds the vehicle in an outline.
         """
         branch = self.branch and self.branch.moved(foreground, elapsed)
-        emergence, emerged = self._emerged(foreground, elapsed, difference)
-        branch = branch or emerged
+        emergence = self.emergence
+        reappearance = self.reappearance
+        if emergence is not None:
+            emergence, emerged = _emerged(emergence, foreground.boxes(), elapsed, difference)
+            branch = branch or emerged
+        if reappearance is not None:
+            reappearance = reappearance.aged(elapsed)
+            boxes = foreground.boxes_near(*reappearance.place)
+            reappearance = reappearance.observed(boxes, judge)
         if branch is None:
-            return Outlines(None, emergence)
+            return Outlines(None, emergence, reappearance)
         branch = branch.judged(view)
-        return Outlines(None if branch.is_over else branch, None if branch.is_proven else emergence)
+        if branch.is_proven:
+            emergence = None
+            reappearance = None
+        return Outlines(None if branch.is_over else branch, emergence, reappearance)
 
     @property
     def vehicle(self) -> Branch | None:
         """The vehicle, once it is proven to turn."""
         return self.branch if self.branch is not None and self.branch.is_proven else None
 
-    def _emerged(
-        self, foreground: Foreground, elapsed: float, difference: PaintDifference
-    ) -> tuple[Emergence | None, Branch | None]:
-        """Find a vehicle that has come out beside its path."""
-        emergence = self.emergence and self.emergence.observed(foreground.boxes(), elapsed)
-        found = emergence and emergence.proven(elapsed)
-        if emergence is None or found is None:
-            return emergence, None
-        outline = Outline(*found[0])
-        velocity = found[1]
-        margins = (np.zeros(2), np.zeros(2))
-        paint = difference(outline.size, outline.centre)
-        emergence = emergence._replace(paint=(*emergence.paint, paint))
-        if not emergence.has_paint:
-            return emergence, None
-        branch = Branch(emergence.motion, outline.size, margins, outline, velocity, is_proven=True)
-        return emergence, branch
+
+def _emerged(
+    emergence: Emergence, boxes: Array, elapsed: float, difference: PaintDifference
+) -> tuple[Emergence | None, Branch | None]:
+    """Find a vehicle that has come out beside its path."""
+    followed = emergence.observed(boxes, elapsed)
+    found = followed and followed.proven(elapsed)
+    if followed is None or found is None:
+        return followed, None
+    emergence = followed
+    outline = Outline(*found[0])
+    velocity = found[1]
+    margins = (np.zeros(2), np.zeros(2))
+    paint = difference(outline.size, outline.centre)
+    emergence = emergence._replace(paint=(*emergence.paint, paint))
+    if not emergence.has_paint:
+        return emergence, None
+    branch = Branch(emergence.motion, outline.size, margins, outline, velocity, is_proven=True)
+    return emergence, branch
 
 
 def proven(outlines: Outlines) -> Branch:
