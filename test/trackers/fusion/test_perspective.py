@@ -165,11 +165,16 @@ def test_sightings_move_with_the_camera_and_age():
     assert last.size == pytest.approx([8, 6])
 
 
-def test_old_sightings_are_discarded():
+def test_sightings_are_kept_for_two_seconds_before_the_last_clear_one():
     sightings = Sightings()
-    sightings = sightings.added(np.zeros(2), np.ones(2), 1.0)
-    for _ in range(60):
+    for response in (1.0, 1.0, 0.5):
+        sightings = sightings.added(np.zeros(2), np.ones(2), response)
+        for _ in range(40):
+            sightings = sightings.moved_on(1.0, CameraMotion())
+    # The first is 40 frames older than the last clear one, at 80 frames, however long ago that is.
+    assert sightings.rows[:, 0].tolist() == [120.0, 80.0, 40.0]
+    assert sightings.fit()[1].age == 80
+    for _ in range(41):
         sightings = sightings.moved_on(1.0, CameraMotion())
-    assert sightings.fit()[1].age == 60
-    sightings = sightings.moved_on(1.0, CameraMotion())
-    assert sightings.fit() is None
+    sightings = sightings.added(np.zeros(2), np.ones(2), 1.0)
+    assert sightings.moved_on(1.0, CameraMotion()).rows[:, 0].tolist() == [1.0]

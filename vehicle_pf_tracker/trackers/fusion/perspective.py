@@ -127,7 +127,10 @@ class Sightings(NamedTuple):
 
     def moved_on(self, elapsed: float, camera: CameraMotion) -> Sightings:
         """Let `elapsed` frames pass and the camera move."""
-        rows = self.rows[self.rows[:, 0] < KEPT_FRAMES]
+        # They are kept from the last clear one on: a vehicle may be hidden for as long again.
+        clear = self.rows[:, 5] >= CLEAR_RESPONSE
+        oldest = KEPT_FRAMES + (self.rows[clear, 0].min() if clear.any() else 0.0)
+        rows = self.rows[self.rows[:, 0] < oldest]
         rows[:, 0] += elapsed
         if camera.still:
             return Sightings(rows, self.camera_stood + elapsed)
