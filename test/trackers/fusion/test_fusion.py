@@ -55,6 +55,33 @@ def test_hidden_on_a_street_it_is_occluded_and_recovered_after():
     assert recovered >= 2
 
 
+def painted(tint):
+    """A car of one pattern, tinted in RGB."""
+    pattern = texture(2, 48, 28, blur=1.5)
+    return np.clip(0.7 * pattern + np.array(tint), 0, 255).astype(np.uint8)
+
+
+def behind_a_sign(returning):
+    """Estimates while a yellowish car drives behind a sign, and `returning` comes out."""
+    road = texture(1, gain=1.5)
+    tracker = fusion()
+    for time in range(95):
+        picture = road.copy()
+        left = 20 + 2 * time
+        picture[100:128, left : left + 48] = painted((60, 60, 0)) if time < 60 else returning
+        picture[80:150, 120:180] = 90
+        box = Box(20, 100, 48, 28)
+        yield tracker.step(picture) if time else tracker.start(picture, box)
+
+
+def test_what_comes_out_in_another_paint_is_another_vehicle():
+    same = list(behind_a_sign(painted((60, 60, 0))))[-10:]
+    blue = list(behind_a_sign(painted((20, 40, 60))))[-10:]
+    assert {e.mode for e in same} == {Mode.TRACKING}
+    assert {e.mode for e in blue} == {Mode.OCCLUDED}
+    assert max(e.confidence for e in blue) < 0.1
+
+
 def test_reconfigured_while_hidden_it_still_recovers():
     recovered = 0
     for seed in range(4):

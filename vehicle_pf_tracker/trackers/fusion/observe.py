@@ -25,6 +25,7 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     Hypotheses,
 )
 from vehicle_pf_tracker.trackers.fusion.parameters import EVEN_RESPONSE, VisibilityParameters
+from vehicle_pf_tracker.trackers.fusion.reappearance import LEAST_PAINT, Reappearance
 from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
 from vehicle_pf_tracker.trackers.fusion.state import State
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Prediction, Step
@@ -140,14 +141,34 @@ def observe(state: State, prediction: Prediction, step: Step) -> tuple[State, Ob
         return _observe_return(state, state.verdict.departure, step)
     was_hidden = not state.is_visible
     climb = STAY if prediction.sets_off else CLIMB_ON_PATH if was_hidden else CLIMB_FREELY
+    before = state.particles
+    size = state.size
     state, view = _weighed(state, climb, step)
     if prediction.sets_off:
         position = step.inside(state.particles.positions.mean(axis=0))
         response = view.at(position)
     else:
         position, response = likeliest_peak(view, state.particles, state.extent)
+    if was_hidden and _is_stranger(state, position, step):
+        # The hypotheses have gathered at it: those of before go on, and no wiser.
+        state = state._replace(particles=before.all_visible(PRIOR_DOUBT), size=size)
+        position = before.mean
     tasks = _next_tasks(state, response, step)
     return state, Observation(view, step.inside(position), response, was_hidden, tasks)
+
+
+def _is_stranger(state: State, position: Array, step: Step) -> bool:
+    """Test whether what would return comes from behind, or has another paint.
+
+    Paint is learnt only where outlines may ask for it.
+    """
+    way = _way_of(state)
+    if way is None or state.particles.probability_visible <= 0.5:
+        return False
+    if way.is_behind(position):
+        return True
+    appearance = step.memory.appearance
+    return appearance.paint_share(step.frame, state.size, position) < LEAST_PAINT
 
 
 def _next_tasks(state: State, response: float, step: Step) -> Tasks:
@@ -180,7 +201,19 @@ def _searched(
     patch = appearance.patch(step.frame, particles.mean, scale * state.size, wide=wide)
     view = _viewed(patch, step)
     options = step.parameters.visibility
-    return view, *response_evidence(view, particles.positions, climb, options)
+    positions, ratios = response_evidence(view, particles.positions, climb, options)
+    way = _way_of(state)
+    if way is not None:  # what comes up from behind is another vehicle
+        ratios = np.where(way.is_behind(positions), np.minimum(ratios, 0.0), ratios)
+    return view, positions, ratios
+
+
+def _way_of(state: State) -> Reappearance | None:
+    """Way on which a hidden vehicle is expected, before a standing camera."""
+    match state.verdict:
+        case Hidden(outlines=outlines):
+            return outlines.reappearance
+    return None
 
 
 def _viewed(patch: Patch, step: Step) -> View:
