@@ -252,10 +252,11 @@ class Appearance:
         free = (whole - size) / 2
         middle = sides.mean(axis=0)
         low, high = view.places(np.stack([middle - free, middle + free]))
-        (left, top), (right, bottom) = low - _RIM_REACH, high + _RIM_REACH + 1
-        near = view.response[max(top, 0) : bottom, max(left, 0) : right]
+        left, top = np.maximum(low - _RIM_REACH, 0).tolist()
+        right, bottom = (high + _RIM_REACH + 1).tolist()
+        near = view.response[top:bottom, left:right]
         row, column = np.unravel_index(int(near.argmax()), near.shape)
-        position = view.position(float(column + max(left, 0)), float(row + max(top, 0)))
+        position = view.position(float(column + left), float(row + top))
         share = self.paint_share(frame, size, position)
         return Candidate(position, size, float(near.max()), share)
 

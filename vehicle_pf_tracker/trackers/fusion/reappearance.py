@@ -25,9 +25,11 @@ from vehicle_pf_tracker.trackers.fusion.perspective import (
     Sighting,
 )
 
-_REACH_ALONG, _REACH_ACROSS = 1.5, 0.6
-"""Distance of an outline from the predicted path, of the predicted diagonal, within which it is on
-this heading: predictions err more along the lane than across, where the next lane is one away."""
+_REACH_ALONG = 1.5
+"""Distance of an outline ahead of the prediction or behind it, of the predicted diagonal, within
+which it is on this heading: hidden vehicles that came near had covered .22 to .8 of their way."""
+_REACH_ACROSS = 0.6
+"""The same to either side: predictions err less there, and the next lane is one diagonal away."""
 _SIDES = 0.5, 2.2
 """Bounds of its extent, of the predicted one: behind signs and bridges vehicles that came near were
 predicted at .36 to .8 of their size, others at up to 1.4 of it."""
@@ -45,8 +47,10 @@ _BEHIND = 0.5
 on a road, and what comes up from behind is another one."""
 _REMEMBERED = 2
 """Frames in which others are remembered: outlines flicker, and where one was another comes."""
-_FOLLOWED, _JUDGED = 2 * PROOF_FRAMES, 3
-"""Frames in which an outline is followed at most, and in a row judged: single ones jump."""
+_FOLLOWED = 2 * PROOF_FRAMES
+"""Frames over which the velocity of an outline is measured at most: it may brake or turn."""
+_JUDGED = 3
+"""Frames in a row in which filter and paint have to know it: single outlines jump."""
 
 
 class Candidate(NamedTuple):
@@ -155,7 +159,8 @@ class Reappearance(NamedTuple):
         """Velocity of an outline that drives on along the heading, px per frame; else None."""
         if len(self.track) < PROOF_FRAMES:
             return None
-        (began, first), (now, last) = self.track[0], self.track[-1]
+        began, first = self.track[0]
+        now, last = self.track[-1]
         # The side in front moves all the time, the other one once all has come out.
         moves = last - first
         moved = np.where(np.abs(moves[1]) > np.abs(moves[0]), moves[1], moves[0])
