@@ -38,6 +38,11 @@ on real video.
 
 ![Times faster than CSRT, by variant]({IMAGES}/steps.svg)
 """
+_MEMORY_PARTS = """
+`python -m benchmarks.memory_parts` prints what a node's memory is made of. Two thirds come with
+numba: its modules, and LLVM, by which compiled kernels are loaded too. More than a half of a node's
+memory is code of libraries, which all nodes of a machine share. `kernels: opencv` needs no numba.
+"""
 _BANDWIDTH = """## Distance from memory bandwidth
 A kernel has to fetch the part of the image that its windows cover; no code is faster than memory
 gives those bytes. The share is that of the time in which they are read once, and nothing else is
@@ -241,4 +246,4 @@ def _memory(results: Results) -> str:
     words = (
         "Resident memory, against one tracker in the process, and against the baseline node:\n\n"
     )
-    return words + table(("memory", "ours, MB", "baseline, MB"), rows)
+    return words + table(("memory", "ours, MB", "baseline, MB"), rows) + _MEMORY_PARTS
