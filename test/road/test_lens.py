@@ -63,6 +63,11 @@ def test_of_several_pixels_only_those_without_a_ray_have_none():
     lens = Lens((100.0, 100.0), (-0.5, -0.5), "plumb_bob", (-0.5, 0.0, 0.0, 0.0))
     found = lens.to_ideal(np.array([[54.0, 0.0], [56.0, 0.0], [0.0, 30.0]]))
     assert np.isnan(found).all(axis=1).tolist() == [False, True, False]
+    # A fisheye without coefficients shows a ray at theta at theta focal lengths, up to pi / 2.
+    fisheye = Lens((100.0, 100.0), (-0.5, -0.5), "equidistant", (0.0,) * 4)
+    found = fisheye.to_ideal(np.array([[25 * np.pi, 0.0], [200.0, 0.0]]))
+    assert found[0] == pytest.approx([100.0, 0.0])
+    assert np.isnan(found[1]).all()
 
 
 def test_without_distortion_pixels_stay_to_the_bit():

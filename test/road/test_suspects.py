@@ -101,7 +101,8 @@ def test_points_in_line_are_named(place, pixel):
     pairs = list(PAIRS[:4])
     pairs[place] = replace(pairs[place], pixel=pixel)
     said = disagreement(pairs, None)
-    names = r"\S+, \S+, \S+"
+    one = "[0-9.,=]+"
+    names = f"{one}, {one}, {one}"
     assert re.fullmatch(
         f"read again, or replace one of, {names}: on one line, or the same point", said
     )
