@@ -61,6 +61,11 @@ def test_leaving_is_no_occlusion_and_ends_none():
     assert summary.ended_hidden == 1
 
 
+def test_one_that_is_not_followed_any_more_has_left_unless_it_was_hidden():
+    ended = summed("TTTT--", "TTOO--", "TTT---", "TTTTTT").to_json()["ended"]
+    assert (ended["border"], ended["hidden"], ended["in_view"]) == (2, 1, 1)
+
+
 def test_a_vehicle_that_is_never_confirmed_is_none():
     summary = summed("ttttt-----")
     assert summary.vehicles == {}

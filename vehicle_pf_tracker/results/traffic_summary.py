@@ -48,6 +48,7 @@ class TrafficSummary:
         self.frames = 0
         self.most_at_once = 0
         self.vehicles: dict[int, VehicleLog] = {}
+        self._followed: set[int] = set()
 
     def add(self, estimates: Iterable[TrackEstimate]) -> None:
         """Take the next frame."""
@@ -55,6 +56,10 @@ class TrafficSummary:
         confirmed = [one for one in estimates if one.mode in (*CONFIRMED, TrackMode.LOST)]
         for one in confirmed:
             self._follow(one)
+        followed = {one.identity for one in confirmed} & self.vehicles.keys()
+        for identity in self._followed - followed:
+            self.vehicles[identity].end()
+        self._followed = followed
         vehicles = [one for one in confirmed if self.counter.is_vehicle(one.label)]
         present = sum(one.mode is not TrackMode.LOST for one in vehicles)
         self.most_at_once = max(self.most_at_once, present)

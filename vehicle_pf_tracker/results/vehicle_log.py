@@ -88,5 +88,10 @@ class VehicleLog:
             is_far = self._was_far(self.size) and not isinstance(one.hidden_by, int)
             self.whereabouts = Whereabouts.FAR if is_far else Whereabouts.HIDDEN
 
+    def end(self) -> None:
+        """Note that it is not followed any more: a tracker ends what it sees at the border only."""
+        if self.whereabouts is Whereabouts.IN_VIEW:
+            self.whereabouts = Whereabouts.ROI if self.is_at_edge else Whereabouts.BORDER
+
     def _was_far(self, size: float) -> bool:
         return size < min(_SMALLEST_NEAR, _RECEDED * self.largest)
