@@ -74,6 +74,8 @@ def test_archives_have_the_licence(tmp_path):
 def test_a_distribution_without_a_licence_is_named():
     good = [Licence("a", "1", "MIT", 0), Licence("b", "1", "", 2)]
     assert release_check.check_licences(good) == "a 1: MIT; b 1: see its file"
+    of_ros = Licence("std_srvs", "1", "", 0), Licence("ros-rclpy", "1", "", 0)
+    assert release_check.check_licences([*good, *of_ros]) == "a 1: MIT; b 1: see its file"
     with pytest.raises(ReleaseError, match=r"no licence: c$"):
         release_check.check_licences([*good, Licence("c", "1", "", 0)])
 
