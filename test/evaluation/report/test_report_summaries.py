@@ -152,7 +152,7 @@ def test_markdown_has_a_table_for_each_recording_and_every_failed_cell(evaluatio
         "Differences of all pairs, success AUC", *HIDDEN, "Failed cells",
     ]  # fmt: skip
     tables = [line for line in text.splitlines() if line.startswith("| pf |")]
-    assert len(tables) == 2 + len(HIDDEN)
+    assert len(tables) == 3 + len(HIDDEN)  # means, differences, all pairs
     assert text.count("| baseline:csrt |") == len(HIDDEN)
 
 

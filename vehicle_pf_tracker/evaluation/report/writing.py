@@ -36,12 +36,12 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     shown = {
         "Means over recordings": tables.overall_table(aggregates),
         "Differences to the first": tables.behind_table(aggregates),
-        f"Differences of all pairs, {COMPARED[0].label}": tables.pairs_table(aggregates),
-        **{
-            entry.name: tables.recording_table(aggregates, entry.name, COLUMNS)
-            for entry in evaluation.folder.recordings
-        },
     }
+    if len(aggregates.order) > 2:  # of two systems the table above has the only difference
+        pairs = tables.pairs_table(aggregates)
+        shown[f"Differences of all pairs, {COMPARED[0].label}"] = pairs
+    for entry in evaluation.folder.recordings:
+        shown[entry.name] = tables.recording_table(aggregates, entry.name, COLUMNS)
     for heading, table in shown.items():
         parts.append(f"## {heading}\n\n{tables.markdown(*table.texts())}")
     if evaluation.failed:
