@@ -13,7 +13,7 @@ one, flow judged and appearance learnt in the next. That saves a quarter of the 
 nothing over 633 runs; from .8 up it costs .01 on target (laboratory/notes/fusion_tried.md)."""
 _SETTLED = 10
 """Frames before which none is undisturbed: the usual response follows the first ones as their mean,
-and is not known yet."""
+and is not known yet. Ten is a choice: by then a frame weighs a tenth in that mean."""
 
 
 class Tasks(NamedTuple):
@@ -22,9 +22,9 @@ class Tasks(NamedTuple):
     Attributes
     ----------
     follows_size : bool
-        To track points and follow the size.
+        True in a frame that tracks points and follows the size.
     trains_filter : bool
-        To judge the surface's flow and train the filter.
+        True in a frame that judges the surface's flow and trains the filter.
     """
 
     follows_size: bool = True
@@ -42,6 +42,9 @@ class Tasks(NamedTuple):
         was_visible : bool
             True if all of the vehicle was visible in the frame before.
         """
+        # The frame after a disturbance has both tasks: an occlusion or a turn must not find the
+        # filter, or the size, a frame older than need be.
         alternates = was_visible and frames > _SETTLED and level > _UNDISTURBED
+        # The other one of the last: after a frame with both, the size is followed first.
         trains = not alternates or not self.trains_filter
         return Tasks(follows_size=not alternates or not trains, trains_filter=trains)

@@ -45,7 +45,7 @@ class Wholeness(NamedTuple):
     @property
     def is_likely(self) -> bool:
         """True where all of the vehicle is likelier to be visible than a part of it."""
-        return self.probability > 0.5
+        return self.probability > 0.5  # even odds: a probability needs no level of its own
 
     @classmethod
     def at_start(cls, size: Array) -> Wholeness:
@@ -59,7 +59,7 @@ class State(NamedTuple):
     Attributes
     ----------
     particles : Hypotheses
-        Positions, velocities, growth, and visibility of each.
+        Weighted hypotheses: position, velocity, growth rate and visibility of each.
     position, size : (2,) arrays
         Centre, and width and height, px.
     whole : Wholeness
@@ -67,23 +67,26 @@ class State(NamedTuple):
     verdict : Verdict
         Judgement on the frame: visible, partly hidden, turning, hidden, or gone.
     frames : int
-        Frames since the first one.
+        Number of frames since the first one, however much time passed between them.
     sightings : Sightings
-        Earlier positions and sizes.
+        Earlier positions, sizes and responses, which a hidden vehicle is predicted from.
     points : SurfacePoints
-        Points on the vehicle.
+        Points on the vehicle, whose spread measures its change of size.
     surface : SurfaceFlow
-        Share of the surface that moves with the vehicle.
+        Earlier patches, and the share of the surface that moves with the vehicle.
     strangers : Strangers
-        Response to what is not the vehicle.
+        Highest response to what is not the vehicle, which a return has to exceed.
     """
 
     particles: Hypotheses
+    # Beside the particles: the position of a visible vehicle is the response's peak; and all have
+    # one size, since each size that is tried costs a response of its own.
     position: Array
     size: Array
     whole: Wholeness
     verdict: Verdict = Visible()
     frames: int = 0
+    # None of these is changed in place, so that one default serves all trackers.
     sightings: Sightings = Sightings()
     points: SurfacePoints = SurfacePoints()
     surface: SurfaceFlow = SurfaceFlow()
@@ -102,4 +105,5 @@ class State(NamedTuple):
     @property
     def is_visible(self) -> bool:
         """True where the position is measured on the vehicle, and not predicted."""
+        # A vehicle that turns or is partly hidden is measured, by what is seen of it.
         return not isinstance(self.verdict, Hidden | Gone)

@@ -37,6 +37,7 @@ class Memory:
     begins.
     """
 
+    # The filter's spectra and the kept frames are large: they alone change in place.
     appearance: Appearance
     camera: CameraFlow = field(default_factory=CameraFlow)
     foreground: Foreground = field(default_factory=Foreground)
@@ -49,9 +50,9 @@ class Step:
     Attributes
     ----------
     frame : Frame
-        The image.
+        The present image, RGB.
     elapsed : float
-        Frame periods since the one before.
+        Frame periods since the frame before; 1 unless frames were dropped or stamps jitter.
     parameters : FusionParameters
         Parameters in use.
     rng : Generator
@@ -59,7 +60,7 @@ class Step:
     memory : Memory
         What was learnt of the vehicle and of the camera.
     tasks : Tasks
-        Costly tasks of the frame before.
+        Costly tasks of the frame before, by which those of this frame are chosen.
     """
 
     frame: Frame
@@ -71,24 +72,28 @@ class Step:
 
     def inside(self, positions: Array) -> Array:
         """Move positions (..., 2) into the image."""
+        # Beyond the border a patch repeats the outermost pixels: nothing is measured there.
         return keep_inside(self.frame, positions)
 
     def bounded(self, size: Array) -> Array:
-        """Bound width and height."""
+        """Bound width and height (2,), px, by what can be measured and what fits into an image."""
+        # Neither bound keeps the ratio of the sides: each side alone could become useless.
         largest = _LARGEST_SIDE * max(frame_size(self.frame))
         return np.minimum(np.maximum(size, _LEAST_SIDE), largest)
 
     def share_inside(self, position: Array, size: Array) -> float:
         """Share of a box, whose centre is inside the image, that is inside."""
+        # The centre is inside, so that both differences are positive and their product is a share.
         low, high = np.maximum(position - size / 2, 0), position + size / 2
         return float(((np.minimum(high, frame_size(self.frame)) - low) / size).prod())
 
     def hidden_velocity_sigma(self, sightings: Sightings) -> float:
-        """Change of a hidden vehicle's velocity, of the size, per frame squared.
+        """Give the deviation of a hidden vehicle's change of velocity, sizes per frame squared.
 
         Larger where sightings were carried along with a camera that moved: the background's motion
         is not quite that of the road under the vehicle.
         """
+        # The vehicle's own changes of speed and the camera's error are independent: variances add.
         motion = self.parameters.motion
         camera = 0.0 if sightings.are_steady else motion.camera_velocity_sigma
         return math.hypot(motion.hidden_velocity_sigma, camera)
@@ -116,9 +121,9 @@ class Observation:
     Attributes
     ----------
     view : View
-        The response around it.
+        Response of the filter around the prediction.
     position : (2,) array
-        Centre, px.
+        Centre of the vehicle, px.
     response : float
         Height of the peak there, relative to the usual one.
     was_hidden : bool
@@ -127,7 +132,7 @@ class Observation:
     tasks : Tasks
         Costly tasks of this frame.
     departure : Departure or None
-        Of a vehicle that was gone: whether it returns.
+        Search for the return of a vehicle that was gone, with what this frame shows; else None.
     """
 
     view: View

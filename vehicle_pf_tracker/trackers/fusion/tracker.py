@@ -52,7 +52,7 @@ of the size per frame; faster starts are measured by `SurfacePoints.first_motion
 
 
 class FusionTracker(ParticleTracker[FusionParameters]):
-    """The flagship: a belief about the vehicle, and what was learnt of it."""
+    """Tracker of one vehicle by a belief about it (`State`) and what was learnt (`Memory`)."""
 
     _state: State | None = None
     _memory: Memory | None = None
@@ -62,6 +62,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         """Learn the target; see `BaseTracker.start`."""
         estimate = super().start(frame, box)
         state, memory = self._track
+        # The second frame is compared with this one: its corners, its patch and its flow begin
+        # here.
         memory.camera.measure(small_grey(frame), box)
         patch = memory.appearance.patch(frame, state.position, state.size)
         self._state = state._replace(
@@ -72,23 +74,27 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
     @property
     def _track(self) -> tuple[State, Memory]:
-        """State and memory of a tracker that was started."""
+        """State and memory of a tracker that was started; raises the user's error before."""
+        # A property that raises the user's error, before the assertion would raise one of ours.
         _ = self.target  # says what is wrong before the start
         assert self._state is not None and self._memory is not None
         return self._state, self._memory
 
     def _scatter(self, centre: Position) -> Array:
-        """Draw the first hypotheses; nothing else is known."""
+        """Draw the first hypotheses around `centre`; return their positions (N, 2), px."""
         box = self.target.box
         motion = self.parameters.motion
         count = self.parameters.num_particles
         position = np.array(centre, float)
         size = np.array([box.width, box.height], float)
+        # Isotropic: neither heading nor speed is known. Both scale with the size, as a near vehicle
+        # moves by more px than a far one.
         spread = self._rng.normal(size=(2, count, 2)) * float(np.sqrt(size.prod()))
         velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
         positions = np.asarray(position + spread[0] * motion.position_sigma)
         particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - PRIOR_DOUBT)
         self._state = State(particles, position, size, Wholeness.at_start(size))
+        # A new target: nothing of the last one may be compared with it.
         self._memory = None
         self._tasks = Tasks()
         return positions
@@ -98,9 +104,11 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         target = self.target
         window = self.parameters.window
         size = np.array([target.box.width, target.box.height])
+        # 0 stands for the whole box; a smaller window learns the part that is surely vehicle.
         learnt = np.array([window.width or size[0], window.height or size[1]])
         appearance = Appearance(self.kernels, size, learnt, self.parameters.filter.penalty)
         appearance.learn_first(target.patch, np.array(target.centre), size)
+        # A new filter for the same target keeps what is known of camera and background.
         self._memory = replace(self._memory or Memory(appearance), appearance=appearance)
 
     def reconfigure(self, parameters: FusionParameters) -> None:
@@ -108,12 +116,16 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         super().reconfigure(parameters)
         if self._target is not None:
             state, memory = self._track
+            # Before the next frame, so that no frame is measured by two implementations.
             memory.appearance.use_kernels(self.kernels)
             particles = state.particles.resampled(self._rng, parameters.num_particles)
             self._state = state._replace(particles=particles)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         state, memory = self._track
+        # The order is the model's: only what was predicted can be weighed. Flow needs the peak that
+        # the response found, the verdict both pieces of evidence; and nothing is learnt before the
+        # verdict, as an occluder that was learnt once would answer from then on.
         elapsed = min(elapsed, _LONGEST_STEP)
         step = Step(frame, elapsed, self.parameters, self._rng, memory, self._tasks)
         state, prediction = predict(state, step)
@@ -122,6 +134,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         verdict = judge(state, seen, prediction, step)
         state = follow(state, verdict, seen, step)
         state = learn(state, seen, step)
+        # Last, so that the estimate and the next prediction have the same set of hypotheses.
         particles = state.particles.resampled(self._rng, self.parameters.num_particles)
         self._state = state._replace(particles=particles)
         self._tasks = seen.tasks
@@ -130,6 +143,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 
 
 def _outcome(state: State, response: float, step: Step, *, has_left: bool) -> Outcome:
+    """Report a state in the terms that all variants share."""
     particles = state.particles
     x, y = state.position.tolist()
     vx, vy = particles.mean_velocity.tolist()
@@ -142,6 +156,7 @@ def _outcome(state: State, response: float, step: Step, *, has_left: bool) -> Ou
         case _:
             regime = "visible"
     values = {
+        # Reported as a share of the usual response, which single frames exceed.
         "response": min(max(response, 0.0), 1.0),
         "points": state.surface.share,
         "whole": state.whole.probability,

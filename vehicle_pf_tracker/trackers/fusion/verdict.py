@@ -21,7 +21,7 @@ class Visible(NamedTuple):
     Attributes
     ----------
     whole : float
-        Probability that all of it is, given that a part of it is.
+        Probability that all of it is visible, given that a part of it is.
     """
 
     whole: float = WHOLE_AT_FIRST
@@ -75,5 +75,7 @@ class Gone(NamedTuple):
     departure: Departure
 
 
+# One type a verdict instead of flags: what only a hidden vehicle has (outlines) or only one that
+# left (its departure) cannot be left over from an earlier frame.
 Verdict: TypeAlias = Visible | PartlyHidden | Turning | Hidden | Gone
 """Judgement on the vehicle in a frame, which decides what the rest of the step does."""
