@@ -32,20 +32,21 @@ from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
 from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 
 _CELLS = 32
-"""Cells along each side of a patch; a power of two for the Fourier transform."""
+"""Cells along each side of a patch: three times the target's ten, so that background is learnt on
+all sides; a power of two for the Fourier transform."""
 _WIDE_CELLS = 64
-"""The same while a hidden vehicle is searched for far around."""
+"""The same while a hidden vehicle is searched for far around: twice as far, the next such power."""
 _TARGET_SIDE = 40.0
 """Geometric mean of the target's canonical sides, px: ten cells, and 0.3 of the patch."""
 _LARGEST_ZOOM = 8.0
-"""Canonical px per px of the frame at most: below 5 px a vehicle has nothing more to magnify."""
+"""Bound of canonical px per px of the frame: below 5 px a vehicle has nothing more to magnify."""
 _LONGEST_IN_PATCH = 0.6
 """Longest side of the target in the patch: beyond, no background would be left to learn."""
 _STEP_PX = GRADIENT_CELL_PX / UPSAMPLING
 """Canonical px from one place of the response to the next."""
 _SHIFTABLE_PX = 6.0
 """Offset in canonical px up to which cells are moved circularly instead of measured again: what is
-wrapped around was faded out."""
+wrapped around was faded out. That is one and a half cells of 32."""
 _USUAL_SHARE = 0.3
 """Least usual response, of that to the first patch: the second frame of the sequences gives 0.37 to
 0.89 of it, one with the vehicle hidden 0.03. A filter may be trained anew while it is hidden."""
@@ -64,14 +65,16 @@ _COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32)[:, np.newaxis, n
 _COLOUR_MIDDLE = np.array([0.5, 0, 0], np.float32)[:, np.newaxis, np.newaxis]
 """Subtracted from them: middle grey is 0, as what a patch fades to at its rim."""
 _PAINTED = 0.6
-"""Middle of a box that paint is measured in, of each side: around it are road and shadow."""
+"""Middle of a box that paint is measured in, of each side: around it are road and shadow. A choice:
+its area is a third of the box's."""
 _PAINT_SIDE = 8
 """Side in px that it is resampled to: the median of 64 px tolerates 31 of windows and lamps."""
 _OTHER_CHROMA, _OTHER_LIGHTNESS = 9.0, 18.0
 """Differences of paint, in units of Lab, above which two vehicles are not the same. Over each of 25
 sequences a tenth of the differences is larger; of those between sequences two thirds are."""
 _SHADED = 2.0
-"""Factor of `_OTHER_LIGHTNESS` for single spots: sides of one vehicle differ more than medians."""
+"""Factor of `_OTHER_LIGHTNESS` for single spots: sides of one vehicle differ more than medians. Two
+is a choice; chroma alone has to tell the rest."""
 _RIM_REACH = 4
 """Places beyond an outline within which the filter has to answer: a tenth of the target's side, as
 outlines are good to that."""
@@ -106,6 +109,8 @@ class View:
     def places(self, positions: Array) -> npt.NDArray[np.intp]:
         """Nearest places (..., 2), as x and y, of positions in px of the frame."""
         last = len(self.response) - 1
+        # The patch's centre is between two cells, at place m / 2. A hypothesis beyond the patch
+        # takes the response at its rim; few are (`observe._WIDE_FROM`).
         exact = (positions - self.patch.centre) * self.steps + len(self.response) / 2
         return np.minimum(np.maximum(np.rint(exact), 0), last).astype(np.intp)
 
@@ -122,6 +127,7 @@ class View:
 
     def peak_near(self, position: Array, reach: int) -> tuple[Array, float]:
         """Find the peak within `reach` places of a position: its position in px, and height."""
+        # One place is left free at each border: the parabola needs both neighbours of the peak.
         inner = len(self.response) - 2 - reach
         places = self.places(position).tolist()
         column, row = (min(max(place, reach + 1), inner) for place in places)
@@ -129,6 +135,7 @@ class View:
         dy, dx = divmod(int(near.argmax()), 2 * reach + 1)
         y, x = row - reach + dy, column - reach + dx
         top = self.response[y - 1 : y + 2, x - 1 : x + 2].astype(np.float64)
+        # Places are 2 canonical px apart, a twentieth of the target: too coarse for a velocity.
         exact = x + _vertex(*top[1].tolist()), y + _vertex(*top[:, 1].tolist())
         return self.position(*exact), float(self.response[y, x])
 
@@ -136,11 +143,13 @@ class View:
 def _vertex(before: float, at: float, after: float) -> float:
     """Offset of the vertex of a parabola through three equidistant values, at most half a step."""
     bend = before + after - 2 * at
+    # Next to the highest value the vertex is within half a step; the bound holds at the window's
+    # rim, where the value may not be the highest, and a bend upwards has no vertex to go to.
     return min(max(0.5 * (before - after) / bend, -0.5), 0.5) if bend < 0 else 0.0
 
 
 class Appearance:
-    """Learns the target from patches of canonical size, and responds to others.
+    """The target's filter and paint, learnt from patches of canonical size.
 
     Parameters
     ----------
@@ -153,6 +162,8 @@ class Appearance:
     """
 
     def __init__(self, kernels: Kernels, size: Array, learnt: Array, penalty: float) -> None:
+        # The part that is learnt has the canonical size; the box is carried along in its scale, so
+        # that patches can be asked for by the box, whatever part of it the filter knows.
         zoom = min(_TARGET_SIDE / math.sqrt(learnt.prod()), _LARGEST_ZOOM)
         self._side = _CELLS * GRADIENT_CELL_PX
         target = np.minimum(learnt * zoom, _LONGEST_IN_PATCH * self._side)
@@ -160,6 +171,7 @@ class Appearance:
         self._kernels = kernels
         self.first_size = size
         self._filter = CorrelationFilter(_CELLS, target / GRADIENT_CELL_PX, penalty)
+        # Unknown until the first patch after the start (`has_level`).
         self.usual_response = 0.0
         self._least_usual = 0.0
         self._paint = np.zeros(3)
@@ -179,6 +191,7 @@ class Appearance:
 
     def view(self, patch: Patch) -> View:
         """Respond to a patch; the usual response has to be known."""
+        # A wide spectrum cannot be trained on: it has other frequencies than the filter.
         wide = patch.side > self._side
         respond = self._filter.respond_wide if wide else self._filter.respond
         spectrum = self._spectrum(patch)
@@ -192,12 +205,15 @@ class Appearance:
 
     def learn_level(self, patch: Patch) -> None:
         """Take the highest response to the first patch after a start for the usual one."""
+        # Not the response to the first frame: a filter answers better to the image that it was
+        # trained on than to any other, and all later responses would look low.
         respond = self._filter.respond_wide if patch.side > self._side else self._filter.respond
         highest = float(respond(self._spectrum(patch)).max())
         self.usual_response = max(highest, self._least_usual, _TINY_RESPONSE)
 
     def response_at(self, frame: Frame, position: Array, size: Array) -> float:
         """Response to a box of this centre and size (px), relative to the usual one."""
+        # Sizes are compared at one position: only the target's cells are measured, and no spectrum.
         columns, rows = self._filter.extent
         piece = (columns + 2 * _RIM) * GRADIENT_CELL_PX, (rows + 2 * _RIM) * GRADIENT_CELL_PX
         image = cut_image(frame, position, self._box / size, piece)
@@ -209,10 +225,13 @@ class Appearance:
         self.learn_paint(frame, position, size)
         spectrum = self._spectrum(self.patch(frame, position, size))
         self._filter.train(spectrum, 0.0)
+        # The next patch may not show the vehicle: its response alone would be no safe level.
         self._least_usual = _USUAL_SHARE * float(self._filter.respond(spectrum).max())
 
     def learn(self, frame: Frame, view: View, position: Array, size: Array, stiff: float) -> None:
         """Train the filter on the target at `position` in the frame that `view` shows."""
+        # The patch is centred on the prediction, the target a little beside: moving the cells costs
+        # less than measuring them again, and small moves wrap around only what was faded out.
         offset = (position - view.patch.centre) * view.patch.zoom
         if view.spectrum is not None and np.abs(offset).max() < _SHIFTABLE_PX:
             x, y = (-offset / GRADIENT_CELL_PX).tolist()
@@ -223,6 +242,7 @@ class Appearance:
 
     def learn_usual(self, response: float, rate: float) -> None:
         """Let the usual response follow one of a visible frame, given relative to it."""
+        # An exponential mean, written for a response that is itself relative to it.
         self.usual_response *= 1 + rate * (response - 1)
 
     def learn_paint(self, frame: Frame, position: Array, size: Array) -> None:
@@ -231,6 +251,7 @@ class Appearance:
 
     def paint_difference(self, frame: Frame, size: Array, position: Array) -> float:
         """Measure how far the paint in a box is from the one learnt last: above 1 it is another."""
+        # Judged apart: within one vehicle lightness varies twice as much as chroma.
         lightness, *chroma = (_paint(frame, position, size) - self._paint).tolist()
         return float(max(abs(lightness) / _OTHER_LIGHTNESS, math.hypot(*chroma) / _OTHER_CHROMA))
 
@@ -247,6 +268,8 @@ class Appearance:
         `size` (2,) gives the ratio of its sides.
         """
         whole = sides[1] - sides[0]
+        # On one of its sides, which is not known, the outline has a shadow, so that the box may be
+        # anywhere in it; the filter tells where.
         size = size * float((whole / size).min())
         view = self.view(self.patch(frame, sides.mean(axis=0), size))
         free = (whole - size) / 2
@@ -268,6 +291,8 @@ class Appearance:
     def _features(self, image: Frame, grey: Grey) -> CellFeatures:
         features = self._kernels.gradient_cells(grey, _COLOURS)
         cells = features.shape[2], features.shape[1]
+        # Means of whole cells, so that colours lie on the same grid as gradients. Only images of
+        # floats from 0 to 1 become Lab without rounding.
         small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
         lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
         # Lightness is 0 to 100, a and b about as much to either side: all within about one.
@@ -276,14 +301,15 @@ class Appearance:
 
 
 def _paint(frame: Frame, position: Array, size: Array) -> Array:
-    """Median of the colours in the middle of a box, as L, a and b."""
+    """Median of the colours in the middle of a box (centre and size, px), as L, a and b (3,)."""
+    # The median of an even number of values is the mean of the two in the middle.
     middle = _PAINT_SIDE**2 // 2
     ordered = np.sort(_colours(frame, position, _PAINTED * size), axis=0)
     return np.asarray(ordered[middle - 1 : middle + 1].mean(axis=0), float)
 
 
 def _colours(frame: Frame, position: Array, size: Array) -> Array:
-    """Colours (N, 3) in a box of this centre and size (px), as L, a and b."""
+    """Colours (64, 3) of spots in a box of this centre and size (px), as L, a and b."""
     small = cut_image(frame, position, _PAINT_SIDE / size, (_PAINT_SIDE, _PAINT_SIDE))
     lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
     return np.asarray(lab.reshape(-1, 3))
@@ -301,16 +327,19 @@ def searched_size(
     turn : int
         Number of the search, which decides the direction that is tried.
     peak : callable
-        Response at a size.
+        Function that gives the response at a size (2,), px.
     """
     direction = np.array(_DIRECTIONS[turn % len(_DIRECTIONS)])
     if not parameters.step or not parameters.gain:
         return size
+    # Equal factors up and down: a parabola needs sizes that are equidistant, here in the logarithm.
     factor = (1 + parameters.step) ** direction
     at_size = peak(size)
     smaller = peak(size / factor)
     larger = peak(size * factor)
     bend = smaller + larger - 2 * at_size
+    # Below a millionth a bend is rounding, as responses have 7 digits. Without a bend the vertex is
+    # beyond the sizes that were tried: one whole step towards the larger response, and no farther.
     if bend < -1e-6 * at_size:
         steps = min(max(0.5 * (smaller - larger) / bend, -1.0), 1.0)
     else:
