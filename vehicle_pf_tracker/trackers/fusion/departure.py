@@ -38,11 +38,12 @@ _FARTHEST_STEP = 1.0
 """Distance from one frame to the next within which peaks are of the same vehicle, of the size:
 centres of two vehicles in a lane are at least a length apart."""
 _STRANGERS_RATE = 0.005
-"""Rate per frame at which the strangers' response fades: the road behind is another one."""
+"""Rate per frame at which the strangers' response fades: the road behind is another one. It halves
+in some 140 frames, a choice between the seconds that a stranger passes in and a whole track."""
 
 
 class _Candidate(NamedTuple):
-    """A possible return: first and latest position, px, and for how many frames it was seen."""
+    """A possible return: first and latest position (2,), px, and number of frames in a row."""
 
     first: Array
     latest: Array
@@ -67,9 +68,11 @@ class Strangers(NamedTuple):
 
     def measured(self, view: View, position: Array, size: Array) -> Strangers:
         """Take a frame in which the vehicle is at `position`, px."""
+        # Twice the box is left out: the vehicle's own peak has slopes beyond its sides.
         elsewhere = view.response.copy()
         (left, top), (right, bottom) = view.places(np.stack([position - size, position + size]))
         elsewhere[top : bottom + 1, left : right + 1] = 0.0
+        # A maximum, not a mean: one strong answer is enough to be taken for the vehicle.
         faded = self.response * (1 - _STRANGERS_RATE)
         return Strangers(max(faded, float(elsewhere.max())))
 
@@ -88,9 +91,9 @@ class Departure(NamedTuple):
     response : float
         Response that a return has to reach, relative to the usual one.
     waited : float
-        Frames since then.
+        Frames since it left.
     candidate : _Candidate or None
-        What may be the vehicle on its way back.
+        Peak that may be the vehicle on its way back.
     """
 
     reason: str
@@ -108,6 +111,7 @@ class Departure(NamedTuple):
         """Depart by the border next to a position."""
         width, height = frame_size(frame)
         x, y = position.tolist()
+        # A position inside the image: the border that is next to it is the one that was crossed.
         borders = {"left": x, "right": width - x, "top": y, "bottom": height - y}
         inwards = {"left": (1, 0), "right": (-1, 0), "top": (0, 1), "bottom": (0, -1)}
         border = min(borders, key=borders.__getitem__)
@@ -119,6 +123,7 @@ class Departure(NamedTuple):
         cls, position: Array, size: Array, heading: Array, strangers: Strangers
     ) -> Departure:
         """Depart by becoming too small, on the way in the direction `heading`."""
+        # A vehicle without a heading has a way of zero, along which no motion proves a return.
         direction = heading / max(float(np.hypot(*heading)), 1e-9)
         return cls(TOO_FAR, direction, position, size, strangers.level)
 
@@ -136,10 +141,12 @@ class Departure(NamedTuple):
         """Position and velocity, px, of a vehicle whose return is proven."""
         if self.candidate is None:
             return None
+        # Motion is asked for beside frames, since scenery answers in every frame but stands still.
         first, latest, frames = self.candidate
         moved = latest - first
         if frames < PROOF_FRAMES or float(moved @ self.way) < PROOF_DISTANCE * self._extent:
             return None
+        # There is one displacement fewer than there are frames.
         return latest, moved / (frames - 1)
 
     @property
@@ -148,8 +155,11 @@ class Departure(NamedTuple):
 
     def _found_in(self, view: View) -> _Candidate | None:
         """Continue the candidate by the highest peak, or begin another one there."""
+        # Only the highest peak: weaker ones are nearer to the strangers, and several candidates at
+        # a time would multiply the chances of a false return.
         row, column = np.unravel_index(int(view.response.argmax()), view.response.shape)
         found = view.position(float(column), float(row))
+        # A frame below the level ends the candidate: the proof asks for frames in a row.
         before = self.candidate
         if float(view.response[row, column]) < self.response:
             return None
@@ -164,5 +174,6 @@ class Departure(NamedTuple):
 
 def is_too_far(size: Array, first: Array) -> bool:
     """Test whether a hidden vehicle of this size is too small, and was larger at first."""
+    # By both bounds: a dot that the user marked has not driven away, and may come back as a dot.
     extent = float(np.sqrt(size.prod()))
     return extent < _SMALLEST and extent < _SHRUNK * float(np.sqrt(first.prod()))

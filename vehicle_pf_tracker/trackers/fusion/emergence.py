@@ -59,6 +59,7 @@ class Emergence(NamedTuple):
 
     def was_alone(self, earlier: Iterable[tuple[float, Array]]) -> bool:
         """Test whether nothing else moved before; `earlier` has ages in frames, and boxes."""
+        # A stranger that moved before may be hidden now, too, and come out in the vehicle's stead.
         last = self.last.position
         velocity = self.motion.velocity
         return not any(len(self._near(boxes, last - velocity * ago)) for ago, boxes in earlier)
@@ -72,25 +73,30 @@ class Emergence(NamedTuple):
         return float(np.hypot(*self.motion.velocity))
 
     def _area(self, sides: Array) -> float:
-        """Area of a bounding box (2, 2), of the vehicle's."""
+        """Area of a bounding box (2, 2), as a fraction of the vehicle's."""
         return float((sides[1] - sides[0]).prod() / self._extent**2)
 
     def _near(self, boxes: Array, own: Array | None) -> Array:
         """Choose the boxes within reach that are not at the vehicle's `own` position."""
+        # As far as the vehicle would drive in the two seconds that sightings are kept for, and two
+        # sizes more for boxes that are counted by their middles.
         middles = boxes.mean(axis=1)
         areas = (boxes[:, 1] - boxes[:, 0]).prod(axis=1)
         reach = KEPT_FRAMES * self._speed + 2 * self._extent
         counts = np.linalg.norm(middles - self.last.position, axis=1) < reach
         counts &= areas > _LEAST_MOVING * self._extent**2
         if own is not None:
+            # Its pieces lie within its own box: a middle a whole size away is another one's.
             counts &= (np.abs(middles - own) > self.last.size).any(axis=1)
         return np.asarray(boxes[counts])
 
     def observed(self, boxes: Array, elapsed: float) -> Emergence | None:
         """Take what moves now; None once anything else does."""
+        # `None` ends the search for good: of several things that move none can be proven to be it.
         new = self._replace(age=self.age + elapsed)
         extent = self._extent
         # At first the rest of the vehicle goes in.
+        # Twice its size: it may brake to less than half of its speed as it goes in (`_SPEEDS`).
         is_entering = self._speed * new.age < 2 * extent
         boxes = self._near(boxes, self.last.position if is_entering else None)
         if not len(boxes):
@@ -101,12 +107,13 @@ class Emergence(NamedTuple):
         before = self.sides
         if not before and not new._can_begin(sides):
             return None
+        # A jump is another thing, or a merged outline: the proof begins again, the search goes on.
         if before and np.abs(sides - before[-1]).max() > extent:
             before = ()
         return new._replace(sides=(*before, sides))
 
     def proven(self, elapsed: float) -> tuple[Array, Array] | None:
-        """Sides (2, 2) and velocity of the vehicle, if its size, way and speed prove it."""
+        """Sides (2, 2), px, and velocity (2,), px per frame, if size, way and speed prove it."""
         frames = len(self.sides)
         if frames < PROOF_FRAMES or self._area(sides := self.sides[-1]) <= _LEAST_AREA:
             return None
@@ -115,6 +122,7 @@ class Emergence(NamedTuple):
         moved = np.where(np.abs(moves[1]) > np.abs(moves[0]), moves[1], moves[0])
         if np.hypot(*moved) < PROOF_DISTANCE * self._extent:
             return None
+        # 1e-3 frames instead of none, where stamps repeat: such a speed is excluded below.
         velocity = moved / max((frames - 1) * elapsed, 1e-3)
         slowest, fastest = np.array(_SPEEDS) * self._speed
         return (sides, velocity) if slowest < np.hypot(*velocity) < fastest else None
@@ -122,10 +130,12 @@ class Emergence(NamedTuple):
     @property
     def has_paint(self) -> bool:
         """True if its paint is the vehicle's in the mean; windows of a stranger may look alike."""
+        # 1 is the limit of `Appearance.paint_difference`.
         return bool(np.mean(self.paint) < 1)
 
     def _can_begin(self, sides: Array) -> bool:
         """Test whether the vehicle can be there already, and nothing enters by the border."""
+        # What touches the border may have come from outside, and is a stranger then.
         enters = (sides <= 0).any() or (sides >= self.image_size).any()
         far = np.hypot(*(sides.mean(axis=0) - self.last.position))
         return not enters and bool(far < _SPEEDS[1] * self._speed * self.age + self._extent)

@@ -19,6 +19,7 @@ def weigh_by_flow(state: State, seen: Observation, step: Step) -> State:
     if seen.was_hidden:  # what was kept of the frame before shows an occluder
         return state
     patch = step.memory.appearance.usual_patch(seen.view.patch)
+    # At the peak, not at the prediction: points and flow have to be looked for on the vehicle.
     points = state.points
     surface = state.surface
     if seen.tasks.follows_size:
@@ -26,6 +27,7 @@ def weigh_by_flow(state: State, seen: Observation, step: Step) -> State:
     if seen.tasks.trains_filter:
         surface = surface.judged(patch, seen.position, state.size)
     particles = state.particles
+    # A vehicle whose surface never moved with it, of a few px, is judged by the response alone.
     if surface.is_reliable:
         ratio = points_evidence(surface.share, step.parameters.visibility)
         particles = particles.weighed_alike(ratio)
@@ -34,4 +36,5 @@ def weigh_by_flow(state: State, seen: Observation, step: Step) -> State:
 
 def points_evidence(share: float, parameters: VisibilityParameters) -> float:
     """Log-likelihood ratio by the share of the surface's points that move with the vehicle."""
+    # Linear in the share, as the ratio by the response is: even odds where half of it moves along.
     return parameters.points_slope * (min(share, 1.0) - EVEN_SHARE)

@@ -67,25 +67,30 @@ then learns faster the lower the response. With the survival of points in place 
 81 occlusions are recovered instead of 62; from a response of .85 down, turns gain nothing
 (laboratory/notes/fusion_tried.md)."""
 _LEAST_STIFFNESS = 0.2
-"""Least stiffness in such a turn, of the usual one, however low the response."""
+"""Least stiffness in such a turn, of the usual one, however low the response. A choice: twice that
+of a turn that an outline proves (a tenth), since flow alone proves less."""
 _LEARNT_RESPONSE = 0.5
 """Response, of the usual one, above which the filter learns: without it walls are learnt, and
 white_van is claimed in half of its hidden frames (laboratory/notes/fusion_tried.md)."""
 
 
 def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> State:
-    """Follow a visible vehicle, or the prediction of a hidden one."""
+    """Follow a visible vehicle, or the prediction of a hidden one, by this frame's verdict."""
     state = state._replace(verdict=verdict)
     match verdict:
+        # Before the peak: a filter that does not know the new side has its peak anywhere.
         case Turning(outlines=outlines):
             return _follow_outline(state, outlines, step)
         case Visible(whole=whole) | PartlyHidden(whole=whole):
             return _follow_peak(_with_whole(state, whole, seen, step), seen, step)
+        # The first hidden frame. In later ones the hypotheses go on by themselves, but for an
+        # outline that has come out on the way.
         case Hidden() if not seen.was_hidden:
             state = _enter_occlusion(state, step)
         case Hidden(outlines=Outlines(reappearance=way)) if way is not None:
             if way.vehicle is not None:
                 state = _look_at(state, *way.vehicle, step)
+        # In each frame, since the chain lets some become visible: only a proven return counts.
         case Gone():
             state = state._replace(particles=state.particles.all_visible(0.0))
     return state._replace(position=step.inside(state.particles.mean))
@@ -99,6 +104,8 @@ def _with_whole(state: State, whole: float, seen: Observation, step: Step) -> St
     before = state.whole
     if whole > 0.5:
         return state._replace(whole=before._replace(probability=whole))
+    # The rate is fitted when a part becomes hidden, and kept: later sightings have sizes that were
+    # predicted by it, and would confirm whatever it was.
     growth = before.growth
     measured = before.measured
     if before.is_likely:
@@ -114,14 +121,17 @@ def _with_whole(state: State, whole: float, seen: Observation, step: Step) -> St
 def _enter_occlusion(state: State, step: Step) -> State:
     """Predict from the last clear sightings: the occluder has dragged later ones along."""
     fitted = state.sightings.fit()
+    # Never seen clearly: the hypotheses are all there is.
     if fitted is None:
         whole = state.whole._replace(measured=state.size)
         return state._replace(particles=state.particles.all_visible(PRIOR_DOUBT), whole=whole)
     path, last = fitted
     foreground = step.memory.foreground
+    # Once, of the frames before: all hidden frames are compared with the same background.
     if foreground.is_known:
         foreground.learn_background()
     state = state._replace(verdict=Hidden(Outlines.begun(foreground, path, last)))
+    # The size too: the occluder has shrunk the box in the frames since.
     size = last.size * path.scale_at(last.age)
     state = state._replace(size=size, whole=state.whole._replace(measured=size))
     count = step.parameters.num_particles
@@ -132,6 +142,8 @@ def _enter_occlusion(state: State, step: Step) -> State:
 
 def _look_at(state: State, found: Candidate, velocity: Array, step: Step) -> State:
     """Expect the vehicle where it has come out, at the size that it has there."""
+    # Still hidden: the response of the next frame decides. Without outlines the same one cannot
+    # call the hypotheses back in every frame.
     state = state._replace(size=step.bounded(found.size), verdict=Hidden())
     particles = gathered(state, step, found.position, velocity, 1 - PRIOR_DOUBT)
     return state._replace(particles=particles)
@@ -139,6 +151,7 @@ def _look_at(state: State, found: Candidate, velocity: Array, step: Step) -> Sta
 
 def _follow_peak(state: State, seen: Observation, step: Step) -> State:
     """Take position, velocity and, of a vehicle that is wholly visible, size from the peak."""
+    # Position first, since sizes are compared there; the sighting last, with both.
     state = _centred(state, seen, step)
     if seen.tasks.follows_size and seen.response > SIZE_RESPONSE and _is_sure(state):
         state = _sized(state, seen, step)
@@ -156,12 +169,16 @@ def _centred(state: State, seen: Observation, step: Step) -> State:
     particles = state.particles
     position = seen.position
     if seen.was_hidden:
+        # The last position was a prediction: a displacement from it is its error, and no velocity.
+        # And the hypotheses are too far apart for one that is seen.
         visible = particles.probability_visible
         particles = gathered(state, step, position, particles.mean_velocity, visible)
     else:
         moved = (position - state.position) / max(step.elapsed, 1e-3)
+        # The first displacement is all that is known of a velocity. 1e-3: stamps may repeat.
         gain = 1.0 if state.frames == 1 else step.parameters.motion.gain
         velocities = particles.velocities + gain * (moved - particles.velocities)
+        # Moved as one, they keep their spread: it is what the next climb starts from.
         centred = step.inside(particles.positions + (position - particles.mean))
         particles = particles._replace(positions=centred, velocities=velocities)
     return state._replace(particles=particles, position=position)
@@ -175,6 +192,7 @@ def _sized(state: State, seen: Observation, step: Step) -> State:
     """
     options = step.parameters.size
     size = state.size
+    # Points first: they follow what is faster than a step of the search, which then trims the rest.
     peak = partial(step.memory.appearance.response_at, step.frame, state.position)
     if options.step and not seen.was_hidden:
         stretch = believed_stretch(state.points.stretch, state.surface.share, size, options)
@@ -184,17 +202,20 @@ def _sized(state: State, seen: Observation, step: Step) -> State:
 
 
 def believed_stretch(stretch: Array, share: float, size: Array, options: SizeParameters) -> Array:
-    """Change of the log of width and height by the stretch of the points on the vehicle.
+    """Change of log width and height (2,) by the stretch (2,) of the points on the vehicle.
 
     An occluder draws points together along one axis. So the stretch that both axes have in common
     is believed wholly if it widens the box, or narrows it faster than the response can follow. The
     rest is believed in part, and only where the surface is wholly visible.
     """
+    # The smaller one where both agree in sign, zero where they do not. `reach` is what one search
+    # can correct: narrowing within it is left to the response, as occluders narrow the spread, too.
     common = max(stretch.min(), 0.0) + min(stretch.max(), 0.0)
     reach = options.gain * np.log1p(options.step)
     if -reach <= common <= 0 or size.prod() <= _LEAST_BELIEVED**2:
         common = 0.0
     if share > _WHOLE_SHARE:
+        # The common part twice at half weight, hence wholly; what is beyond it at half weight.
         return np.asarray(_POINTS_GAIN * (stretch + common))
     return np.full(2, common if share > _COMMON_SHARE else 0.0)
 
@@ -205,6 +226,7 @@ def _follow_outline(state: State, outlines: Outlines, step: Step) -> State:
     centre, outer = vehicle.box
     position = step.inside(centre)
     size = step.bounded(outer)
+    # Counted as clear: the filter's response to the new side would exclude it from the next fit.
     sightings = state.sightings.added(position, size, 1.0)
     state = state._replace(position=position, size=size, sightings=sightings)
     particles = gathered(state, step, position, vehicle.velocity, 1 - PRIOR_DOUBT)
@@ -219,6 +241,7 @@ def learn(state: State, seen: Observation, step: Step) -> State:
         case Visible() | PartlyHidden():
             _learn_appearance(state, seen, step)
             state = _learn_usual(state, seen, step)
+    # Kept in every frame: `was_hidden` keeps the next step from comparing with a hidden one.
     patch = step.memory.appearance.usual_patch(seen.view.patch)
     return state._replace(
         points=_renewed_points(state, seen, patch),
@@ -235,6 +258,7 @@ def _learn_usual(state: State, seen: Observation, step: Step) -> State:
         surface = surface.learnt_usual()
         if memory.foreground.is_known:  # only then is it asked for
             memory.appearance.learn_paint(step.frame, state.position, state.size)
+    # Of a part, what is beside it may be the rest of the vehicle itself.
     if state.whole.is_likely:
         strangers = strangers.measured(seen.view, state.position, state.size)
     if seen.was_hidden:  # what was kept shows an occluder
@@ -258,6 +282,7 @@ def _renewed_points(state: State, seen: Observation, patch: Patch) -> SurfacePoi
 def _learn_turn(state: State, vehicle: Branch, view: View, step: Step) -> None:
     """Train fast on a vehicle that turns."""
     appearance = step.memory.appearance
+    # Followed down, or the vehicle would count as hidden as soon as the outline ends.
     response = min(max(view.at(vehicle.box[0]), _LEAST_LEVEL), 1.0)
     appearance.learn_usual(response, _TURNING_LEVEL_RATE)
     # Without a spectrum the cells are measured again, at the size of the outline.
@@ -277,9 +302,12 @@ def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
     if not turns and (response <= _LEARNT_RESPONSE or not state.whole.is_likely):
         return
     visible = state.particles.probability_visible
+    # First the mean of all frames, then an exponential one; less where the frame may be an
+    # occluder's. In every frame, since a response costs nothing more, while training has its turns.
     appearance.learn_usual(response, max(USUAL_RATE, 1 / (state.frames + 1)) * visible)
     if not seen.tasks.trains_filter:
         return
+    # Stiffness is the weight of the filter before: half as sure, the frame counts half as much.
     stiffness = options.stiffness / visible
     if turns:
         stiffness *= max(response, _LEAST_STIFFNESS)
