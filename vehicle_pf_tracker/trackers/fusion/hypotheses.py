@@ -30,17 +30,18 @@ HIDDEN_SCALES = (1.0, 1.2, 1 / 1.2)
 """Sizes that a hidden vehicle is looked for at, of the predicted one: behind painted walls it is a
 fifth too low in the median when the vehicle comes out, as the wall has cut the last sightings."""
 _DEGENERATE = 0.5
-"""Share of the particles below which the effective sample size asks for resampling (usual)."""
+"""Share of the particles below which the effective sample size asks for resampling: the usual half,
+a choice between few distinct hypotheses and the noise of drawing them in every frame."""
 PRIOR_DOUBT = 0.02
-"""Probability of the other state, where a vehicle is declared visible or hidden: log odds -3.9 when
-an occlusion begins. At the usual response, log ratio 6, a vehicle is visible again after one
-frame, at .8 of it (3.6) after two."""
+"""Probability of the other state, where a vehicle is declared visible or hidden: log odds -3.9, and
+by the returns of the chain -2.6 a frame later. Then one frame of the usual response, log ratio 6,
+makes it visible if one of thirty hypotheses is in place; of .8 of it (3.6), if two of five are."""
 _FRAMES_BEFORE = 2.0
 """Frames over which the velocity may have changed already when an occlusion begins: the vehicle is
 judged hidden a frame or two after the last clear sighting."""
 _PREDICTION_SIGMA = 0.04, 0.01
-"""Spread of the positions predicted from the last clear sighting, of the size, and per frame since:
-about the residual of the fit to sightings of real vehicles."""
+"""Spread in sizes of the positions predicted from the last clear sighting, at once and per frame
+since: about the residual of the fit to sightings of real vehicles."""
 ACROSS_LANES = 0.3
 """Noise of a hidden vehicle's velocity across its heading, of that along it: it brakes more than it
 leaves its lane. Equal noise covers the next lane within 30 frames, and its cars are taken for the
@@ -51,7 +52,8 @@ _GROWTH_SIGMA = 0.004
 """Spread of the predicted rates of growth per frame; a step of the fit's grid is 0.0025."""
 HIDING, RETURN = 0.02, 0.05
 """Probabilities per frame that a visible vehicle is hidden, and that a hidden one is visible: an
-occlusion lasts 20 frames in the mean (13 of the ten total ones in 27 sequences)."""
+occlusion lasts 20 frames in the mean (13 of the ten total ones in 27 sequences). One begins every
+50 frames, a choice: in traffic vehicles are visible for most of the time."""
 
 
 def chain(elapsed: float) -> tuple[float, float]:
@@ -70,13 +72,13 @@ class Hypotheses(NamedTuple):
     positions : (N, 2) array
         Centres, px.
     velocities : (N, 2) array
-        px per frame.
+        Velocities, px per frame.
     growths : (N,) array
         Change of the logarithm of the size per frame.
     visible : (N,) array
         Probability that the vehicle is visible, given that this hypothesis is right.
     weights : (N,) array
-        Normalised.
+        Weights, whose sum is 1.
     """
 
     positions: Array
@@ -135,19 +137,24 @@ class Hypotheses(NamedTuple):
         across : float
             Share of the velocity's noise across the heading.
         """
+        # Changes of independent frames add in variance.
         root = np.sqrt(elapsed)
         count = len(self.positions)
+        # From p' = V / (1 - r t)^2 and the growth g = r / (1 - r t): p'' = 2 g p', and g' = g^2.
         faster = np.exp(2 * self.growths * elapsed)[:, np.newaxis]
+        # One common heading: where the vehicle stands, those of single hypotheses would be noise.
         noise = along_heading(sample_normal(rng, count, 1.0), self.mean_velocity, across)
         velocities = self.velocities * faster + noise * (sigmas[1] * root)
         positions = self.positions + velocities * elapsed
         positions += sample_normal(rng, count, sigmas[0] * root)
         growths = self.growths * (1 + self.growths * elapsed)
+        # g' = g^2 reaches infinity in finite time: a vehicle would fill the image behind a wall.
         growths = np.minimum(np.maximum(growths, -FASTEST_GROWTH), FASTEST_GROWTH)
         return self._replace(positions=positions, velocities=velocities, growths=growths)
 
     def passed(self, elapsed: float) -> Hypotheses:
         """Let the chain of visibility pass `elapsed` frames."""
+        # One step of a two-state Markov chain: what stays visible, and what returns.
         stays, returns = chain(elapsed)
         return self._replace(visible=self.visible * stays + (1 - self.visible) * returns)
 
@@ -157,10 +164,14 @@ class Hypotheses(NamedTuple):
 
     def evidence(self, log_ratios: Array) -> float:
         """Likelihood ratio, of this set against a hidden vehicle, of what gave these log ratios."""
+        # A hypothesis that says "visible" with probability v has the ratio v L + (1 - v), which is
+        # 1 + v (L - 1): in this form the sum stays exact where L is close to 1.
         return float(self.weights @ (self.visible * np.expm1(log_ratios))) + 1
 
     def weighed(self, log_ratios: Array) -> Hypotheses:
         """Weigh by log-likelihood ratios (N,) of visible against hidden (Bayes' rule)."""
+        # The likelihood of a hidden vehicle is 1, as all are ratios to it: what says "hidden"
+        # neither gains nor loses by what is seen at its position.
         seen = self.visible * np.exp(log_ratios)
         total = seen + (1 - self.visible)  # in this order never below `seen`
         weights, _ = normalise(self.weights * total)
@@ -168,6 +179,8 @@ class Hypotheses(NamedTuple):
 
     def weighed_alike(self, log_ratio: float) -> Hypotheses:
         """Take evidence on visibility that is the same for all hypotheses; weights stay."""
+        # By Bayes' rule those that are likelier visible would gain weight, too. But flow is
+        # measured at one position, and does not tell which of them is right.
         seen = self.visible * np.exp(log_ratio)
         return self._replace(visible=seen / (seen + (1 - self.visible)))
 
@@ -176,6 +189,7 @@ class Hypotheses(NamedTuple):
         enough = effective_sample_size(self.weights) >= _DEGENERATE * len(self.weights)
         if enough and count == len(self.weights):
             return self
+        # Systematic: the least variance of the counts, and one random number a frame.
         chosen = systematic(self.weights, count, rng)
         drawn = Hypotheses(*(values[chosen] for values in self))
         return drawn._replace(weights=np.full(count, 1 / count))
@@ -186,6 +200,7 @@ def along_heading(noise: Array, heading: Array, across: float) -> Array:
     speed = math.hypot(*heading.tolist())
     if across == 1.0 or not speed:
         return noise
+    # The part along the heading is a projection; what is left is across.
     unit = heading / speed
     along = (noise @ unit)[:, np.newaxis] * unit
     return np.asarray(along + across * (noise - along))
@@ -208,21 +223,26 @@ def hidden_hypotheses(
     age : float
         Frames since that one.
     count : int
-        Number of hypotheses.
+        Number N of hypotheses.
     extent : float
         Geometric mean of the vehicle's sides, px.
     velocity_sigma : float
-        Change of the velocity while hidden, of the size, per frame squared.
+        Standard deviation of the velocity's change while hidden, sizes per frame squared.
     """
+    # 1. Positions: the fitted path, with an error that grows since the last clear sighting.
     velocity = motion.velocity_at(age)
     draws = rng.normal(size=(2, count, 2))
     spread = (_PREDICTION_SIGMA[0] + _PREDICTION_SIGMA[1] * age) * extent
     positions = motion.position_at(age) + draws[0] * spread
+    # 2. Velocities: it may have braked as it was hidden, in proportion to its size; and the fit
+    # errs in proportion to the speed. Both may hold at once, so that they add.
     speed_sigma = _FRAMES_BEFORE * velocity_sigma * extent
     speed_sigma += _SPEED_SIGMA * float(np.hypot(*velocity))
+    # 3. Growth: none where none was fitted, since noise alone would let it grow in each occlusion.
     growths = np.zeros(count)
     if motion.rate:
         growths = motion.growth_at(age) + rng.normal(size=count) * _GROWTH_SIGMA
     growths = np.clip(growths, -FASTEST_GROWTH, FASTEST_GROWTH)
+    # 4. Across the heading there is less noise than along it.
     velocities = velocity + along_heading(draws[1], velocity, ACROSS_LANES) * speed_sigma
     return Hypotheses.around(positions, velocities, growths, PRIOR_DOUBT)

@@ -26,7 +26,8 @@ CLEAR_RESPONSE = 0.75
 """Least response, of the usual one, of a sighting that the fit believes. While an occluder moves in
 it drags positions along and shrinks the box; 5 % of visible frames have less than 0.8."""
 _SIZE_RESPONSE = 0.9
-"""The same of one whose size the fit believes: an occluder shrinks the box first."""
+"""Least response, of the usual one, of a sighting whose size the fit believes: an occluder shrinks
+the box first. Levels of .85 to .95 predict sizes as well (laboratory/notes/fusion_tried.md)."""
 _RATES = np.linspace(-0.04, 0.04, 33)
 """Rates of approach per frame that are tried; to 0.15, as many walls are recovered from (83 of 126,
 and 37 of 105 before moving cameras: laboratory/notes/fusion_tried.md)."""
@@ -53,7 +54,10 @@ fit averages noise, the last one knows of changes of speed."""
 
 @dataclass(frozen=True, slots=True)
 class PerspectiveMotion:
-    """``p(t) = p0 + V t / (1 - r t)`` and ``s(t) = s0 / (1 - r t)``.
+    """Image motion ``p(t) = p0 + V t / (1 - r t)`` and size ``s(t) = s0 / (1 - r t)``.
+
+    From its principal point a pinhole camera sees what drives at constant velocity, to a depth of
+    Z (1 - r t), at (p0 + U t) / (1 - r t); with V = U + r p0 that is the motion above.
 
     Attributes
     ----------
@@ -68,6 +72,7 @@ class PerspectiveMotion:
     rate: float
 
     def _divisor(self, time: float) -> float:
+        # At zero the vehicle reaches the camera; beyond, the sign would be wrong.
         return max(1.0 - self.rate * time, _LEAST_DIVISOR)
 
     def position_at(self, time: float) -> Array:
@@ -76,6 +81,7 @@ class PerspectiveMotion:
 
     def velocity_at(self, time: float) -> Array:
         """Velocity, px per frame, `time` frames after time 0."""
+        # The derivative of t / (1 - r t).
         return np.asarray(self.velocity / self._divisor(time) ** 2)
 
     def scale_at(self, time: float) -> float:
@@ -89,12 +95,12 @@ class PerspectiveMotion:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sighting:
-    """Where the vehicle was seen.
+    """An observation of the vehicle: where it was, and how large.
 
     Attributes
     ----------
     age : float
-        Frames ago.
+        Age of the sighting, frames.
     position, size : (2,) arrays
         Centre, and width and height, px.
     cut : bool
@@ -130,6 +136,7 @@ class Sightings(NamedTuple):
         # They are kept from the last clear one on: a vehicle may be hidden for as long again.
         clear = self.rows[:, 5] >= CLEAR_RESPONSE
         oldest = KEPT_FRAMES + (self.rows[clear, 0].min() if clear.any() else 0.0)
+        # A mask copies: the rows of the state before stay as they were.
         rows = self.rows[self.rows[:, 0] < oldest]
         rows[:, 0] += elapsed
         if camera.still:
@@ -156,6 +163,7 @@ class Sightings(NamedTuple):
         clear = responses >= CLEAR_RESPONSE
         if not clear.any():
             return None
+        # Before the clear ones are chosen: the whole vehicle's ratio is taken from all.
         whole = restored_sightings(ages, positions, sizes, responses)
         positions, sizes = whole or (positions, sizes)
         positions = positions[clear]
@@ -163,6 +171,7 @@ class Sightings(NamedTuple):
         ages = ages[clear]
         last = Sighting(float(ages[-1]), positions[-1], sizes[-1], whole is not None)
         times = last.age - ages
+        # Too few believed sizes tell no rate; then all clear ones count.
         believed = responses[clear] >= _SIZE_RESPONSE
         if believed.sum() < PROOF_FRAMES:
             believed[:] = True
@@ -180,7 +189,7 @@ def fit_motion(
     times : (N,) array
         Times in frames, ascending, the last of them 0.
     positions : (N, 2) array
-        px.
+        Positions, px.
     sizes : (N,) array
         Geometric means of the sides, px.
     size_weights : (N,) array
@@ -191,11 +200,15 @@ def fit_motion(
     PerspectiveMotion
         Its position is the mean of the fitted and the last one.
     """
+    # 1. For each rate the path is linear in t / (1 - r t): only the rate needs a grid. Few
+    # sightings tell no rate.
     rates = _RATES if len(times) >= PROOF_FRAMES else np.zeros(1)
     weights = np.exp(times / _MEMORY)
     total = weights.sum()
     divisors = np.maximum(1.0 - rates[:, np.newaxis] * times, _LEAST_DIVISOR)
     shares = times / divisors
+    # 2. Velocities by weighted regression, for all rates at once. Centred on the means, offset and
+    # slope separate.
     centres = shares @ weights / total
     middle = weights @ positions / total
     off = shares - centres[:, np.newaxis]
@@ -203,13 +216,17 @@ def fit_motion(
     spread = off**2 @ weights + 1e-9
     velocities = (off * weights) @ (positions - middle) / spread[:, np.newaxis]
     residuals = positions - middle - off[..., np.newaxis] * velocities[:, np.newaxis]
+    # 3. At the right rate s (1 - r t) is constant: what varies is the error. In the logarithm a
+    # size that is a tenth too large is as wrong for a far vehicle as for a near one.
     logs = np.log(sizes * divisors)
     log_sizes = logs @ size_weights / size_weights.sum()
+    # 4. Minus twice the log posterior, with a normal prior on the rate; the best possible rate.
     sigma = _POSITION_SIGMA * float(sizes.mean())
     costs = (residuals**2).sum(axis=2) @ weights / sigma**2 + (rates / _RATE_SIGMA) ** 2
     costs += (logs - log_sizes[:, np.newaxis]) ** 2 @ size_weights / _SIZE_SIGMA**2
     possible = rates * times[0] <= _LARGEST_CHANGE
     best = int(np.argmin(np.where(possible, costs, np.inf)))
+    # 5. The path at time 0, halfway to the last sighting.
     fitted = middle - centres[best] * velocities[best]
     position = (1 - _LAST_WEIGHT) * fitted + _LAST_WEIGHT * positions[-1]
     return PerspectiveMotion(position, velocities[best], float(rates[best]))
