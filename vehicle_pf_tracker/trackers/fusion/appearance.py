@@ -35,7 +35,7 @@ _CELLS = 32
 """Cells along each side of a patch: three times the target's ten, so that background is learnt on
 all sides; a power of two for the Fourier transform."""
 _WIDE_CELLS = 64
-"""The same while a hidden vehicle is searched for far around: twice as far, the next such power."""
+"""Cells along each side while a hidden vehicle is searched for far around: the next such power."""
 _TARGET_SIDE = 40.0
 """Geometric mean of the target's canonical sides, px: ten cells, and 0.3 of the patch."""
 _LARGEST_ZOOM = 8.0

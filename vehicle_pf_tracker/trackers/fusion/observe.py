@@ -50,24 +50,27 @@ _MEASURED_SPREAD = 0.3
 """Spread of the hypotheses after a first motion was measured, of the one before: about a px.
 Without that motion drift-chicane is lost in 6 of 6 runs, and no other of 27 sequences changes."""
 _WIDE_FROM = 0.5
-"""Spread of the hypotheses, of the size, from which a wide patch is searched. The usual patch
-reaches 1.6 sizes to each side, three standard deviations of this spread."""
+"""Spread of the hypotheses in sizes above which a wide patch is searched. The usual patch reaches
+1.6 sizes to each side, three standard deviations of this spread."""
 _SAME_VEHICLE = 0.5
-"""Distance from the best hypothesis, of the size, within which others are of the same vehicle:
-centres of two vehicles are farther apart than half of one."""
+"""Distance in sizes from the best hypothesis within which others are of the same vehicle: centres
+of two vehicles are farther apart than half of one."""
 CLIMB_FREELY, CLIMB_ON_PATH, STAY = (5, 3.0), (3, 1.0), (0, 1.0)
 """Places of the response to each side within which a hypothesis is moved to a better one, and
 standard deviation that a move is paid for with. Where the path is known better than the place it
 has to keep to it: while hidden, else all would gather at clutter. A measured first motion is kept
 to exactly: a standing part of the first box answers better than the vehicle, and the filter cannot
-tell which of them it was shown."""
+tell which of them it was shown. The reaches are choices of up to a quarter of the
+target's side."""
 
 
 def predict(state: State, step: Step) -> tuple[State, Prediction]:
     """Move with the camera, and predict all hypotheses; the first step measures a first motion."""
+    # The camera first: all velocities are against the background, and flow too.
     state = _moved_with_camera(state, step)
     moved = _set_off(state, step) if state.frames == 0 else None
     state, mean = _predicted(moved or state, step)
+    # By the mean before it is moved into the image: inside, no vehicle would ever leave.
     left_image = is_outside(step.frame, *mean.tolist())
     return state, Prediction(left_image, sets_off=moved is not None)
 
@@ -76,6 +79,7 @@ def _moved_with_camera(state: State, step: Step) -> State:
     """Move everything that is known with the background; its zoom never changes the size."""
     memory = step.memory
     camera = CameraMotion()
+    # One reduced image serves both; the foreground has to know at once when the camera moves.
     if step.parameters.motion.camera:
         small = small_grey(step.frame)
         camera = memory.camera.measure(small, state.box)
@@ -84,6 +88,7 @@ def _moved_with_camera(state: State, step: Step) -> State:
         sightings=state.sightings.moved_on(step.elapsed, camera),
         surface=state.surface.moved(camera),
     )
+    # Outlines are places in an image whose background is gone, and cannot be carried along.
     if not memory.foreground.is_known:
         state = state._replace(verdict=_without_outlines(state))
     if camera.still:
@@ -110,6 +115,7 @@ def _set_off(state: State, step: Step) -> State | None:
         return None
     particles = state.particles
     share = _MEASURED_SPREAD
+    # Shrunk around the first box, from where the measured motion takes them in `_predicted`.
     positions = state.position + share * (particles.positions - state.position)
     velocities = move + share * particles.velocities
     particles = particles._replace(positions=positions, velocities=velocities)
@@ -125,8 +131,11 @@ def _predicted(state: State, step: Step) -> tuple[State, Array]:
     extent = state.extent
     visible = state.is_visible
     sigmas = motion.position_sigma * extent, motion.velocity_sigma * extent
+    # No noise of the position: that of a visible vehicle covers jumps of the peak; unseen, it moves
+    # by its velocity only.
     if not visible:
         sigmas = 0.0, step.hidden_velocity_sigma(state.sightings) * extent
+        # One size for all, hence the mean rate; bounded, since a wrong rate would act all the time.
         grown = size * np.exp(float(particles.weights @ particles.growths) * elapsed)
         size = step.bounded(np.minimum(grown, LARGEST_GROWTH * state.whole.measured))
     across = 1.0 if visible else ACROSS_LANES
@@ -139,12 +148,14 @@ def observe(state: State, prediction: Prediction, step: Step) -> tuple[State, Ob
     """Weigh the hypotheses by the filter's response, and find its peak at the best of them."""
     if isinstance(state.verdict, Gone):
         return _observe_return(state, state.verdict.departure, step)
+    # Of the frame before: the verdict on this one comes after the observation.
     was_hidden = not state.is_visible
     climb = STAY if prediction.sets_off else CLIMB_ON_PATH if was_hidden else CLIMB_FREELY
     before = state.particles
     size = state.size
     state, view = _weighed(state, climb, step)
     if prediction.sets_off:
+        # Their mean instead of a peak: a standing part of the box has the higher one (`STAY`).
         position = step.inside(state.particles.positions.mean(axis=0))
         response = view.at(position)
     else:
@@ -173,6 +184,7 @@ def _is_stranger(state: State, position: Array, step: Step) -> bool:
 
 def _next_tasks(state: State, response: float, step: Step) -> Tasks:
     """Choose the costly tasks of this frame."""
+    # The worse of both: either alone announces an occlusion or a turn.
     level = min(state.surface.share, response) if state.surface.is_reliable else 0.0
     return step.tasks.next(state.frames, level, was_visible=isinstance(state.verdict, Visible))
 
@@ -185,8 +197,11 @@ def _weighed(state: State, climb: tuple[int, float], step: Step) -> tuple[State,
     """
     scales = (1.0,) if state.is_visible else HIDDEN_SCALES
     results = [(*_searched(state, climb, step, scale), scale) for scale in scales]
+    # The size of the highest marginal likelihood, summed over positions and visibility: the highest
+    # peak alone would prefer the size that clutter answers to best.
     view, positions, ratios, scale = max(results, key=lambda it: state.particles.evidence(it[2]))
     particles = state.particles._replace(positions=positions).weighed(ratios)
+    # While hidden it stays the predicted one: taken over from clutter, it would drift.
     size = step.bounded(scale * state.size) if particles.probability_visible > 0.5 else state.size
     return state._replace(particles=particles, size=size), view
 
@@ -197,12 +212,14 @@ def _searched(
     """Judge the hypotheses by the response to a vehicle `scale` times as large as believed."""
     particles = state.particles
     appearance = step.memory.appearance
+    # Four times the cells: only where the usual patch would miss hypotheses.
     wide = not state.is_visible and particles.spread > _WIDE_FROM * state.extent
     patch = appearance.patch(step.frame, particles.mean, scale * state.size, wide=wide)
     view = _viewed(patch, step)
     options = step.parameters.visibility
     positions, ratios = response_evidence(view, particles.positions, climb, options)
     way = _way_of(state)
+    # Only the evidence for it is dropped: what answers there is another one.
     if way is not None:  # what comes up from behind is another vehicle
         ratios = np.where(way.is_behind(positions), np.minimum(ratios, 0.0), ratios)
     return view, positions, ratios
@@ -232,6 +249,7 @@ def _observe_return(state: State, departure: Departure, step: Step) -> tuple[Sta
     departure = departure.observed(view, step.elapsed)
     particles = state.particles
     position = departure.position
+    # Nothing is measured on the vehicle until its return is proven, whatever strangers answer.
     response = 0.0
     if departure.returned is not None:
         position, velocity = departure.returned
@@ -245,7 +263,7 @@ def _observe_return(state: State, departure: Departure, step: Step) -> tuple[Sta
 def gathered(
     state: State, step: Step, position: Array, velocity: Array, visible: float
 ) -> Hypotheses:
-    """Draw hypotheses around a position, all of one velocity."""
+    """Draw hypotheses around a position (2,), px, all of one velocity (2,), px per frame."""
     count = step.parameters.num_particles
     motion = step.parameters.motion
     spread = step.rng.normal(size=(count, 2)) * motion.position_sigma * state.extent
@@ -255,7 +273,9 @@ def gathered(
 
 @functools.cache
 def _costs(reach: int, sigma: float) -> Array:
-    """Costs of all moves in reach, as log ratios, by [y, x]."""
+    """Costs (2 r + 1, 2 r + 1) of all moves in reach r, as log ratios, by [y, x]."""
+    # Minus the logarithm of a Gaussian: moves are paid for as noise of the position. Cached, since
+    # the costs are the same in all frames.
     offsets = np.arange(-reach, reach + 1) ** 2
     return np.asarray(0.5 * (offsets[:, np.newaxis] + offsets) / sigma**2)
 
@@ -271,17 +291,21 @@ def response_evidence(
         The response around the prediction.
     positions : (N, 2) array
         Positions of the hypotheses, px.
+    climb : (int, float)
+        Reach and standard deviation of a move, in places of the response.
 
     Returns
     -------
     positions : (N, 2) array
-        Moved to the best place in reach, px.
+        Positions of the best places in reach, px.
     log_ratios : (N,) array
-        Log-likelihood ratio there, less what the move costs.
+        Log-likelihood ratios there, less what the moves cost.
     """
+    # Below 0 the filter has seen nothing, which is no stronger evidence than 0.
     seen = np.minimum(np.maximum(view.response, 0), np.float32(_HIGHEST_RESPONSE))
     ratios = parameters.response_slope * (seen.astype(np.float64) - EVEN_RESPONSE)
     moves, log_ratios = climbed(ratios, view.places(positions), _costs(*climb))
+    # Bounded last: a move is paid for out of the whole ratio, before what is too much of it is cut.
     bounded = np.minimum(np.maximum(log_ratios, -_LARGEST_LOG_RATIO), _LARGEST_LOG_RATIO)
     return positions + moves / view.steps, bounded
 
@@ -295,6 +319,7 @@ def likeliest_peak(view: View, particles: Hypotheses, extent: float) -> tuple[Ar
         Geometric mean of the vehicle's sides, px.
     """
     votes = particles.weights * particles.visible
+    # Not the mean of all: between two groups of hypotheses there is no vehicle.
     best = particles.positions[int(votes.argmax())]
     x, y = (particles.positions - best).T
     votes = votes * (np.hypot(x, y) < _SAME_VEHICLE * extent)

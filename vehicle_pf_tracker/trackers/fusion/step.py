@@ -58,7 +58,7 @@ class Step:
     rng : Generator
         Source of everything random.
     memory : Memory
-        What was learnt of the vehicle and of the camera.
+        Appearance of the vehicle, motion of the camera and foreground, as learnt so far.
     tasks : Tasks
         Costly tasks of the frame before, by which those of this frame are chosen.
     """

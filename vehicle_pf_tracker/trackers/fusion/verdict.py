@@ -69,7 +69,7 @@ class Gone(NamedTuple):
     Attributes
     ----------
     departure : Departure
-        Where and how it has left.
+        Place and reason of the departure, and the search for a return.
     """
 
     departure: Departure

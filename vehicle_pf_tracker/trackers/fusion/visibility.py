@@ -28,8 +28,9 @@ from vehicle_pf_tracker.trackers.fusion.verdict import (
 )
 
 _LARGEST_PARTIAL_LOG_RATIO = 3.0
-"""Bound of a frame's log ratio of whole against partial, 20 to 1: errors of flow last over
-frames."""
+"""Bound of a frame's log ratio of whole against partial, 20 to 1: errors of flow last over frames.
+A choice, half of that of the response, so that no single frame ends a belief of .99
+(`verdict.WHOLE_AT_FIRST`)."""
 
 
 def judge(state: State, seen: Observation, prediction: Prediction, step: Step) -> Verdict:
@@ -90,6 +91,7 @@ def wholeness(before: float, share: float, elapsed: float, options: VisibilityPa
     """
     stays, returns = chain(elapsed)
     before = before * stays + (1 - before) * returns
+    # Even odds at `partial_middle`; linear as the other ratios are.
     ratio = options.partial_slope * (share - options.partial_middle)
     bound = _LARGEST_PARTIAL_LOG_RATIO
     whole = before * math.exp(min(max(ratio, -bound), bound))
