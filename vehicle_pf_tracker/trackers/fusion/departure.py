@@ -27,15 +27,16 @@ _SMALLEST = 8.0
 """Geometric mean of the sides, px, below which a vehicle that is hidden is too far to see: smaller
 ones are dots, and what is taken for their return is a pattern of the background in most cases."""
 _SHRUNK = 0.5
-"""The same, of the first one: a vehicle that was as small from the beginning has not shrunk."""
+"""Bound of the same mean as a fraction of that of the first box: a vehicle that was as small at
+first has not shrunk."""
 _ENTERS_WITHIN = 1.5
-"""Distance from the border at which something that enters is first seen, of the size: its centre
-has to be half a size inside, and moves at less than one per frame."""
+"""Largest distance from the border, in sizes, at which something that enters is first seen: its
+centre has to be half a size inside, and moves at less than one per frame."""
 PROOF_DISTANCE = 0.5
-"""Distance moved within `PROOF_FRAMES` that proves a vehicle, of the size: the background stands,
+"""Least distance in sizes moved within `PROOF_FRAMES` that proves a vehicle: the background stands,
 and the noise of peaks is a tenth of that."""
 _FARTHEST_STEP = 1.0
-"""Distance from one frame to the next within which peaks are of the same vehicle, of the size:
+"""Largest distance in sizes from one frame to the next at which peaks are of the same vehicle:
 centres of two vehicles in a lane are at least a length apart."""
 _STRANGERS_RATE = 0.005
 """Rate per frame at which the strangers' response fades: the road behind is another one. It halves
@@ -87,7 +88,7 @@ class Departure(NamedTuple):
     way : (2,) array
         Direction that a return has to move in: into the image, or on along the road.
     position, size : (2,) arrays
-        Where it left, and its width and height then, px.
+        Centre where it left, and its width and height then, px.
     response : float
         Response that a return has to reach, relative to the usual one.
     waited : float

@@ -37,9 +37,9 @@ class Emergence(NamedTuple):
     Attributes
     ----------
     last : Sighting
-        Where the vehicle was last seen clearly.
+        Last clear sighting of the vehicle.
     motion : PerspectiveMotion
-        Its motion then.
+        Motion of the vehicle then, whose time 0 is that sighting.
     image_size : (2,) array
         Width and height of the frame, px.
     age : float

@@ -29,28 +29,33 @@ _REACH_ALONG = 1.5
 """Distance of an outline ahead of the prediction or behind it, of the predicted diagonal, within
 which it is on this heading: hidden vehicles that came near had covered .22 to .8 of their way."""
 _REACH_ACROSS = 0.6
-"""The same to either side: predictions err less there, and the next lane is one diagonal away."""
+"""Distance of an outline to either side of the prediction, of the predicted diagonal, within which
+it is on this heading: predictions err less there, and the next lane is one diagonal away."""
 _SIDES = 0.5, 2.2
 """Bounds of its extent, of the predicted one: behind signs and bridges vehicles that came near were
 predicted at .36 to .8 of their size, others at up to 1.4 of it."""
 _LEAST_AREA = 0.25
 """Area of an outline beside the heading that is another vehicle, of the predicted one: less is a
-piece, and may be the tip of the vehicle's own shadow."""
+piece, and may be the tip of the vehicle's own shadow. The quarter is a choice."""
 _SPEEDS = 0.4, 3.0
 """Bounds of its speed, of the predicted one: one that is twice as near is four times as fast."""
 LEAST_PAINT = 0.1
-"""Share of a box that has the vehicle's paint, at least: windows, lamps and road have another."""
+"""Least share of a box that has the vehicle's paint: windows, lamps and road have another. A tenth
+is a choice: 7 of the 64 spots that are compared."""
 _LARGEST_JUMP = 0.5
-"""Largest move of a side from frame to frame, of the predicted diagonal: more is another piece."""
+"""Largest move of a side from frame to frame, of the predicted diagonal: more is another piece. The
+half is a choice; two vehicles in a lane are a whole length apart."""
 _BEHIND = 0.5
-"""Distance against the heading, of the size, from which nothing is the vehicle: no vehicle reverses
-on a road, and what comes up from behind is another one."""
+"""Distance in sizes against the heading, from the last clear sighting, beyond which nothing is the
+vehicle: it does not reverse on a road, and what comes up from behind is another one."""
 _REMEMBERED = 2
-"""Frames in which others are remembered: outlines flicker, and where one was another comes."""
+"""Frames in which others are remembered, the least that bridges one in which an outline is lost: it
+flickers. Longer ones would claim the road that others have left."""
 _FOLLOWED = 2 * PROOF_FRAMES
 """Frames over which the velocity of an outline is measured at most: it may brake or turn."""
 _JUDGED = 3
-"""Frames in a row in which filter and paint have to know it: single outlines jump."""
+"""Frames in a row in which filter and paint have to know it: single outlines jump. Three is a
+choice, a tenth of a second."""
 
 
 class Candidate(NamedTuple):
@@ -61,9 +66,9 @@ class Candidate(NamedTuple):
     position, size : (2,) arrays
         Centre, and width and height, px.
     response : float
-        Response of the filter there, relative to the usual one.
+        Highest response of the filter in the outline, relative to the usual one.
     paint : float
-        Share of it that has the vehicle's paint.
+        Share of the box that has the vehicle's paint.
     """
 
     position: Array
@@ -84,11 +89,11 @@ class Reappearance(NamedTuple):
     Attributes
     ----------
     last : Sighting
-        Where the vehicle was last seen clearly.
+        Last clear sighting of the vehicle.
     motion : PerspectiveMotion
-        Its motion then.
+        Motion of the vehicle then, whose time 0 is that sighting.
     age : float
-        Frames since then.
+        Frames since that sighting.
     others : tuple of (N, 2, 2) arrays
         Bounding boxes (low, high; px) of other vehicles, in the last frames.
     track : tuple of (float, (2, 2) array)
@@ -115,12 +120,15 @@ class Reappearance(NamedTuple):
 
     def observed(self, boxes: Array, judge: Judge) -> Reappearance:
         """Follow the outline; only one that drives on is judged by the filter and the paint."""
+        # Others are known by where they were: on the heading an outline is the vehicle's only if
+        # none of them was there before.
         areas = (boxes[:, 1] - boxes[:, 0]).prod(axis=1)
         is_other = ~self._on_heading(boxes) & (areas > _LEAST_AREA * self.place[1].prod())
         if self.others:
             is_other |= _touch(boxes, np.concatenate(self.others))
         else:  # what is in view elsewhere when the vehicle is hidden is not the vehicle
             position, size = self.place
+            # The middle half of the predicted box: only the vehicle's own rest may be seen there.
             own = np.stack([position - size / 4, position + size / 4])
             is_other |= ~_touch(boxes, own[np.newaxis])
         new = self._replace(others=(*self.others[1 - _REMEMBERED :], boxes[is_other]))
@@ -128,6 +136,7 @@ class Reappearance(NamedTuple):
 
     def _followed(self, boxes: Array, judge: Judge) -> Reappearance:
         """Follow the outline that is next to the predicted position."""
+        # A frame without any ends the proof, which asks for frames in a row.
         boxes = boxes[self._has_size(boxes)]
         if not len(boxes):
             return self._replace(track=(), judged=())
@@ -150,6 +159,7 @@ class Reappearance(NamedTuple):
         velocity = self._velocity()
         if len(self.judged) < _JUDGED or velocity is None:
             return None
+        # Both have to agree: strangers often have one of them, the paint or the shape.
         response = float(np.mean([each.response for each in self.judged]))
         paint = float(np.mean([each.paint for each in self.judged]))
         agrees = response > CLEAR_RESPONSE and paint > LEAST_PAINT
@@ -167,11 +177,14 @@ class Reappearance(NamedTuple):
         velocity = np.asarray(moved / max(now - began, 1e-3))
         predicted = self.motion.velocity_at(self.age)
         speed = float(np.hypot(*predicted))
+        # Along the predicted heading, so that what crosses it is no return. 1e-3 and 1e-9 only keep
+        # repeated stamps and vehicles that stood from dividing by zero.
         along = float(velocity @ predicted) / max(speed, 1e-9)
         return velocity if _SPEEDS[0] * speed < along < _SPEEDS[1] * speed else None
 
     def is_behind(self, positions: Array) -> Mask:
         """Test which positions (..., 2) are against the heading from where the vehicle was last."""
+        # Both sides times the speed, undivided: of a vehicle that stood nothing is behind.
         velocity = self.motion.velocity
         speed = float(np.hypot(*velocity))
         extent = float(np.sqrt(self.last.size.prod()))
@@ -183,6 +196,7 @@ class Reappearance(NamedTuple):
         diagonal = float(np.hypot(*size))
         velocity = self.motion.velocity_at(self.age)
         heading = velocity / max(float(np.hypot(*velocity)), 1e-9)
+        # To the nearest point of a box: shadows move the centres of outlines.
         off = np.clip(position, boxes[:, 0], boxes[:, 1]) - position
         along = np.abs(off @ heading)
         across = np.abs(off @ np.array([-heading[1], heading[0]]))

@@ -27,17 +27,20 @@ _APART_PX = 4.0
 """Canonical px that vehicle and background should have moved apart since the patch that the present
 one is compared with: the youngest such patch is taken. Flow is good to about one."""
 _TELLING_PX = 2.0
-"""The same below which the background's flow is too close to the vehicle's: twice the error."""
+"""Motion apart in canonical px below which the background's flow is too close to the vehicle's:
+twice the error."""
 _SIDE = 96
 """Side in canonical px of the middle of a patch that flow is measured in: a target has 77 px at
 most, and flow of all 128 takes 1.7 times as long."""
 BOX_REACH = 0.45
-"""Outermost points from the centre, of the size: half a cell, a twentieth of the canonical size,
-inside the box."""
+"""Distance of the outermost points from the centre, fraction of the size: half a cell, a twentieth
+of the canonical size, inside the box."""
 _REFINED = 5
-"""Iterations of the flow's smoothing (Brox et al. 2004): plain surfaces move with their edges."""
+"""Iterations of the flow's smoothing (Brox et al. 2004): plain surfaces move with their edges. Five
+is a choice; flow is good to one px with it, and each iteration costs time."""
 USUAL_RATE = 0.05
-"""Rate per frame at which the usual share follows the present one in clear frames."""
+"""Rate per frame at which the usual share follows the present one in clear frames: in 20 frames, a
+choice. An occluder that covers the vehicle within fewer does not move it."""
 _LEAST_USUAL_SHARE = 0.3
 """Usual share below which flow is not reliable: a vehicle of a few px, or motion blur. That of a
 vehicle of which .3 to .5 is visible is .33 (laboratory/notes/fusion_tried.md)."""
@@ -56,12 +59,12 @@ class _Kept(NamedTuple):
 
 
 class SurfaceFlow(NamedTuple):
-    """Compares the present patch with an earlier one, point by point.
+    """Earlier patches, and the share of the surface that moves with the vehicle between two.
 
     Attributes
     ----------
     patches : tuple of _Kept
-        The last patches.
+        The last patches, oldest first.
     usual, latest : float
         Usual share of the box that moves with the vehicle, and the share when last judged.
     share : float
@@ -84,6 +87,7 @@ class SurfaceFlow(NamedTuple):
         """Let the camera move, once between two patches that are kept."""
         if camera.still or not self.patches:
             return self
+        # With the patch that it starts from: `_earlier` composes all motions from a patch on.
         latest = self.patches[-1]._replace(camera=camera)
         return self._replace(patches=(*self.patches[:-1], latest))
 
@@ -107,19 +111,23 @@ class SurfaceFlow(NamedTuple):
         kept, camera, apart = self._earlier(position, patch.zoom)
         background = camera if apart >= _TELLING_PX else None
         latest = _moving_share(_middle(patch), kept, position, size, background)
+        # The first share is its own usual one: no other is known.
         usual = self.usual or latest
         is_reliable = usual >= _LEAST_USUAL_SHARE
+        # More than usual is no better than visible; an unreliable share must not speak against it.
         share = min(latest / usual, 1.0) if is_reliable else 1.0
         return SurfaceFlow(self.patches, usual, latest, share, is_reliable)
 
     def learnt_usual(self) -> SurfaceFlow:
         """Count the present share as one of a clear frame."""
+        # A share of patches that have hardly moved apart would make all later ones look low.
         if len(self.patches) < _LEAST_KEPT:
             return self
         return self._replace(usual=self.usual + USUAL_RATE * (self.latest - self.usual))
 
     def _earlier(self, position: Array, zoom: Array) -> tuple[_Kept, CameraMotion, float]:
         """Choose a patch to compare with; the camera's motion since, and the vehicle's beyond."""
+        # From the youngest on, as appearance has changed least; if none is far enough, the oldest.
         since = CameraMotion()
         for kept in reversed(self.patches):
             if not kept.camera.still:
@@ -139,24 +147,29 @@ def _moving_share(
     patch's px: a point p is mapped to p * map[0] + map[1] where a map has two rows, and the
     background's to p @ map[:2] + map[2], since the camera may roll.
     """
+    # 1. Maps from the patch to the frame, and on to the box: positions as fractions of its size.
     before = kept.patch
     half = _SIDE / 2
     to_frame = 1 / patch.zoom, patch.centre - half / patch.zoom
     to_box = np.array([to_frame[0] / size, (to_frame[1] - position) / size])  # (2, 2)
+    # 2. From the box to the earlier patch, if all of it had moved and grown with the vehicle.
     grown = kept.size * before.zoom
     start = (kept.position - before.centre) * before.zoom + half
     vehicle = np.array([to_box[0] * grown, to_box[1] * grown + start])  # (2, 2)
+    # 3. The same if it had stood still: back by the camera's motion.
     background = np.empty((0, 2))
     if camera is not None:
         back = solved(camera.turn, np.eye(2)).T * before.zoom
         shift = (to_frame[1] - camera.shift) @ back + half - before.centre * before.zoom
         background = np.array([*(to_frame[0][:, np.newaxis] * back), shift])  # (3, 2)
+    # 4. A point counts for the vehicle if flow leads nearer to the second map than to the third.
     cells = _cells(patch, position, size)
     return carried_share(_flow(patch, before), cells, to_box, vehicle, background)
 
 
 def _middle(patch: Patch) -> Patch:
     """Cut out what flow is measured in."""
+    # OpenCV's flow asks for a contiguous image.
     middle = patch.middle(_SIDE)
     return Patch(middle.image, np.ascontiguousarray(middle.grey), patch.centre, patch.zoom)
 
@@ -178,6 +191,7 @@ def _cells(patch: Patch, position: Array, size: Array) -> CellBlock:
     middle = patch.to_patch(position)
     half = BOX_REACH * size * patch.zoom
     last = patch.side // FLOW_CELL_PX - 1
+    # Cells whose middles are inside: half a cell less on either side.
     low = np.minimum(np.maximum(np.ceil((middle - half) / FLOW_CELL_PX - 0.5), 0), last)
     high = np.minimum(np.maximum(np.floor((middle + half) / FLOW_CELL_PX - 0.5), low), last)
     return np.array([low, high - low + 1], np.intp)

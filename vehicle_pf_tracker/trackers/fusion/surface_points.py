@@ -4,8 +4,8 @@
 """Points on the vehicle, tracked from frame to frame: its first motion, and its change of size.
 
 Points that stay behind with a standing occluder, or go away with a moving one, leave their place in
-the box and end; and no others are placed on a vehicle that is partly hidden, since they would lie
-on the occluder.
+the box and end. On a vehicle that is partly hidden others are placed half as often, since a part of
+them lies on the occluder.
 """
 
 from __future__ import annotations
@@ -26,21 +26,26 @@ _GRID = 8
 """Points along each axis: four fifths of 64 may be lost until they tell no more of the size
 (`box_motion.FEWEST_POINTS`)."""
 _GRID_REACH = 0.4
-"""Outermost points from the centre, of the size, whose windows end at the box: half of one is a
-tenth of the canonical size, and the background is beyond."""
+"""Distance of the outermost points from the centre, fraction of the size. Their windows end at the
+box: half of one is a tenth of the canonical size, and the background is beyond."""
 _RENEWED_AFTER, _OLDEST = 5, 10
-"""Age in frames of points that are replaced, and the same where a part of the vehicle is hidden."""
+"""Age in frames of points that are replaced, and the same where a part of the vehicle is hidden:
+points drift off their spots as they age, new ones may lie on the occluder. Both are choices."""
 _STRAYED = 0.2
 """A point farther than this (fraction of the box size) from its predicted position in the box has
-left the vehicle; the prediction turns with the other points."""
+left the vehicle; the prediction turns with the other points. That is 8 canonical px, a choice far
+above the error of a round trip."""
 _ROUND_TRIP_PX = 1.0
-"""Largest error in canonical px of a point tracked forth and back (Kalal et al. 2010)."""
+"""Largest error in canonical px of a point tracked forth and back (Kalal et al. 2010): a choice, as
+flow is good to about one px."""
 _FLOW = PointFlow(window=9, levels=0, steps=8, precision=0.05)
-"""No pyramid: the response's peak gives the motion to within a few canonical px."""
+"""No pyramid: the response's peak gives the motion to within a few canonical px, half a window. It
+ends at the box (`_GRID_REACH`); steps and precision are choices below the error of a round trip."""
 _FIRST_GRID = 10
 """Points along each axis: finer than later, as most of a loose first box may be road."""
 _FIRST_FLOW = PointFlow(window=13, levels=3)
-"""The first step knows no velocity, hence larger windows and more pyramid levels."""
+"""The first step knows no velocity, hence larger windows and more pyramid levels: three, a choice,
+reach eight times as far, more than the size of the target."""
 _FIRST_MOVED_PX = 1.5
 """Motion in canonical px, and least in px of the frame, above which a point moves against the
 background: less is the error of the camera's motion, or noise that was magnified."""
@@ -52,7 +57,7 @@ round trip."""
 
 
 class _Points(NamedTuple):
-    """Places in the box, positions (px), whether each lives, and their age in frames."""
+    """Points by place in the box (sizes from its centre), position (px), life, and age (frames)."""
 
     places: Array
     positions: Array
@@ -93,13 +98,16 @@ class SurfacePoints(NamedTuple):
         assert self.previous is not None, "keep the first patch before"
         previous, _ = self.previous
         places = _grid(_FIRST_GRID, BOX_REACH)
+        # The box is in the middle of its patch; OpenCV counts from the middle of the first pixel.
         start = (places * size * previous.zoom + previous.side / 2 - 0.5).astype(np.float32)
         end, found = _flow(previous, patch, start, None, _FIRST_FLOW)
         moves = (end - start)[found].astype(np.float64)
+        # Both patches show the same piece of the background: what moves there moves against it.
         least = _FIRST_MOVED_PX * max(float(patch.zoom.max()), 1.0)
         moves = moves[np.hypot(moves[:, 0], moves[:, 1]) > least]
         if len(moves) < _FIRST_FEWEST:
             return None
+        # The motion that most points share: a second vehicle may pass in the box.
         alike = np.linalg.norm(moves[:, np.newaxis] - moves, axis=2) < _FIRST_ALIKE_PX
         largest = alike[int(alike.sum(axis=1).argmax())]
         if largest.sum() < _FIRST_FEWEST:
@@ -120,15 +128,19 @@ class SurfacePoints(NamedTuple):
         if self.previous is None or self.points is None:
             return self
         places, positions, alive, age = self.points
+        # They age without any left, so that new ones are placed at their time.
         if not alive.any():
             return SurfacePoints(self.previous, self.points._replace(age=age + 1))
         previous, started = self.previous
         before = positions[alive]
         start = np.asarray(previous.to_patch(before) - 0.5, np.float32)
+        # The peak has found the motion: without a pyramid only the rest is within a window's reach.
         guess = np.asarray(patch.to_patch(before + position - started) - 0.5, np.float32)
         end, found = _flow(previous, patch, start, guess, _FLOW)
         after = patch.to_frame(end.astype(np.float64) + 0.5)
+        # With the strays, as it is a median: they are told by the box, which it is to correct.
         stretch = box_motion.shared_stretch(before[found], after[found], size)
+        # Copied: the state of the frame before shares the arrays.
         positions = positions.copy()
         living = alive.copy()
         positions[alive], living[alive] = after, found
@@ -137,9 +149,11 @@ class SurfacePoints(NamedTuple):
 
     def renewed(self, position: Array, size: Array, *, whole: bool = True) -> SurfacePoints:
         """Place new points if it is time."""
+        # None yet: they are placed at once.
         age = _OLDEST if self.points is None else self.points.age
         if age < (_RENEWED_AFTER if whole else _OLDEST):
             return self
+        # All at once: the ages, and so the errors, of all points are alike.
         places = _grid(_GRID, _GRID_REACH)
         points = _Points(places, position + places * size, np.ones(len(places), bool))
         return self._replace(points=points)

@@ -33,18 +33,20 @@ from vehicle_pf_tracker.trackers.fusion.perspective import (
 from vehicle_pf_tracker.trackers.fusion.reappearance import Judge, Reappearance
 
 _ASIDE = 0.15
-"""Least distance of both sides from the predicted path, of the size, in a turn: an outline is good
-to 1 or 2 px, a tenth of a vehicle of 20 px."""
+"""Least distance of both sides from the predicted path in a turn, fraction of the size: an outline
+is good to 1 or 2 px, a tenth of a vehicle of 20 px."""
 _ACROSS = 0.25
 """Velocity to that side, of the speed: that of a heading changed by 15 degrees. What a wall leaves
 of an outline may lie aside, but it does not move there."""
 _CONFIRMED = 2
 """Frames in a row that prove it: single outlines jump with the noise at their rim."""
 _LARGEST_LOG_CHANGE = np.log(1.3)
-"""Largest change of a side's logarithm in a frame; a merged outline changes by more."""
+"""Largest change of a side's logarithm in a frame; a merged outline changes by more. A choice:
+twice that of vehicles that pass a camera at 10 images a second (`box_motion.LARGEST_STRETCH`)."""
 _LEAST_COVERED, _MOST_COVERED = 0.6, 2.0
 """Bounds of the area of the outline in the last clear sighting, of the box. The box holds some
-road, and the outline the shadow; beyond, parts are missing or another vehicle has merged."""
+road, and the outline the shadow; beyond, parts are missing or another vehicle has merged. Both are
+choices: a shadow may be as large as the vehicle."""
 _FURTHEST = 40.0
 """Frames after the doubt began within which a turn is proven: a turn by 90 degrees takes 20 (scene
 `turn`), and leaves the path in its first half."""
@@ -58,15 +60,15 @@ class Branch(NamedTuple):
     Attributes
     ----------
     motion : PerspectiveMotion
-        Predicted path.
+        Predicted path of the vehicle, whose time 0 is the last clear sighting.
     size : (2,) array
         Width and height of the box when it was seen last, px.
     margins : pair of (2,) arrays
-        From the box's low and high sides to the outline's, px: a shadow keeps its extent in a turn.
+        Offsets of the outline's low and high sides from the box's, px: a shadow keeps its extent.
     outline : Outline
-        In the present frame.
+        Outline in the present frame.
     velocity : (2,) array
-        Of the outline, px per frame.
+        Velocity of the outline, px per frame.
     age : float
         Frames since the doubt began.
     aside : int
@@ -91,15 +93,17 @@ class Branch(NamedTuple):
     def begun(
         cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting
     ) -> Branch | None:
-        """Begin `last.age` frames ago, and follow the outline to the frame before this one."""
+        """Begin `last.age` frames ago, at the last clear sighting, and follow to this frame."""
         ago = round(last.age)
         first = foreground.outline(last.position, last.size, ago)
         if first is None:
             return None
+        # An outline that was not the vehicle's alone would leave the path for another's sake.
         if not _LEAST_COVERED < float(first.size.prod() / last.size.prod()) < _MOST_COVERED:
             return None
         half = last.size / 2
         margins = first.low - (last.position - half), first.high - (last.position + half)
+        # The frames of the doubt are followed, too: a turn began before the response fell.
         branch: Branch | None = cls(motion, last.size, margins, first, motion.velocity)
         for back in range(ago - 1, -1, -1):
             branch = branch and branch.moved(foreground, 1.0, back)
@@ -108,22 +112,26 @@ class Branch(NamedTuple):
     def moved(self, foreground: Foreground, elapsed: float, ago: int = 0) -> Branch | None:
         """Follow the outline for `elapsed` frames, into the frame some `ago`; None: it is lost.
 
-        Whether it has left the path is judged in each frame, also before the doubt.
+        Its departure from the path is judged in each frame, also before the doubt.
         """
         before = self.outline
         velocity = self.velocity
+        # A lost outline ends the branch for good: what is found later may be another's.
         after = foreground.outline(before.centre + velocity * elapsed, before.size, ago)
         if after is None or np.abs(np.log(after.size / before.size)).max() > _LARGEST_LOG_CHANGE:
             return None
+        # Where stamps repeat there is a displacement without a time.
         if elapsed:
             moved = (after.centre - before.centre) / elapsed
             velocity = velocity + _VELOCITY_GAIN * (moved - velocity)
         new = self._replace(outline=after, velocity=velocity, age=self.age + elapsed)
+        # In a row: one frame on the path begins the proof anew. Once proven, it stays so.
         aside = self.aside + 1 if _leaves(new, *new.box) else 0
         return new._replace(aside=aside, is_proven=self.is_proven or aside >= _CONFIRMED)
 
     def judged(self, view: View) -> Branch:
         """Judge whether the filter recognises the vehicle again."""
+        # Before the proof the filter knows the vehicle as it was, which proves no turn to be over.
         is_clear = self.is_proven and view.at(self.box[0]) > CLEAR_RESPONSE
         return self._replace(clear=self.clear + 1 if is_clear else 0)
 
@@ -135,6 +143,7 @@ class Branch(NamedTuple):
     @property
     def box(self) -> tuple[Array, Array]:
         """Centre and size, px, of the box that the outline belongs to."""
+        # Each side has its own margin: a shadow is on one side of the vehicle.
         low, high = self.outline.low - self.margins[0], self.outline.high - self.margins[1]
         # An outline may have become smaller than its margins were.
         return (low + high) / 2, np.maximum(high - low, 1.0)
@@ -158,10 +167,12 @@ class Outlines(NamedTuple):
         """
         if not foreground.is_known:
             return cls()
+        # On its way it may come out even if its outline was cut: that one is not compared.
         reappearance = Reappearance(last, motion, last.age)
         if last.cut:  # its outline was not the vehicle's
             return cls(reappearance=reappearance)
         emergence = Emergence(last, motion, foreground.extent)
+        # In traffic whatever comes out beside the path may be another vehicle.
         was_alone = emergence.was_alone(foreground.history())
         branch = Branch.begun(foreground, motion, last)
         return cls(branch, emergence if was_alone else None, reappearance)
@@ -185,18 +196,22 @@ class Outlines(NamedTuple):
         judge : callable
             Finds the vehicle in an outline.
         """
+        # 1. The outline that was followed since the doubt began.
         branch = self.branch and self.branch.moved(foreground, elapsed)
         emergence = self.emergence
         reappearance = self.reappearance
+        # 2. What comes out beside the path: a new branch, if the first one is lost.
         if emergence is not None:
             emergence, emerged = _emerged(emergence, foreground.boxes(), elapsed, difference)
             branch = branch or emerged
+        # 3. What comes out on the way, judged where it is now.
         if reappearance is not None:
             reappearance = reappearance.aged(elapsed)
             boxes = foreground.boxes_near(*reappearance.place)
             reappearance = reappearance.observed(boxes, judge)
         if branch is None:
             return Outlines(None, emergence, reappearance)
+        # 4. A proven turn ends the other searches, and is over once the filter knows the new side.
         branch = branch.judged(view)
         if branch.is_proven:
             emergence = None
@@ -220,6 +235,7 @@ def _emerged(
     emergence = followed
     outline = Outline(*found[0])
     velocity = found[1]
+    # Its margins are not known: the outline is the box until the filter takes over.
     margins = (np.zeros(2), np.zeros(2))
     paint = difference(outline.size, outline.centre)
     emergence = emergence._replace(paint=(*emergence.paint, paint))
@@ -242,9 +258,11 @@ def _leaves(branch: Branch, position: Array, size: Array) -> bool:
     speed = float(np.hypot(*velocity))
     if not speed:
         return False
+    # To one side of the heading; `off` has the sign of that side.
     normal = np.array([-velocity[1], velocity[0]]) / speed
     predicted = branch.size * branch.motion.scale_at(branch.age)
     off = float((position - branch.motion.position_at(branch.age)) @ normal)
+    # Both sides of the box have to be off: a cut moves only one of them.
     wider = float(np.abs(normal) @ (size - predicted)) / 2
     aside = (abs(off) - abs(wider)) / float(np.sqrt(predicted.prod()))
     return aside > _ASIDE and float(branch.velocity @ normal) * np.sign(off) > _ACROSS * speed
