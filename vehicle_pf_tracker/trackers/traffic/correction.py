@@ -31,17 +31,20 @@ from vehicle_pf_tracker.trackers.traffic.vehicle_state import ACROSS, Edge, W
 _WHOLE = 0.85
 """Share of the width or height, of the predicted and of the latest detections, below which one of
 the two edges is covered: at the rim of an occluder the edge does not jump, it creeps, and would
-brake the vehicle."""
+brake the vehicle. At the usual edge noise a side is as short by chance at two standard
+deviations."""
 _JUMP = 3.0
 """Standard deviations by which an edge that is drawn in has jumped: one in 400 is as far."""
 _KNOWN_FROM = 4
-"""Detections of a vehicle from which its size is known, so that an edge can be said to lack."""
+"""Detections of a vehicle from which its size is known, so that an edge can be said to lack: with a
+rate of `_FOLLOWED`, the latest four count for two thirds."""
 _SHORT_FOR = 4
 """Detections in a row that are smaller from which a part is missing: fewer come by chance."""
 _COVERED_FOR = 30
 """Detections in a row, one second of 30 Hz, after which a smaller box is all there is."""
 _COME_BACK = 0.5
-"""Share of missing parts that are seen again from which a place is one that covers vehicles."""
+"""Share of missing parts that are seen again from which a place is one that covers vehicles: even
+odds."""
 _FOLLOWED = 0.25
 """Rate per detection at which residuals are learnt, and at which boxes follow them: the latest four
 count for two thirds."""
@@ -90,12 +93,16 @@ def correct(
     size : (int, int)
         Width and height of the image.
     noise : float
-        Standard deviation of an edge, fraction of the size.
+        Standard deviation of an edge, fraction of the box's side.
     uncoverings : Returns
         Learns where missing parts of vehicles come back: there something covers them.
     """
+    # 1. Cut in both, an edge is unknown. Where only one is cut, the vehicle comes in or leaves, and
+    # the edge is measured.
     unknown = cut_edges(edges, size, noise) & cut_edges(tracks.edges, size, noise)
+    # 2. Count what is smaller than before, as patience depends on it.
     tracks = note_short(tracks, edges, size, unknown, uncoverings)
+    # 3. Judge all four edges by the prediction, then correct once.
     verdict = which_edges(tracks, edges, size, noise, unknown, uncoverings)
     return replace(tracks, drives=corrected(tracks.drives, edges, verdict, noise)), verdict.whole
 
@@ -118,6 +125,8 @@ def note_short(
     is_short = (sides_of(edges) < _WHOLE * _latest(tracks.drives, edges)).any(axis=1)
     short = np.where(asked, np.where(is_short, extents.short + 1, 0), extents.short)
     shortened = extents.shortened.copy()
+    # Asked once, when the row of short detections is no chance; answered by a whole one (it came
+    # back), or by `_COVERED_FOR` (it did not).
     begins = asked & (short == _SHORT_FOR)
     if begins.any():
         shortened[begins] = places_of(predicted[begins], size)
@@ -151,10 +160,13 @@ def which_edges(
     predicted = drives.gaussians.edges
     own = sides_of(drives.gaussians.edges)
     spread = deviations(predicted, noise)
+    # Innovations in their standard deviations, inward positive.
     normal = (edges - predicted) * INWARD / np.sqrt(drives.gaussians.edge_variances + spread**2)
     opposite = normal[:, OPPOSITE]
+    # Smaller than both: a prediction may have grown wrongly, a detection may be of two vehicles.
     shrunk = sides_of(edges) < _WHOLE * np.minimum(own, _latest(drives, edges))
     jumped = (normal > _JUMP) & (opposite > 0)  # a vehicle that brakes pushes it out
+    # Of two edges that are drawn in, the one that is more so.
     crept = np.tile(shrunk, 2) & (normal > np.maximum(opposite, 0.0))
     recede = _recede(tracks, edges, noise) & ~unknown.any(axis=1)
     covered = (jumped | crept) & ~unknown & ~recede[:, np.newaxis]
@@ -166,6 +178,8 @@ def _patient(tracks: Tracks, size: tuple[int, int], uncoverings: Returns) -> Boo
     """Find vehicles (N,) whose covered edges are left out: the longer, where they come back."""
     extents = tracks.drives.extents
     known = tracks.beliefs.ways.matches >= _KNOWN_FROM
+    # At first all are patient: most covers are short. Later only where parts come back, or a size
+    # that was wrong from the start would never be corrected.
     patient = known & (extents.partial < _SHORT_FOR)
     for row in np.flatnonzero(known & ~patient & (extents.partial < _COVERED_FOR)).tolist():
         place = int(extents.shortened[row])
@@ -197,12 +211,14 @@ def corrected(drives: Drives, edges: Array, verdict: Verdict, noise: float) -> D
     spread = deviations(predicted, noise)
     residuals = np.where(verdict.left_out, 0.0, (predicted - edges) * INWARD)
     drives = _doubted(drives, residuals, spread, verdict.recede)
+    # An infinite deviation is a gain of zero: the edge moves by its correlations only.
     exact = np.where(verdict.left_out, np.inf, spread)
     gaussians = drives.gaussians.measured(edges, exact)
     # Successive residuals agree: states stay behind.
     lag = _FOLLOWED * np.where(verdict.left_out, 0.0, edges - gaussians.edges)
     extents = replace(
         drives.extents,
+        # Relative to the state, so that it grows with the vehicle as that comes near.
         shown=latest / gaussians.mean[:, W:ACROSS],
         partial=np.where(verdict.whole, 0, drives.extents.partial + 1),
     )
@@ -229,19 +245,23 @@ def _doubted(drives: Drives, residuals: Array, spread: Array, recede: Bools) -> 
     recede : (N,) array
         True where the vehicle drives away.
     """
+    # 1. Drift of each edge's residuals; among others a residual may be of a neighbour's box.
     edges = drives.gaussians.edges
     variances = drives.gaussians.edge_variances
     alone = (intersections(edges[:, np.newaxis], edges) > 0).sum(axis=1) == 1
     normal = residuals / np.sqrt(variances + spread**2)
+    # Chance has no direction, and averages out; a wrong drive stays on one side.
     drift = drives.drift + _FOLLOWED * (normal - drives.drift)
+    # 2. Edges that count, and their variances as expected and as seen.
     away = recede[:, np.newaxis]
     outward = np.clip(np.where(away, -drift, drift), 0.0, np.abs(drift[:, OPPOSITE]))
     seen = ((residuals > 0) | away) & (outward > 0)
     expected = np.where(seen, variances, 0.0).sum(axis=1)
     lacking = np.where(seen, residuals**2 - spread**2, 0.0).sum(axis=1)
-    # One for each edge. At 2.5 errors that detectors repeat are followed, too: HOTA of CenterNet on
-    # the exam's clip falls by one; at 9 more boxes stay behind vehicles that come near.
+    # 3. One for each edge. At 2.5 errors that detectors repeat are followed, too: HOTA of CenterNet
+    # on the exam's clip falls by one; at 9 more boxes stay behind vehicles that come near.
     wrong = ((outward**2).sum(axis=1) > len(Edge)) & (lacking > expected) & alone
     wider = np.where(wrong, lacking / np.where(wrong, expected, 1.0), 1.0)
+    # What has widened the covariance is used up: once is enough for the next gain.
     drift = np.where(wrong[:, np.newaxis], 0.0, drift)
     return replace(drives, gaussians=drives.gaussians.widened(wider), drift=drift)

@@ -25,20 +25,21 @@ from vehicle_pf_tracker.trackers.traffic.tracks import Tracks, added_votes
 _HIDDEN_FOR = 4.0
 """Nominal periods without a detection from which a vehicle is hidden: fewer come by chance."""
 _OUT_OF_SIGHT = 0.5
-"""Visible share of a hidden vehicle below which it is still behind another one."""
+"""Visible share of a hidden vehicle below which it is still behind another one: most of it is."""
 _MOST_GROWN = 2.0
 """Ratio of the areas of two boxes below which they may be of one vehicle: it reappears part by
-part."""
+part, and a half is enough to be detected as a whole. A choice."""
 _FARTHER_IN = 30.0
 """Nominal periods, one second of 30 Hz, in which the distance at which a hidden vehicle may
-reappear grows by its width."""
+reappear grows by its width. A choice: at the usual 2 m/s² it is half a width off by then."""
 _NEAR_A_DOUBLE = 0.5
-"""The same distance, in this share, of one that has a number: beside a lorry that hides a car there
-often is another car."""
+"""Share of that distance within which one that has a number already may be the same: beside a lorry
+that hides a car there often is another car."""
 _FALL = 0.2
-"""Fall of the colours' similarity below its usual value above which it is not the vehicle."""
+"""Fall of the colours' similarity below its usual value above which it is not the vehicle. A
+choice, looser than `pixel_hold` has it: the vehicle comes back in another light."""
 _SHARED = 0.5
-"""Share of the smaller box that two boxes share above which they are of one vehicle."""
+"""Share of the smaller box that two boxes share above which they are of one vehicle: most of it."""
 
 
 def named(state: State, proven: Bools, *, returning: bool) -> State:
@@ -54,9 +55,12 @@ def named(state: State, proven: Bools, *, returning: bool) -> State:
     for row in rows[np.argsort(tracks.names.serial[rows])].tolist():
         hidden = former(tracks, row, tracks.confirmed) if returning else None
         if hidden is not None:
+            # The number stays with the old row, the new one goes: rows are dropped at the end, so
+            # that the others keep their indices meanwhile.
             tracks = resumed(tracks, hidden, row, state.experience)
             kept[row] = False
         elif not is_double(tracks, row):
+            # A double gets no number, and stays tentative.
             identity += 1
             tracks = _numbered(tracks, row, identity)
     tracks = tracks if kept.all() else tracks.take(kept)
@@ -88,15 +92,18 @@ def merged(state: State) -> State:
     tracks = state.tracks
     age = tracks.beliefs.ways.age
     undetected = tracks.sights.absences.undetected
+    # Only who is missed now can have come back under another number.
     missed = tracks.confirmed & ~tracks.detected
     if not missed.any():
         return state
+    # A twin is younger than the absence that it ends; a cheap bound before the search.
     young = tracks.confirmed & ~tracks.names.given & (age < undetected[missed].max())
     kept = np.ones(len(tracks), np.bool_)
     for row in np.flatnonzero(young).tolist():
         twin = former(tracks, row, missed) if tracks.detected[row] else None
         if twin is not None:
             tracks = resumed(tracks, twin, row, state.experience)
+            # Either can be merged once: a vehicle has one twin.
             kept[row] = missed[twin] = False
     return state if kept.all() else state._replace(tracks=tracks.take(kept))
 
@@ -108,6 +115,7 @@ def is_double(tracks: Tracks, row: int) -> bool:
     and without its shadow. Two vehicles side by side soon show more of each.
     """
     detections = tracks.sights.looks.detection
+    # Latest detections, not states, which follow them with a delay.
     boxes = detections[tracks.confirmed & tracks.detected]
     own = detections[row]
     smaller = np.minimum(areas(boxes), areas(own))
@@ -118,6 +126,7 @@ def former(tracks: Tracks, row: int, others: Bools) -> int | None:
     """Find the hidden vehicle, among `others` (N,), that the new one at `row` is, if it is any."""
     undetected = tracks.sights.absences.undetected
     hidden = others & tracks.confirmed & (undetected >= _HIDDEN_FOR)
+    # Behind a nearer vehicle it cannot be what was just detected in the open.
     hidden &= tracks.sights.visible >= _OUT_OF_SIGHT
     hidden[row] = False
     is_named = bool(tracks.confirmed[row])
@@ -125,15 +134,18 @@ def former(tracks: Tracks, row: int, others: Bools) -> int | None:
         hidden &= undetected > tracks.beliefs.ways.age[row]
     rows = np.flatnonzero(hidden)
     looks = tracks.sights.looks
+    # Without colours nothing but the distance speaks: too little for a number.
     if not len(rows) or not looks.colours[row].any():
         return None
     distance, ratio = _apart(tracks.edges[row], tracks.edges[rows])
+    # The longer it was hidden, the less its prediction is worth.
     distance /= 1 + undetected[rows] / _FARTHER_IN
     fall = looks.usual_similarity[rows] - similarities(looks.colours[rows], looks.colours[row])
     may_be = (ratio > 1 / _MOST_GROWN) & (ratio < _MOST_GROWN) & (fall <= _FALL)
     may_be &= distance <= (_NEAR_A_DOUBLE if is_named else 1.0)
     if not may_be.any():
         return None
+    # The nearest, of equally near ones the oldest track, so that runs repeat.
     nearest = np.lexsort((tracks.names.serial[rows], np.where(may_be, distance, np.inf)))
     return int(rows[nearest[0]])
 
@@ -142,17 +154,22 @@ def _apart(new: Array, old: Array) -> tuple[Array, Array]:
     """Distance (K,) of a box (4,) from boxes (K, 4) in widths, and ratio (K,) of the areas."""
     size, sizes = (np.maximum(edges[..., 2:] - edges[..., :2], 1.0) for edges in (new, old))
     away = new[:2] + size / 2 - (old[:, :2] + sizes / 2)
+    # In the mean of both widths, geometric: neither is known to be the whole one.
     width = np.sqrt(size[0] * sizes[:, 0])
     return np.hypot(*away.T) / width, size.prod() / sizes.prod(axis=1)
 
 
 def resumed(tracks: Tracks, hidden: int, row: int, experience: Experience) -> Tracks:
     """Let the vehicle at `hidden` go on as the new track at `row` that it turned out to be."""
+    # 1. The absence is learnt from: what vanished here came back.
     at = np.array([hidden])
     new = tracks.take(np.array([row]))
     old = note_found(tracks.take(at), experience)
+    # 2. Number, given or not, and growth are the old ones; classes are voted by both.
     votes = added_votes(old.names.votes[0], new.names.votes[0])
     names = replace(old.names, joined=new.names.serial, votes=objects([votes]))
+    # 3. Place and speed are the new ones: the old prediction was wrong, or the detections would
+    # have been associated with it.
     extents = replace(
         old.drives.extents,
         shown=new.drives.extents.shown,
@@ -162,11 +179,13 @@ def resumed(tracks: Tracks, hidden: int, row: int, experience: Experience) -> Tr
     gaussians = new.drives.gaussians
     before = new.drives.before
     drives = replace(old.drives, gaussians=gaussians, before=before, extents=extents)
+    # 4. The better of both beliefs: either track is evidence for the same vehicle.
     beliefs = replace(
         old.beliefs,
         has_driven=old.beliefs.has_driven | new.beliefs.has_driven,
         log_odds=np.maximum(old.beliefs.log_odds, new.beliefs.log_odds),
     )
+    # 5. Colours are those of before, learnt for longer; the detection is of now.
     looks = replace(
         old.sights.looks, score=new.sights.looks.score, detection=new.sights.looks.detection
     )

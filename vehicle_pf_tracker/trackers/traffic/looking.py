@@ -26,7 +26,8 @@ from vehicle_pf_tracker.trackers.traffic.state import State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 
 _LIKELY = 0.0
-"""Log odds from which a detection is rather a vehicle than not."""
+"""Log odds above which a detection is rather a vehicle than not: even odds. Without this first pass
+HOTA / IDF1 of YOLOX from .1 fall by 1.3 / 2.5."""
 
 
 class Look(NamedTuple):
@@ -35,13 +36,13 @@ class Look(NamedTuple):
     Attributes
     ----------
     state : State
-        What is known.
+        State of the tracker, as corrected so far.
     free : (N,) array
-        True for detections that are no vehicle's.
+        True for detections that no track has been given yet.
     candidates : Candidates
-        The detections.
+        The N detections of the frame.
     step : Step
-        The step.
+        Input of the step.
     """
 
     state: State
@@ -51,27 +52,35 @@ class Look(NamedTuple):
 
 
 def look(state: State, step: Step, detections: Detections) -> State:
-    """Take what a detector saw in this frame."""
+    """Associate the detections of this frame, correct and doubt tracks, and begin new ones.
+
+    The order of the steps is load-bearing: each works on what those before it left over.
+    """
     # 1. Every detection is as likely a vehicle as earlier ones of its score and place have been.
+    # The image is counted before: false alarms are a rate per image.
     state.experience.detections.look()
     candidates = weighed(detections.usable(*step.size), state.experience.detections, step.size)
     seen = Look(state, np.ones(len(candidates), np.bool_), candidates, step)
     # 2. Vehicles that are known choose first, and among likely detections first: else a false
     # alarm near by would be taken by one, and its own detection would be left to another.
-    # What is left over inside a vehicle that was seen is a part of it.
+    # What is left over inside a vehicle that was seen is a part of it. Parts go after each pass:
+    # in the second one a bonnet of one vehicle would be a likely detection of its neighbour.
     for least in (_LIKELY, -np.inf):
         seen = _without_parts(_give_known(seen, least))
     # 3. What is not known yet to be a vehicle chooses by density against clutter: whether it is
-    # one is not to depend on whether one is expected.
+    # one is not to depend on whether one is expected. After the known ones, as a tentative track
+    # beside a vehicle would otherwise take its detection and be confirmed by it.
     seen = _give_new(seen)
     # 4. One vehicle has one number: one that was hidden may have been taken for a new one, and
-    # one that was known by a part is not the box around it.
+    # one that was known by a part is not the box around it. Before step 5, since a vehicle that is
+    # found again here was not missed.
     if step.parameters.returning:
         seen = seen._replace(state=merged(seen.state))
     seen = _give_outgrown(seen)
     # 5. Only now it is known who was missed, in plain sight.
     seen = seen._replace(state=doubt(seen.state, step))
-    # 6. A box around a vehicle that has its own is no new one either. The others may be.
+    # 6. A box around a vehicle that has its own is no new one either. The others may be. Here
+    # missed vehicles count, too: step 4 had the first call on the boxes around them.
     seen = _without_parts(seen, either=True)
     return begun(seen.state, candidates, np.flatnonzero(seen.free), step)
 
@@ -116,13 +125,20 @@ def _take(look: Look, pairs: Pairs) -> Look:
     free[columns] = False
     tracks = state.tracks.take(rows)
     edges = candidates.edges[columns]
+    # 1. Divide before correcting: a box of two vehicles would else take the detection of one for a
+    # part of itself, and stay too large.
     tracks = replace(tracks, drives=divided(tracks.drives, edges, candidates.edges))
     uncoverings = state.experience.uncoverings
     tracks, whole = correct(tracks, edges, step.size, step.edge_noise, uncoverings)
+    # 2. Learn appearance and growth only from what is seen whole: a covered vehicle has the colours
+    # of its occluder, and a width that says nothing about the road.
     tracks = _shown(tracks, candidates, columns, whole, step)
+    # 3. Whether it stands is judged by the corrected speed, and counts for the belief.
     fits = fits_of_known(tracks, fits)
     tracks, proven = believed(tracks, candidates, columns, fits, state.experience, step)
     state = state._replace(tracks=state.tracks.put(rows, tracks))
+    # 4. Number last: a vehicle that is found again takes over its new track, whose row then goes,
+    # and `rows` would point to others.
     if proven.any():
         every = np.zeros(len(state.tracks), np.bool_)
         every[rows[proven]] = True
@@ -140,6 +156,7 @@ def _shown(
     if whole.any():
         colours = step.colours.histograms(edges[whole], [NO_BOXES] * int(whole.sum()))
         looks = coloured(looks, colours, whole)
+    # A width that the border cuts grows with the distance from the border, not from the horizon.
     grows = whole & ~cut_edges(edges, step.size, step.edge_noise).any(axis=1)
     growths = tracks.drives.growths
     growths = growths.put(grows, growths.take(grows).added(edges[grows]))

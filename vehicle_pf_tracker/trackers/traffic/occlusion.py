@@ -21,16 +21,20 @@ from vehicle_pf_tracker.trackers.traffic.state import State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 
 _HIDES_WITHIN = 4.0
-"""Nominal periods since a vehicle was seen within which it hides others: where it is known."""
+"""Nominal periods since a vehicle was seen within which it hides others. A choice: more than the
+one or two that a detector misses by chance; later its own place is a guess, which must not excuse
+what is missed there."""
 _GOOD_PART = 0.5
-"""Share of a box above which what covers it is said to hide the vehicle."""
+"""Share of a box above which what covers it is said to hide the vehicle: most of it."""
 
 
 def hide(state: State, step: Step) -> State:
-    """Note what of each vehicle is in sight, of vehicles ordered by their distance.
+    """Note how much of each vehicle is in sight, and order vehicles by their distance.
 
     Nearer boxes hide others: a detector that does not see these says nothing against them.
     """
+    # Sorted by distance, one triangle of the matrix of overlaps says who hides whom. The order is
+    # kept in the state: from frame to frame it rarely changes, and nothing is copied then.
     order = nearest_first(state.tracks, step.road)
     is_sorted = (order == np.arange(len(order))).all()
     tracks = state.tracks if is_sorted else state.tracks.take(order)
@@ -38,12 +42,15 @@ def hide(state: State, step: Step) -> State:
     sights = tracks.sights
     hiding = np.flatnonzero(_hides(tracks) & step.parameters.occlusions)
     common = intersections(edges[:, np.newaxis], edges[hiding]) / areas(edges)[:, np.newaxis]
+    # A vehicle hides neither itself nor a nearer one.
     common[np.arange(len(tracks))[:, np.newaxis] <= hiding] = 0.0
+    # A sum of shares, no union: where occluders overlap one another, less seems to be seen than is.
     visible = np.maximum(1 - common.sum(axis=1), 0.0)
     hidden_by = np.zeros(len(tracks), np.intp)
     if len(hiding):
         is_named = common.max(axis=1) > _GOOD_PART
         hidden_by[is_named] = tracks.names.identity[hiding[common.argmax(axis=1)]][is_named]
+    # Kept beside the share: pixels and colours leave out just these boxes.
     covers = filled(len(tracks), NO_BOXES)
     for row in np.flatnonzero(visible < 1).tolist():
         covers[row] = edges[hiding][common[row] > 0]
@@ -68,10 +75,12 @@ def nearest_first(tracks: Tracks, road: RoadPlane | None) -> Integers:
         Road that they stand on; None: the lower a vehicle stands in the image, the nearer it is.
     """
     edges = tracks.edges
+    # A box stands on the road in the middle of its lower edge.
     feet = np.column_stack([(edges[:, 0] + edges[:, 2]) / 2, edges[:, 3]])
     nearness = feet[:, 1] if road is None else _nearness(feet, road)
     # What a lens cannot show is out of the image, and last.
     distances = np.nan_to_num(-nearness, nan=np.inf)
+    # Equally far ones by age: an order that depends on nothing else repeats.
     return np.asarray(np.lexsort((tracks.names.serial, distances)))
 
 
@@ -81,5 +90,6 @@ def _nearness(feet: Array, road: RoadPlane) -> Array:
 
 def _hides(tracks: Tracks) -> Bools:
     absences = tracks.sights.absences
+    # Tentative tracks hide nothing: a false alarm would excuse missed detections behind it.
     is_known = (absences.unseen < _HIDES_WITHIN) & ~absences.lost
     return np.asarray(tracks.confirmed & is_known)

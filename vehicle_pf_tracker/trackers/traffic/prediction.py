@@ -15,6 +15,7 @@ from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 
 def find_horizon(state: State, step: Step) -> State:
     """Find the row of the horizon by the vehicles that have grown so far."""
+    # Tentative tracks may be leaves, whose boxes grow by chance.
     followed = state.tracks.drives.growths.take(state.tracks.confirmed)
     assumed = step.parameters.motion.horizon
     horizon = state.horizon.looked(assumed, followed, step.size, step.road)
@@ -23,11 +24,13 @@ def find_horizon(state: State, step: Step) -> State:
 
 def drive_on(state: State, step: Step) -> State:
     """Let all vehicles drive on along the road, below the horizon as it is known now."""
+    # The horizon first: a state is relative to its row.
     state = find_horizon(state, step)
     tracks = driven(state.tracks, state.horizon.row, step)
     sound = tracks.drives.gaussians.is_sound
     if sound.all():
         return state._replace(tracks=tracks)
+    # One NaN among the costs would fail the assignment of all vehicles.
     lost = int(np.count_nonzero(~sound))
     return state._replace(tracks=tracks.take(sound), bad_states=state.bad_states + lost)
 
@@ -40,9 +43,12 @@ def driven(tracks: Tracks, horizon: float, step: Step) -> Tracks:
     drives = replace(
         drives,
         gaussians=drives.gaussians.under(horizon).driven(elapsed, step.motion),
+        # The edges before this prediction: points of pixels start there.
         before=drives.gaussians.edges,
+        # Lag and score are of one frame's detection, and void until the next.
         lag=np.zeros_like(drives.lag),
     )
+    # Both count from zero, which only a detection, or pixels (`unseen`), set again.
     absences = replace(
         sights.absences,
         unseen=sights.absences.unseen + elapsed,

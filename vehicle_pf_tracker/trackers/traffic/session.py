@@ -182,6 +182,8 @@ class TrafficSession:
         TrackerError
             If the tracker fails, and does not start anew for it.
         """
+        # One image that was rejected before may be admitted together with this one: `turns` are
+        # then two, and each needs its own detections.
         given = self._detections, detections  # of the image before, which may be admitted only now
         self._detections = detections
         self._attempts.begin_image()
@@ -191,15 +193,21 @@ class TrafficSession:
         return self.estimates
 
     def _take(self, turn: Turn, detections: Detections | None) -> None:
+        """Take an admitted image; start anew if the tracker fails twice in a row."""
         self.events.extend(turn.events)
         if turn.begins_anew:
             self._restart()
+        # Seconds in parameters become frames by it, so that it is set before the step.
         self.tracker.frame_period = turn.period
         self._attempts.take(partial(self._step, turn, detections), self._start_anew)
 
     def _step(self, turn: Turn, detections: Detections | None) -> None:
+        """Detect, leave out what is outside the regions, and follow the vehicles."""
+        # 1. Detections from outside have precedence; else the detector looks.
         if detections is None and self.detector is not None:
             detections = self._detected(self.detector, turn.frame)
+        # 2. Count before regions apply, so that a user sees what they took. Reset first: without
+        # detections the number of the image before would stay.
         self.found.latest = None
         if detections is not None:
             self.found.latest = detections.ambiguous if detections.are_shapes else None
@@ -207,10 +215,14 @@ class TrafficSession:
             self.found.boxes += len(detections)
             self.found.ambiguous += detections.ambiguous > 0
             if self._regions:
+                # Regions bound detections, not vehicles: one that is followed may leave them.
                 inside = detections.within(self._regions)
                 self.found.outside += len(detections) - len(inside)
                 detections = inside
+        # 3. None, unlike no detections, says that nobody has looked: nothing is missed.
         self.estimates = self.tracker.step(turn.frame, detections, turn.elapsed)
+        # 4. Keep where given vehicles are now: a restart begins them there, as no detector may find
+        # them.
         if self._given:
             followed = {one.identity: (one.box, one.label) for one in self.estimates}
             self._given = {number: followed[number] for number in self._given if number in followed}
@@ -224,16 +236,19 @@ class TrafficSession:
         return None if detector.is_blind else found
 
     def _restart(self) -> None:
+        """Discard all vehicles and all that was learnt about the stream."""
         self.tracker.reset()
         self.estimates = ()
         self.successors = {}
         self._given = {}
         self.restarts += 1
+        # A new detector: the background of the old one is of another stream.
         if self._make_detector is not None:
             self.detector = self._make_detector()
 
     def _start_anew(self) -> None:
         """Start anew with the vehicles given by hand, where each was in the last estimates."""
+        # Kept before the restart, which empties it.
         given = self._given
         successors = {}
         self._restart()

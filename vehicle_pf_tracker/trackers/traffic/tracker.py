@@ -108,6 +108,8 @@ class TrafficTracker:
 
     def _begun_step(self, frame: Frame, elapsed: float) -> Step:
         """Do once what all vehicles need of a frame."""
+        # As many numbers in each frame, whatever is followed: a vehicle more or less does not
+        # change the random numbers of the others, nor those of later frames.
         normals = self._rng.standard_normal((self.parameters.num_particles, 3))
         return Step(
             size=frame_size(frame),
@@ -133,10 +135,12 @@ class TrafficTracker:
         if self._step is None:
             raise RuntimeError("show the tracker a frame before adding a vehicle")
         # Parameters and the rate may have changed since.
+        # Box and image are those of the latest frame; only settings are new.
         step = replace(self._step, parameters=self.parameters, period=self.frame_period)
         check_target(box, *step.size)
         edges = np.array([[*box.corners[0], *box.corners[2]]])
         state = given(begun_in(self._state, edges, step))
+        # A box by hand counts as seen whole: its colours are those that it is known again by.
         self._state = learn_colours(state, np.array([len(state.tracks) - 1]), [label], 1.0, step)
         return self._state.last_identity
 
@@ -152,7 +156,10 @@ class TrafficTracker:
 
         Vehicles can still be added to the latest frame.
         """
+        # The generator starts anew, too, so that a run after a reset repeats one from the
+        # beginning.
         self._rng = np.random.default_rng(self.seed)
+        # Numbers go on: none is ever given to a second vehicle.
         numbers = {
             name: getattr(self._state, name)
             for name in ("last_identity", "last_serial", "bad_states")
@@ -160,10 +167,12 @@ class TrafficTracker:
         self._state = State(no_tracks(), Experience(), **numbers)
         if self._step is not None:
             self._step = replace(self._step, parameters=self.parameters, road=self.road)
+            # Nothing was learnt yet: that is the assumed or the calibrated one, which `add` needs.
             self._state = find_horizon(self._state, self._step)
 
     def reconfigure(self, parameters: TrafficParameters) -> None:
         """Take new parameters between two frames; no vehicle is lost by it."""
+        # Another seed only: the same one anew would repeat random numbers of earlier frames.
         if parameters.seed != self.parameters.seed:
             self.seed = drawn_seed(parameters.seed)
             self._rng = np.random.default_rng(self.seed)
@@ -172,10 +181,17 @@ class TrafficTracker:
 
 def _advanced(state: State, step: Step, detections: Detections | None) -> State:
     """Go on by a frame; of `detections` None no detector has looked, and nothing is missed."""
+    # 1. Predict, since all that follows is about where vehicles should be now.
     state = drive_on(state, step)
+    # 2. Find who hides whom by the predictions: a missed detection counts only in plain sight.
     state = hide(state, step)
+    # 3. Correct by detections, which tell more than pixels.
     if detections is not None:
         state = look(state, step, detections)
+    # 4. Hold by pixels what nothing detected. Even without such vehicles the frame is kept for the
+    # next one.
     state = hold(state, step)
+    # 5. End only now: a vehicle that pixels hold has been seen, and is not lost.
     state = end(state, step)
+    # 6. Learn how alike colours usually are in the boxes that are reported, of those that go on.
     return learn_similarity(state, step)
