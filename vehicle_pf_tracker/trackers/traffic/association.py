@@ -37,8 +37,8 @@ _LEAST_PART = 0.15
 """Smallest share of a vehicle that is seen as a part of it. At a tenth IDF1 of YOLOX behind the
 bridge falls by six."""
 _OVERLAPPING = 0.5
-"""Overlap with a likely vehicle from which a drive, however sure, may be wrong: no other is as
-near."""
+"""Overlap with a likely vehicle above which a drive, however sure, may be wrong: no other is as
+near. A choice: at a half evaluations, too, take two boxes for one vehicle's."""
 
 
 class Pairs(NamedTuple):
@@ -49,7 +49,7 @@ class Pairs(NamedTuple):
     rows, columns : (P,) arrays
         Indices of the tracks, and of the detections.
     fits : (P,) array
-        Log odds that each detection is the track's and no false alarm, by where it is.
+        Log odds that each detection is the track's rather than a false alarm, by position alone.
     """
 
     rows: Integers
@@ -100,6 +100,7 @@ def pairs_of_new(
     """Pair new tracks at `rows` with detections at `columns` that are rather theirs."""
     if not (len(rows) and len(columns)):
         return assigned(rows, columns, np.empty((0, 0)), np.empty((0, 0)))
+    # Below the gate exactly where the odds are above even.
     odds = birth_odds(tracks.take(rows), candidates, columns, size, noise)
     return assigned(rows, columns, GATE - odds, odds)
 
@@ -112,6 +113,8 @@ def assigned(rows: Integers, columns: Integers, costs: Array, odds: Array) -> Pa
     # Not at the top: help and parameters of `traffic` are printed without this library.
     from scipy.optimize import linear_sum_assignment  # noqa: PLC0415
 
+    # All pairs beyond the gate cost the same: the solver would else give up a good pair to make a
+    # hopeless one cheaper. They are dropped below.
     bounded = np.minimum(costs, GATE)
     first, second = linear_sum_assignment(bounded)
     good = bounded[first, second] < GATE
@@ -131,12 +134,16 @@ def edge_costs(predicted: Array, deviations: Array, detected: Array) -> Array:
         Edges of the detections, px.
     """
     inward = (detected[np.newaxis] - predicted[:, np.newaxis]) * INWARD
+    # Each edge in its own standard deviations, without covariances: a covered edge can then be left
+    # out by itself.
     normal = inward / deviations[:, np.newaxis]
     whole = (normal**2).sum(axis=2)
+    # An occluder can only draw edges in: what is outside the prediction costs in full.
     outward = (np.minimum(normal, 0.0) ** 2).sum(axis=2)
     lacking = np.maximum(inward, 0.0)
     size = sides_of(predicted)[:, np.newaxis]
     kept = np.clip(1 - (lacking[..., :2] + lacking[..., 2:]) / size, 0.0, 1.0).prod(axis=2)
+    # The price keeps a part from being as good as a whole; the less is seen, the dearer it is.
     part = outward + _PARTIAL + _MISSING * (1 - kept)
     return np.asarray(np.where(kept > _LEAST_PART, np.minimum(whole, part), whole))
 
@@ -150,17 +157,23 @@ def pair_costs(
 ) -> tuple[Array, Array]:
     """Cost of each pair of a vehicle and one of the detections at `columns`, and its log odds."""
     gaussians = tracks.drives.gaussians
+    # Innovation: prediction and measurement are independent.
     spread = np.sqrt(gaussians.edge_variances + deviations(gaussians.edges, noise) ** 2)
+    # A detector's box ends at the border, and so does what is compared with it.
     predicted = clipped(gaussians.edges, size)
     detected = candidates.edges[columns]
     costs = edge_costs(predicted, spread, detected)
+    # Log likelihood ratio: a Gaussian over the edges against the density of false alarms.
     peaks = -np.log(spread * math.sqrt(2 * math.pi)).sum(axis=1)
     odds = peaks[:, np.newaxis] - costs / 2 - candidates.false[columns]
+    # Only with no other prediction over its own (one overlap is with itself), and in sight: in a
+    # crowd, or behind something, the likely vehicle may be another one.
     alone = (intersections(predicted[:, np.newaxis], predicted) > 0).sum(axis=1) == 1
     alone &= tracks.in_sight
     # However sure its drive is, it was wrong where a likely vehicle overlaps it by half.
     may_be = alone[:, np.newaxis] & (candidates.log_odds[columns] > 0)
     overlap = overlaps(predicted[:, np.newaxis], detected)
+    # Below the gate from the overlap of `_OVERLAPPING` on, and the closer the cheaper.
     near = np.where(may_be, GATE * (1 + _OVERLAPPING - overlap), np.inf)
     return np.minimum(costs, near), odds
 
@@ -188,17 +201,19 @@ def birth_odds(
     size : (int, int)
         Width and height of the image.
     noise : float
-        Standard deviation of an edge, fraction of the size.
+        Standard deviation of an edge, fraction of the box's side.
     """
+    # 1. Predictions and detections, with the deviations of both.
     gaussians = tracks.drives.gaussians
     predicted = gaussians.edges
     detected = candidates.edges[columns]
     spread = deviations(detected, noise)
     reach = np.sqrt(gaussians.edge_variances)
     cut, also_cut = (cut_edges(edges, size, noise) for edges in (predicted, detected))
-    # Edge by edge, as most pairs are far apart by the first one: only the others cost something.
+    # 2. Gate edge by edge: most pairs are far apart by the first one, only the others cost time.
     reachable = math.sqrt(GATE)
     apart = np.abs(detected[:, 0] - predicted[:, :1])
+    # Deviations are added, not their squares: on the wide side, as the density decides.
     rows, pairs = np.nonzero(
         (apart < reachable * (reach[:, :1] + spread[:, 0])) | (cut[:, :1] & also_cut[:, 0])
     )
@@ -208,9 +223,12 @@ def birth_odds(
         near |= cut[rows, edge] & also_cut[pairs, edge]
         rows = rows[near]
         pairs = pairs[near]
+    # 3. An edge that is cut in both: this variance gives it the density that false alarms have
+    # there, so that both cancel and it tells nothing.
     sides = np.tile(sides_of(detected), 2)
     unknown = (SIZES * sides[pairs]) ** 2 / (2 * np.pi)
     both_cut = cut[rows] & also_cut[pairs]
+    # 4. With covariances here: while its speed is unknown, a new track's edges move far together.
     covariance = gaussians.edge_covariance[rows]
     covariance[:, range(4), range(4)] += spread[pairs] ** 2 + np.where(both_cut, unknown, 0.0)
     odds = np.full((len(predicted), len(detected)), -np.inf)
@@ -223,6 +241,7 @@ def birth_odds(
 
 def _log_density(residuals: Array, covariances: Array) -> Array:
     """Logarithm of Gaussian densities (N,) at residuals (N, 4) of edges: one after the other."""
+    # The chain rule: each edge's density given those before, which a Schur complement takes out.
     total = np.zeros(len(residuals))
     for _ in range(residuals.shape[1]):
         # Rounding leaves no edge less than its measurement's noise.

@@ -23,7 +23,8 @@ from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
 from vehicle_pf_tracker.trackers.traffic.rows import Integers
 
 _ORDINARY = 0.5
-"""Share of the vehicles' detections with lower scores above which a score is better than most."""
+"""Share of the vehicles' detections with lower scores above which a score is better than most: the
+median."""
 SIZES = 2.0
 """Logarithm of the ratio of the largest and the smallest false alarms, by which they are spread. At
 1 vehicles that pass close and fast are found late: IDF1 of three scenes is 67 instead of 83."""
@@ -42,19 +43,19 @@ class Candidates:
     labels : tuple of str
         Classes.
     are_shapes : bool
-        They may be of pieces of vehicles, which drive as well, and are soon joined with the rest.
+        True where they may be of pieces of vehicles, which drive as well, and are soon joined.
     places : (N,) array
-        Where in the image each is.
+        Index of the grid cell, see `places_of`, that each box's centre is in.
     log_odds : (N,) array
         Log odds that each is a vehicle.
     gains : (N,) array
-        How much likelier each score is a vehicle's, as a logarithm.
+        Log likelihood ratio of each score, vehicle over false alarm.
     sure : (N,) array
         Log odds that its score alone is worth where nothing has moved.
     clutter : (N,) array
-        Logarithm of the false alarms per image as often as where each is.
+        Logarithm of the false alarms per image, if all places had as many as each one's.
     false : (N,) array
-        Logarithm of the density of false alarms where each is, over its edges in px.
+        Logarithm of the density of false alarms at each box, over its four edges, px^-4.
     """
 
     edges: Array
@@ -92,14 +93,17 @@ def weighed(
     size : (int, int)
         Width and height of the image.
     """
+    # 1. Edges and places, by which clutter is known.
     boxes = detections.boxes
     scores = detections.scores
     edges = np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
     places = places_of(edges, size)
     clutter = evidence.clutter(places)
+    # 2. A shape's score is how full its box is, no probability.
     claims = np.full(len(scores), UNSAID) if detections.are_shapes else claims_of(scores)
     log_odds = evidence.log_odds(scores, claims, places)
-    # False alarms are anywhere in the image, and of any size.
+    # 3. Poisson clutter, as usual, in the space of the edges, of which (left, right) has the same
+    # measure as (centre, width): false alarms are anywhere in the image, and of any size.
     false = clutter - math.log(size[0] * size[1]) - np.log(sides_of(edges) * SIZES).sum(axis=1)
     return Candidates(
         edges=edges,
@@ -122,6 +126,8 @@ def _sure(log_odds: Array, claims: Array, ranks: Array) -> Array:
     both the detector and what became of such scores here have to be sure of each. Where a detector
     makes no claims, most vehicles have to have lower scores.
     """
+    # Finite, as `claims_of` bounds claims away from 0 and 1.
     claimed = np.log(claims / (1 - claims))
+    # Nothing claimed bounds nothing, of scores above the median; the lower half stays at even odds.
     claimed[(claims == UNSAID) & (ranks >= _ORDINARY)] = np.inf
     return np.minimum(log_odds, claimed)

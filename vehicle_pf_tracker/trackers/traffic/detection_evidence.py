@@ -22,24 +22,30 @@ _MEMORY = 2000
 """Detections that are remembered, some minutes of a few vehicles; and images after which what is
 known of places is halved: light and wind change in a minute."""
 _NEIGHBOURS = 40
-"""Detections of about the same score, by rank, that a probability is taken from."""
+"""Detections of about the same score, by rank, that a probability is taken from: of 40 the share
+has a standard deviation of .08 at most, and rarer scores are still told apart."""
 _PRIOR = 2.0
-"""Weight of the prior on each side, in detections."""
+"""Weight of the prior on each side, in detections. A choice: one outcome then moves even odds by
+.4, and forty outweigh it."""
 _GRID = 16
-"""Places along each side of the image."""
+"""Places along each side of the image: 20 px in 320, about one distant vehicle. A choice: with
+larger places a tree would speak against the road beside it, smaller ones are seldom learnt."""
 PLACES = _GRID**2
 """Places of the image."""
 NOWHERE = -1
-"""No place."""
+"""No place: an index that no place has."""
 _FALSE_ALARMS, _ASSUMED_FOR = 1.0, 30
-"""False alarms per image that are expected before any is seen; and images, one second of 30 Hz,
-that this, and the mean of all places for the number of one, is worth."""
+"""False alarms per image that are expected before any is seen, a choice: good detectors have fewer,
+poor ones more; and images, one second of 30 Hz, that this, and the mean of all places for the
+number of one, is worth."""
 _CLUTTERED = 0.5
 """False alarms in a place from which it is said to be cluttered: one, halved once at most."""
 UNSAID = 0.5
 """Probability of a vehicle where a detector claims nothing."""
 _LEAST_CLAIM = 0.01
-"""Least probability that a detector's own score is taken for, either way: one in a hundred."""
+"""Least probability that a detector's own score is taken for, either way: one in a hundred. It
+keeps the logarithm of the odds finite, and a detector from being surer than what became of its
+scores."""
 _MOST = 7.0
 """Log odds, one in a thousand, beyond which scores and places say nothing surer."""
 
@@ -54,6 +60,7 @@ class Sample(NamedTuple):
 def places_of(edges: Array, size: tuple[int, int]) -> Integers:
     """Places (N,), in a grid over the image, of boxes (N, 4) in px."""
     centres = (edges[:, :2] + edges[:, 2:]) / 2
+    # A box of a vehicle that leaves may have its centre outside.
     columns, rows = np.clip(centres / size * _GRID, 0, _GRID - 1).astype(np.intp).T
     return np.asarray(rows * _GRID + columns)
 
@@ -75,11 +82,14 @@ class DetectionEvidence:
     """Outcomes of detections by score, and false alarms by place."""
 
     def __init__(self) -> None:
-        self._outcomes = np.zeros((_MEMORY, 2))  # score, and 1 of a vehicle's
+        self._outcomes = np.zeros((_MEMORY, 2))  # score, and 1 of a vehicle's, 0 of a false alarm
         self._learnt = self._fresh = 0
+        # Sorted scores, and running sums of their outcomes: counts between any two scores are then
+        # one subtraction.
         self._sorted = np.empty(0)
         self._sums = np.zeros(1)
         self._images = 0.0
+        # False alarms that stood alone, and all outcomes (false, genuine) by place.
         self._false = np.zeros(PLACES)
         self._places = np.full((2, PLACES), _PRIOR)
 
@@ -89,7 +99,10 @@ class DetectionEvidence:
         if self._images > _MEMORY:
             self._images /= 2
             self._false /= 2
+            # Halved, but for the prior, which stays what it is.
             self._places = (self._places + _PRIOR) / 2
+        # Sorted anew only when half of a neighbourhood is new. Never within an image, so that the
+        # order of its detections does not matter.
         if self._fresh >= min(_NEIGHBOURS // 2, self._learnt) > 0:
             scores, genuine = self._outcomes[: self._learnt].T
             order = np.argsort(scores, kind="stable")
@@ -105,6 +118,7 @@ class DetectionEvidence:
     def learn(self, samples: Sequence[Sample], genuine: bool, *, alone: bool = True) -> None:
         """Add outcomes of detections; one beside a vehicle is no false alarm of its place."""
         for score, place in samples:
+            # A ring: the oldest outcome goes.
             self._outcomes[self._learnt % _MEMORY] = score, genuine
             self._learnt += 1
             self._fresh += 1
@@ -120,6 +134,7 @@ class DetectionEvidence:
         """
         totals = self._places.sum(axis=1)
         here = self._places[:, places]
+        # Relative to the usual odds, which scores have in them already: else they counted twice.
         by_place = np.log(here[1] / here[0]) - np.log(totals[1] / totals[0])
         both = self._by_score(scores, claims) + np.minimum(by_place, 0.0)
         return np.asarray(np.clip(both, -_MOST, _MOST))
@@ -128,11 +143,13 @@ class DetectionEvidence:
         """Logarithm of how much more often vehicles have scores (N,) than false alarms have."""
         genuine = self._sums[-1]
         total = len(self._sorted)
+        # Without the usual odds, a likelihood ratio: those of a new track are counted at its birth.
         usual = np.log((genuine + _PRIOR) / (total - genuine + _PRIOR))
         return np.asarray(self._by_score(scores, claims) - usual)
 
     def ranks(self, scores: Array) -> Array:
         """Share of the vehicles' detections with lower scores, (N,); 0 before enough are known."""
+        # Of at least `_NEIGHBOURS`, so that the first few scores are not better than most.
         below = self._sums[np.searchsorted(self._sorted, scores)]
         return np.asarray(below / max(self._sums[-1], _NEIGHBOURS))
 
@@ -143,15 +160,19 @@ class DetectionEvidence:
         """
         images = self._images + _ASSUMED_FOR
         usual = (self._false.sum() + _FALSE_ALARMS * _ASSUMED_FOR) / images
+        # A gamma-Poisson mean: one place, scaled to the image, and the prior's images.
         seen = self._false[places] * PLACES + _ASSUMED_FOR * usual
         return np.asarray(np.log(seen / images))
 
     def _by_score(self, scores: Array, claims: Array) -> Array:
+        # Between both ends of equal scores: a detector that gives all the same has one probability
+        # for all.
         left = np.searchsorted(self._sorted, scores, "left")
         middle = (left + np.searchsorted(self._sorted, scores, "right")) // 2
         low = np.maximum(middle - _NEIGHBOURS // 2, 0)
         high = np.minimum(middle + _NEIGHBOURS // 2, len(self._sorted))
         genuine = self._sums[high] - self._sums[low]
+        # A beta prior around what the detector claims, of the weight of `_PRIOR` on each side.
         yes = 2 * _PRIOR * claims
         no = 2 * _PRIOR * (1 - claims)
         return np.asarray(np.log((genuine + yes) / (high - low - genuine + no)))

@@ -14,11 +14,13 @@ from vehicle_pf_tracker.trackers.traffic.rows import Bools
 _UNKNOWN = 0.5
 """Share that is seen again, before any outcome is known: either is as likely."""
 _UNIFORM = 2.0
-"""Outcomes that a prior is worth: as many as a uniform one."""
+"""Outcomes that a prior is worth: as many as a uniform one, Beta(1, 1)."""
 _REMEMBERED = 30
-"""Outcomes of a place above which they are halved: leaves and road works come and go."""
+"""Outcomes of a place above which they are halved: leaves and road works come and go. A choice: of
+30 a share has a standard deviation of .09 at most."""
 _FIRST_ASKED = 10.0
-"""Vehicles in plain sight that were detected, and that were missed, before any was seen."""
+"""Vehicles in plain sight that were detected, and that were missed, before any was seen. A choice:
+a rate of a half, which a second of one vehicle outweighs."""
 
 
 class Returns:
@@ -40,6 +42,7 @@ class Returns:
 
     def share(self, place: int) -> float:
         """Share that is seen again."""
+        # Two levels: a place that nothing is known of takes what is usual at this camera.
         everywhere = _estimated(self._counts.sum(axis=1), _UNKNOWN)
         return _estimated(self._counts[:, place], everywhere)
 
@@ -59,6 +62,8 @@ class DetectionRate:
 
     def learn(self, asked: Bools, detected: Bools) -> Array:
         """Add the vehicles (N,) that it was asked for, one by one; the share (N,) after each."""
+        # Misses are in the count from the start, so that the share never is 1: a miss would cost
+        # infinitely much.
         found = self._detected + np.cumsum(asked & detected)
         total = self._asked + np.cumsum(asked)
         if len(asked):

@@ -24,7 +24,8 @@ _STANDS_FROM = 15
 """Detections in a row within this distance, half a second of 30 Hz, by which a vehicle stands: one
 that is slower than a fifth of its width per second is taken for one that does."""
 _STRAIGHT = 0.8
-"""Straightness of a drive, which a leap between two places that flicker cannot reach (0.75)."""
+"""Straightness of a drive, above the .75 that a leap between two places that flicker reaches at
+most."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,9 +79,12 @@ class Ways(Rows):
         once = np.ones(len(self))
         terms = columns(once, time, time * time, x, y, time * x, time * y, x * x + y * y)
         here = columns(x, y)
+        # Lengths are measured from the first detection, also after a stand: a vehicle that stood
+        # and drives on has come as far.
         is_first = self.matches == 0
         first = np.where(is_first[:, np.newaxis], here, self.first)
         away = np.hypot(*(here - self.halt).T)
+        # From the first detection of the stand, not from the latest: a slow drive would creep away.
         stays = (away < _STANDS_WITHIN * (edges[:, 2] - edges[:, 0])) & ~is_first
         stood = np.where(stays, self.stood + 1, 1)
         halt = np.where(stays[:, np.newaxis], self.halt, here)
@@ -100,11 +104,13 @@ class Ways(Rows):
         They shake independently, and a drive has constant speed; 0 where they are not straight.
         """
         count, time, squared, x, y, time_x, time_y, places = self.sums.T
+        # Centred sums: scatter of places, and of times, and what both share.
         known = np.maximum(count, 1.0)
         scatter = places - (x * x + y * y) / known
         duration = squared - time * time / known
         along_x = time_x - time * x / known
         along_y = time_y - time * y / known
+        # One place, or one moment, has no line.
         is_told = (scatter > 0) & (duration > 0)
         # Share of their scatter that the drive explains.
         explained = (along_x**2 + along_y**2) / np.where(is_told, duration, 1.0)
@@ -112,4 +118,5 @@ class Ways(Rows):
         is_told &= straightness >= _STRAIGHT
         # The share is distributed as Beta(1, count - 2): two slopes, of twice as many coordinates.
         rest = np.maximum(1 - np.where(is_told, straightness, 0.0), math.ulp(1.0))
+        # Its tail is (1 - share)^(count - 2): more detections make the same straightness rarer.
         return np.asarray(np.where(is_told, (2 - count) * np.log(rest), 0.0))
