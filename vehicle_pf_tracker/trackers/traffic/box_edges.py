@@ -30,9 +30,10 @@ def deviations(edges: Array, noise: float) -> Array:
     edges : (..., 4) array
         Boxes in px.
     noise : float
-        Standard deviation of an edge, fraction of the size.
+        Standard deviation of an edge, fraction of the box's side.
     """
     size = sides_of(edges)
+    # Independent errors: one grows with the vehicle, the grid of pixels does not.
     return np.asarray(np.hypot(np.concatenate([size, size], axis=-1) * noise, PIXEL_NOISE))
 
 
@@ -41,5 +42,6 @@ def cut_edges(edges: Array, size: tuple[int, int], noise: float) -> Bools:
 
     They may where they are nearer than their own deviation; `noise` is that of `deviations`.
     """
+    # One for each axis: left and right, top and bottom are equally exact.
     margin = deviations(edges, noise)[..., :2]
     return np.concatenate([edges[..., :2] <= margin, edges[..., 2:] >= size - margin], axis=-1)

@@ -15,11 +15,13 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 
 _LEVELS = 4
-"""Levels of each channel: enough to tell colours, few enough for a box of 100 px."""
+"""Levels of each channel: enough to tell colours, few enough for a box of 100 px to fill its 64
+joint bins."""
 BINS = _LEVELS**3
 """Joint bins of the three channels."""
 RIM = 0.1
-"""Margin on each side, of the size, that is left out: background."""
+"""Margin on each side, of the size, that is left out as background: two standard deviations of an
+edge at the usual `detections.edge_noise` of .05."""
 
 
 class ColourBins:
@@ -43,6 +45,8 @@ class ColourBins:
         (N, BINS) array
             Shares of the colours; zero where nothing of a box is in sight.
         """
+        # Slices below clip at the far borders by themselves; a negative start would count from
+        # there.
         margins = RIM * (edges[:, 2:] - edges[:, :2])
         low = np.maximum((edges[:, :2] + margins).astype(np.intp), 0)
         high = np.maximum((edges[:, 2:] - margins).astype(np.intp) + 1, 0)
@@ -54,6 +58,7 @@ class ColourBins:
                 seen = _uncovered(part, cover - (left, top, left, top)) if len(cover) else None
                 shares = cv2.calcHist([part], [0, 1, 2], seen, [_LEVELS] * 3, [0.0, 256.0] * 3)
                 counts[row] = shares.ravel()
+        # At least one, so that what is out of sight stays zero, the mark of the unknown.
         totals = np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
         return np.asarray(counts / totals, np.float64)
 

@@ -13,7 +13,7 @@ from vehicle_pf_tracker.core.box import Box, Position
 SCENE = "scene"
 """Occluder of a track that nothing followed hides: a sign, a bridge, the unknown."""
 BORDER = "border"
-"""The same of a track that is mostly outside the image: it leaves."""
+"""Occluder of a track that is mostly outside the image: it leaves."""
 
 
 class TrackMode(str, Enum):

@@ -22,7 +22,8 @@ _LEAST_BOXES = 20
 """Boxes below which a vehicle does not tell how it grows. At 30, HOTA of `traffic-overtaking` falls
 by 13: the horizon has to be known soon."""
 _REMEMBERED = 50
-"""Vehicles that are remembered."""
+"""Vehicles that are remembered. A choice: enough to average `_TURN` out, to a seventh, and few
+enough for a camera that is turned to forget."""
 _WIDTH_NOISE = 0.1
 """Standard deviation of a box's relative width. Detectors err by half of it, and in the same way
 in successive frames."""
@@ -62,6 +63,7 @@ class Growths(Rows):
         """Add a detection of each (N, 4) that shows the whole vehicle."""
         width = edges[:, 2] - edges[:, 0]
         bottom = edges[:, 3]
+        # Sums are all that a regression needs: the boxes themselves are not kept.
         once = np.ones(len(edges))
         terms = columns(once, bottom, bottom * bottom, width, bottom * width)
         return Growths(self.sums + terms)
@@ -78,7 +80,9 @@ class Growths(Rows):
         sums = self.sums[(self.sums[:, 0] >= _LEAST_BOXES) & (self.sums[:, 3] > 0)]
         count, total, squares, widths, products = sums.T
         scatter = squares - total * total / count
+        # A vehicle that drives across stays at one height, and tells nothing.
         kept = scatter > 0
+        # Least squares, over the mean width: relative growth, the same for cars and lorries.
         slope = (products - total * widths / count) / np.where(kept, scatter, 1.0) * count / widths
         told = columns(total / count / height, slope * height, scatter / height**2)
         return np.asarray(told[kept])
@@ -139,6 +143,8 @@ class Horizon:
         """
         if road is not None:
             return replace(self, row=calibrated_row(road, size) * size[1])
+        # Those that are followed are not stored: they count once, with all that they have grown so
+        # far.
         told = np.concatenate([self.ended, followed.told(size[1])])
         return replace(self, row=explaining_row(assumed, told) * size[1])
 
@@ -151,16 +157,20 @@ def explaining_row(assumed: float, told: Array) -> float:
     assumed : float
         Horizon assumed before vehicles show it.
     told : (K, 3) array
-        What the growths of vehicles tell, see `Growths.told`.
+        Mean lower edge, relative growth and scatter of each vehicle, see `Growths.told`.
     """
     if not len(told):
         return assumed
     middle, growth, scatter = told.T[..., np.newaxis]
     centre = float(middle.mean())
+    # The assumed horizon as a growth; one below the vehicles would make it negative.
     usual = 1 / (centre - min(assumed, centre - 1 / _GROWTHS[-1]))
+    # The assumed one is tried, too, so that without evidence the row is exactly that.
     growths = np.append(_GROWTHS, usual)
     rows = centre - 1 / growths
+    # A horizon below a vehicle cannot be: infinite growth costs the bound.
     expected = np.where(middle > rows, 1 / (middle - rows), np.inf)
+    # Error of a regression's slope, and the vehicle's own turning, which more boxes do not lessen.
     variance = _WIDTH_NOISE**2 / scatter + _TURN**2
     # Bounded, so that one vehicle that turned, or was two, does not move the horizon of the others.
     costs = np.minimum((growth - expected) ** 2 / variance, _FARTHEST**2).sum(axis=0)

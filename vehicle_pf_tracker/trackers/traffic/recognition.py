@@ -24,6 +24,7 @@ for two thirds."""
 def coloured(looks: Looks, colours: Array, rows: Integers | Bools) -> Looks:
     """Let the colours of those at `rows` follow those (K, BINS) of boxes in plain sight."""
     before = looks.colours[rows]
+    # The first colours count in full: zero is the mark of the unknown, not a colour.
     rate = np.where(before.any(axis=1, keepdims=True), _RATE, 1.0)
     learnt = looks.colours.copy()
     learnt[rows] = before + rate * (colours - before)
@@ -35,6 +36,7 @@ def learn_colours(
 ) -> State:
     """Learn what vehicles at `rows` look like where they are, and take their classes."""
     tracks = state.tracks.take(rows)
+    # What nearer vehicles cover would teach their colours.
     colours = step.colours.histograms(tracks.edges, list(tracks.sights.covers))
     looks = coloured(tracks.sights.looks, colours, np.arange(len(rows)))
     looks = replace(looks, score=np.full(len(rows), score))
@@ -47,9 +49,12 @@ def learn_similarity(state: State, step: Step) -> State:
     """Learn the usual similarity of each detected vehicle's colours to those learnt."""
     tracks = state.tracks
     sights = state.tracks.sights
+    # Only detected ones: a box that drifts off would teach that low similarities are usual.
     rows = np.flatnonzero(tracks.confirmed & tracks.detected)
     now = step.colours.histograms(tracks.edges[rows], sights.covers[rows].tolist())
     usual = sights.looks.usual_similarity.copy()
+    # Vehicles differ in how alike they stay (shade, windows), so that falls are measured from each
+    # one's own level.
     usual[rows] += _RATE * (similarities(sights.looks.colours[rows], now) - usual[rows])
     sights = replace(sights, looks=replace(sights.looks, usual_similarity=usual))
     return state._replace(tracks=replace(tracks, sights=sights))

@@ -16,21 +16,24 @@ from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 _SEEN_WITHIN = 2.0
 """Nominal periods within which a vehicle counts as seen: one frame may fail."""
 _MOSTLY_INSIDE = 0.5
-"""Share in the image from which it is not the border that hides a vehicle."""
+"""Share in the image above which no border hides a vehicle: most of it is inside."""
 _PLACED = {
     TrackMode.TENTATIVE: 1.0,
     TrackMode.TRACKING: 1.0,
     TrackMode.OCCLUDED: 0.5,
     TrackMode.LOST: 0.5,
 }
-"""Factor on the confidence, by mode: a vehicle that nobody sees is there, but where is a guess."""
+"""Factor on the confidence, by mode: a vehicle that nobody sees is there, but where is a guess. At
+a half, a threshold of .5 leaves predicted boxes out."""
 
 
 def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
     """Estimates of all tracks, by identity, tentative ones last."""
+    # 1. Lists, not arrays: estimates are of plain numbers.
     names = tracks.names
     drives = tracks.drives
     sights = tracks.sights
+    # With the lag the box is where detections are; the state stays smooth for the prediction.
     low, high = np.split(drives.gaussians.edges + drives.lag, 2, axis=1)
     modes = _modes(tracks)
     rows = zip(
@@ -38,6 +41,7 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
         names.serial.tolist(),
         names.joined.tolist(),
         names.votes.tolist(),
+        # A box has a size even where an unsure prediction has none.
         np.hstack([low, np.maximum(high - low, 1.0)]).tolist(),
         drives.gaussians.velocity.tolist(),
         drives.gaussians.foot_covariance.tolist(),
@@ -48,6 +52,7 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
         _hiders(tracks, modes),
         strict=True,
     )
+    # 2. One estimate a track.
     estimates = [
         TrackEstimate(
             identity=identity,
@@ -79,6 +84,7 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
             hider,
         ) in rows
     ]
+    # 3. Rows are sorted by distance; readers get them by number.
     order = np.lexsort((names.serial, names.identity, ~tracks.confirmed))
     return tuple(estimates[row] for row in order.tolist())
 
@@ -98,6 +104,7 @@ def _modes(tracks: Tracks) -> list[TrackMode]:
 def _mode(is_confirmed: bool, is_lost: bool, is_seen: bool) -> TrackMode:
     if not is_confirmed:
         return TrackMode.TENTATIVE
+    # First: pixels may still hold one that is rather not there.
     if is_lost:
         return TrackMode.LOST
     return TrackMode.TRACKING if is_seen else TrackMode.OCCLUDED
@@ -108,4 +115,5 @@ def _hiders(tracks: Tracks, modes: list[TrackMode]) -> list[int | str | None]:
     unknown = np.where(tracks.sights.inside >= _MOSTLY_INSIDE, SCENE, BORDER).tolist()
     rows = zip(modes, tracks.sights.hidden_by.tolist(), unknown, strict=True)
     hidden = (TrackMode.OCCLUDED, TrackMode.LOST)
+    # Zero is no identity: nothing that is followed hides it.
     return [(hider or other) if mode in hidden else None for mode, hider, other in rows]

@@ -29,11 +29,12 @@ class Rows:
         return len(getattr(self, next(iter(self.__dataclass_fields__))))
 
     def take(self: RowsT, rows: Integers | Bools) -> RowsT:
-        """Those at `rows`, in this order."""
+        """Select those at `rows`, in this order."""
+        # Values are frozen, so that all of them can be shared.
         return self if self._are_all(rows) else self._taken(rows)
 
     def put(self: RowsT, rows: Integers | Bools, others: RowsT) -> RowsT:
-        """All, of which those at `rows` are others."""
+        """Replace those at `rows` by others; all rows."""
         return others if self._are_all(rows) else self._with(rows, others)
 
     def _are_all(self, rows: Integers | Bools) -> bool:
@@ -50,6 +51,7 @@ class Rows:
         )
 
     def _with(self: RowsT, rows: Integers | Bools, others: RowsT) -> RowsT:
+        # A copy, as the old value is part of a state that somebody may still hold.
         replaced = []
         for name in self.__dataclass_fields__:
             value = getattr(self, name)
@@ -63,7 +65,7 @@ class Rows:
         return type(self)(*replaced)
 
     def extended(self: RowsT, others: RowsT) -> RowsT:
-        """All, and others after them."""
+        """Append others."""
         joined = []
         for name in self.__dataclass_fields__:
             value = getattr(self, name)
@@ -83,6 +85,7 @@ def columns(*values: Array) -> Array:
 
 def objects(values: list[Any]) -> Objects:
     """Make an array (N,) of values that may themselves be arrays or tuples."""
+    # One by one: numpy would make a table of values of equal length.
     array = np.empty(len(values), np.object_)
     for index, value in enumerate(values):
         array[index] = value

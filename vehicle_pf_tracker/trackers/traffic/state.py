@@ -24,9 +24,11 @@ from vehicle_pf_tracker.trackers.traffic.vehicle_state import Motion
 Grey: TypeAlias = npt.NDArray[np.uint8]
 
 _VEHICLE_WIDTH = 1.8
-"""Width of a car in m, by which speeds and accelerations become widths."""
+"""Width of a car in m, by which speeds and accelerations become widths: without a calibrated road
+the vehicle itself is the only scale in the image."""
 _FOCAL = 1.2
-"""Focal length, of the image's width: that of a camera with a field of view of 45 degrees."""
+"""Focal length, of the image's width: that of a camera with a field of view of 45 degrees, 1 / (2
+tan 22.5°). A choice; it weighs uncertainty along the road against that across."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,9 +38,9 @@ class Experience:
     Attributes
     ----------
     detections : DetectionEvidence
-        What became of detections, by their scores and places.
+        Outcomes of detections, by their scores and places.
     reappearances, uncoverings : Returns
-        What became of vehicles that vanished in plain sight, and of parts of others that did.
+        Shares of the vehicles, and of parts of vehicles, that vanished in plain sight and returned.
     rate : DetectionRate
         Share of the vehicles in plain sight that the detector finds.
     """
@@ -57,7 +59,7 @@ class State(NamedTuple):
     tracks : Tracks
         Vehicles that are followed, nearest first, new ones last.
     experience : Experience
-        What this camera has taught.
+        Statistics learnt from this camera; the only part that is changed in place.
     horizon : Horizon
         Row of the horizon, and what it is known by.
     last_identity, last_serial : int
@@ -70,6 +72,7 @@ class State(NamedTuple):
 
     tracks: Tracks
     experience: Experience
+    # Kept beside the tracks, as it outlives them: vehicles that have left still show it.
     horizon: Horizon = Horizon()
     last_identity: int = 0
     last_serial: int = 0
@@ -88,7 +91,7 @@ class Step:
     grey : (H, W) array
         The frame in grey.
     colours : ColourBins
-        Its colours.
+        Joint colour bins of the frame.
     parameters : TrafficParameters
         Parameters.
     road : RoadPlane or None
@@ -114,11 +117,12 @@ class Step:
     def motion(self) -> Motion:
         """Motion model of vehicles in this image and at this rate."""
         motion = self.parameters.motion
+        # From SI units to widths and periods: m/s² by s² is m per period², over m.
         acceleration = motion.acceleration * self.period**2 / _VEHICLE_WIDTH
         top_speed = motion.top_speed * self.period / _VEHICLE_WIDTH
         return Motion(acceleration, top_speed, _FOCAL * self.size[0])
 
     @property
     def edge_noise(self) -> float:
-        """Standard deviation of a detection's edge, fraction of the size."""
+        """Standard deviation of a detection's edge, fraction of the box's side."""
         return self.parameters.detections.edge_noise

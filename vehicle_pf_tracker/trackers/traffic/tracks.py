@@ -23,7 +23,8 @@ from vehicle_pf_tracker.trackers.traffic.vehicle_state import Gaussians
 from vehicle_pf_tracker.trackers.traffic.way import Ways
 
 IN_SIGHT = 0.5
-"""Share of a box, not covered and inside the image, above which a detector should see it."""
+"""Share of a box, not covered and inside the image, above which a detector should see it: most of
+it. One bound for misses, matches and parts, so that what is excused in one is in the others."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,7 +38,7 @@ class Names(Rows):
     identity : (N,) array
         Number of the vehicle; 0 until it is confirmed.
     given : (N,) array
-        It was given by hand: that no detector finds it does not refute it.
+        True for those given by hand: that no detector finds one does not refute it.
     joined : (N,) array
         Number of the track as which it was found again; 0 if of none.
     votes : (N,) array of mapping of str to int
@@ -62,7 +63,8 @@ class Names(Rows):
 
 
 def added_votes(votes: Mapping[str, int], others: Mapping[str, int]) -> dict[str, int]:
-    """Sum of votes by class; of equally many the class that was seen first wins."""
+    """Add votes by class; of equally many the class that was seen first wins."""
+    # A new mapping in the order of first votes: rows are shared between states.
     return {**votes, **{label: votes.get(label, 0) + count for label, count in others.items()}}
 
 
@@ -73,7 +75,7 @@ class Extents(Rows):
     Attributes
     ----------
     shown : (N, 2) array
-        Largest width and height of its latest detections, of its own.
+        Largest width and height of its latest detections, fractions of the state's.
     partial, short : (N,) arrays
         Number of its latest detections in a row that showed only a part of it, and that were
         smaller than earlier ones.
@@ -103,9 +105,9 @@ class Drives(Rows):
     drift : (N, 4) array
         Mean of the latest outward residuals of the edges, in standard deviations.
     lag : (N, 4) array
-        What the state stays behind, px: the edges are reported with it.
+        Distance by which the state stays behind the detection, px; estimates add it.
     extents : Extents
-        How much is seen of each.
+        Visible extents.
     growths : Growths
         Regressions of the widths on the lower edges.
     """
@@ -131,11 +133,11 @@ class Beliefs(Rows):
     doubt : (N,) array
         Log odds against a vehicle by these scores; never below zero.
     has_driven : (N,) array
-        Its way shows that it is no part of the scene.
+        True once its way has shown that it is no part of the scene.
     ways : Ways
-        Its way through the image.
+        Ways through the image: how far, how straight, and for how long each has stood.
     samples : (N,) array of tuple of Sample
-        Its earliest detections, while it is not known what they show.
+        Scores and places of detections whose outcome is still unknown.
     """
 
     log_odds: Array
@@ -159,7 +161,7 @@ class Absences(Rows):
     vanished : (N,) array
         Place where it was missed several times in a row; `NOWHERE` if it was not.
     lost : (N,) array
-        It has been hidden for too long to be predicted, has left, or is rather not there.
+        True where it was hidden for too long to be predicted, has left, or is rather not there.
     """
 
     unseen: Array
@@ -169,10 +171,11 @@ class Absences(Rows):
     lost: Bools
 
     def ended(self) -> Absences:
-        """Be detected, all."""
+        """End all absences, as of tracks that were just detected."""
         count = len(self)
         none = np.full(count, NOWHERE)
         zero = np.zeros(count)
+        # `lost` stays: `existence.end` judges it anew in every frame.
         return Absences(zero, zero, np.zeros(count, np.intp), none, self.lost)
 
 
@@ -211,9 +214,9 @@ class Sights(Rows):
     hidden_by : (N,) array
         Identity of the nearest vehicle that hides a good part of it; 0 if none does.
     absences : Absences
-        How long it was not seen.
+        Times since each was last seen and detected.
     looks : Looks
-        What it looks like.
+        Colours, and latest detections.
     """
 
     visible: Array
@@ -237,12 +240,14 @@ class Tracks(Rows):
     def begun(cls, gaussians: Gaussians, serial: Integers, detections: Array) -> Tracks:
         """Begin tracks of which nothing is known but where they are."""
         count = len(gaussians)
+        # Arrays are shared between fields: none is ever written in place.
         numbers = np.zeros(count, np.intp)
         none = np.full(count, NOWHERE)
         zero = np.zeros(count)
         no = np.zeros(count, np.bool_)
         edges = np.zeros((count, 4))
         extents = Extents(np.zeros((count, 2)), numbers, numbers, none, numbers)
+        # Similar and in sight until something shows the opposite: ones, not zeros.
         looks = Looks(np.zeros((count, BINS)), np.ones(count), detections, np.full(count, np.nan))
         absences = Absences(zero, zero, numbers, none, no)
         return cls(
@@ -272,6 +277,7 @@ class Tracks(Rows):
     @property
     def in_sight(self) -> Bools:
         """True (N,) where nothing known hides it, and it is in the image."""
+        # The smaller share: cover and border may take the same part.
         return np.asarray(np.minimum(self.sights.visible, self.sights.inside) > IN_SIGHT)
 
 
