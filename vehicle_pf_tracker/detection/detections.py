@@ -69,12 +69,13 @@ class Detections:
         return len(self.boxes)
 
     def take(self, indices: npt.NDArray[np.intp]) -> Detections:
-        """Those at `indices`, in this order."""
+        """Select those at `indices`, in this order."""
         labels = tuple(self.labels[i] for i in indices.tolist())
         return replace(self, boxes=self.boxes[indices], scores=self.scores[indices], labels=labels)
 
     def within(self, regions: Sequence[Region]) -> Detections:
-        """Those whose centre lies in one of the inner regions, if any, and in no outer one."""
+        """Select those whose centre is in one of the inner regions, if any, and in no outer one."""
+        # Centres decide, so that a box on the rim is in or out as a whole.
         centres = (self.boxes[:, :2] + self.boxes[:, 2:] / 2).astype(np.float32)
         kept = np.ones(len(self), bool)
         inner = np.zeros(len(self), bool)
@@ -91,7 +92,7 @@ class Detections:
         return self.take(np.flatnonzero(kept))
 
     def usable(self, width: int, height: int) -> Detections:
-        """Those a tracker can use in an image of `width` x `height` px.
+        """Select those that a tracker can use in an image of `width` x `height` px.
 
         Boxes that are not finite, have no area, are far larger than the image or wholly outside it
         are left out, and so are scores that are not finite, exact duplicates, and whatever is
@@ -105,13 +106,16 @@ class Detections:
             good &= (boxes[:, 2] >= 1) & (boxes[:, 3] >= 1)
             good &= boxes[:, 2] <= LARGEST_SHARE * width
             good &= boxes[:, 3] <= LARGEST_SHARE * height
+            # Touching the image is enough: a vehicle that comes in is partly outside.
             good &= (boxes[:, 0] < width) & (boxes[:, 1] < height) & (right > 0) & (bottom > 0)
         kept = np.flatnonzero(good)
         # Stable: equal scores stay in the detector's order, so that runs repeat.
         kept = kept[np.argsort(-scores[kept], kind="stable")]
+        # Of exact duplicates the best one stays; stop as soon as there are enough.
         single: dict[tuple[float, ...], int] = {}
         for index in kept.tolist():
             single.setdefault(tuple(boxes[index].tolist()), index)
             if len(single) == MOST_DETECTIONS:
                 break
+        # In the order of the detector again.
         return self.take(np.array(sorted(single.values()), np.intp))

@@ -22,7 +22,8 @@ from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED, MotionThresh
 from vehicle_pf_tracker.detection.stabilising import Stabiliser
 
 _CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
-"""Holes and gaps up to this size are closed: windscreens show the sky."""
+"""Holes and gaps up to this size, px of the mask, are closed: windscreens show the sky. A choice:
+larger ones would join vehicles."""
 _DISTURBED = 0.5
 """Share of the image that differs above which the camera moves or the light was switched: no
 vehicle that is worth following fills half of it."""
@@ -72,17 +73,19 @@ class MotionDetector:
         Detections
             Boxes, scored by how full they are.
         """
+        # 1. Reduce: a coarse mask is cheaper, and as good.
         small, zoom = _reduced(check_frame(frame))
         if small.shape != self._shape:
             self._shape = small.shape
             self._restart()
-        # Estimates are of the image before, and so is where the camera then was. Tentative ones
-        # join no pieces: they may be pieces of a lorry.
+        # 2. Register. Estimates are of the image before, and so is where the camera then was.
+        # Tentative ones join no pieces: they may be pieces of a lorry.
         tracked = [one for one in tracks if one.is_visible]
         followed = [one for one in tracks if one.is_followed]
         covered = self._stabiliser.to_reference(_edges(tracked) * zoom)
         predicted = self._stabiliser.to_reference(_predicted(followed) * zoom)
         small, seen = self._stabiliser.stabilise(small)
+        # 3. Compare with the background, once there is one.
         self.disturbed = False
         self.is_blind = not self._background.is_known
         if self.is_blind:
@@ -91,16 +94,20 @@ class MotionDetector:
         changed = self._background.compare(small)
         if seen is not None:
             changed &= seen > 0
-        # The camera moves, or the light was switched.
+        # Most of the image is no vehicle: begin anew, and report nothing until then.
         if np.count_nonzero(changed) > _DISTURBED * changed.size:
             self.disturbed = self.is_blind = True
             self._restart()
             return Detections.none()
+        # 4. Clean the mask: single pixels go first, else closing would join them to vehicles.
         moving = np.asarray(cv2.medianBlur(changed.astype(np.uint8), 3), np.uint8)
         moving = np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _CLOSED), np.uint8)
+        # 5. Learn with the clean mask: the specks that it leaves out are background.
         self._background.learn(small, moving > 0, _covered(covered, small))
+        # 6. Read blobs. All tracks tell how vehicles drive here, also tentative ones.
         velocities = np.array([one.velocity for one in tracks]).reshape(-1, 2)
         blobs = self._blobs.read(moving, predicted, velocities)
+        # 7. Boxes are of the image as it came.
         edges = self._stabiliser.from_reference(blobs.edges)
         boxes = np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
         made = Detections.make(boxes, blobs.fullness)
@@ -125,6 +132,7 @@ def _reduced(frame: Frame) -> tuple[npt.NDArray[np.uint8], float]:
     zoom = 1.0
     while small.shape[1] > WIDEST:
         half = (max(small.shape[1] // 2, 1), max(small.shape[0] // 2, 1))
+        # Averages over areas: noise becomes less, and no pixel is left out.
         small = np.asarray(cv2.resize(small, half, interpolation=cv2.INTER_AREA), np.uint8)
         zoom *= 0.5
     return small, zoom

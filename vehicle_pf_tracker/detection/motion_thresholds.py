@@ -15,14 +15,17 @@ class MotionThresholds:
     Attributes
     ----------
     colour_threshold : float
-        Least sum of the differences of the three channels of a pixel that has changed.
+        Least sum of the absolute differences of the three channels, 0 to 765, of a pixel that has
+        changed. A choice: noise of a few levels a channel stays below it.
     patience : float
-        Images for which what has changed is not learnt as background: four seconds, in which a slow
-        lorry passes.
+        Images for which what has changed is not learnt as background: four seconds of 25 Hz, in
+        which a slow lorry passes.
     shadow : float
-        Least brightness of a shadow, of the background's.
+        Least brightness of a shadow, fraction of the background's. HOTA / IDF1 of seventeen clips
+        are 36.7 / 47.1; at .5 36.4 / 47.3, at .7 35.8 / 46.0, without shadows 31.8 / 39.7.
     apart : float
-        Advantage in shape above which a blob is taken for several vehicles.
+        Advantage in shape cost, squared standard deviations, above which a blob is taken for
+        several vehicles: one standard deviation. Without division both CDnet clips lose 13 HOTA.
     """
 
     colour_threshold: float = 32.0

@@ -42,9 +42,11 @@ def coco_from_one() -> dict[int, str]:
 def parse_metadata(text: str) -> dict[int, str]:
     """Read names as exporters write them into the file, ``{0: 'person', 1: …}``; else none."""
     try:
+        # Text from a file that may be anybody's: literals are read, nothing is evaluated.
         found = ast.literal_eval(text)
     except (ValueError, SyntaxError, MemoryError, RecursionError):
         return {}
+    # The order of a list is its numbers.
     if isinstance(found, list | tuple):
         found = dict(enumerate(found))
     if not isinstance(found, dict):
@@ -68,6 +70,7 @@ def chosen(words: str, names: Mapping[int, str]) -> frozenset[int]:
     for word in filter(None, (word.strip() for word in words.split(","))):
         if word in by_name:
             found.add(by_name[word])
+        # Names win over numbers: a class may be called by one.
         elif word.isdecimal() and (not names or int(word) in names):
             found.add(int(word))
         else:

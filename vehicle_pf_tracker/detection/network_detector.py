@@ -42,7 +42,8 @@ _LARGEST_INPUT = 4096
 _CELL = 32
 """Size of the largest cells of most networks, px: an open input's sides are multiples of it."""
 _MOST_BOXES = 3000
-"""Best boxes of which overlapping ones are suppressed; that takes the square of their number."""
+"""Best boxes of which overlapping ones are suppressed; that takes the square of their number. A
+choice, ten times `MOST_DETECTIONS`: those that are suppressed are among them."""
 
 
 class NetworkDetector:
@@ -93,6 +94,7 @@ class NetworkDetector:
         """Find vehicles; `tracks` are not used."""
         picture, fit = self._fitted(frame)
         decoded = decode(self.form, self._run(picture), *frame_size(picture))
+        # Filter before suppression: a box of a person is not to suppress a car's.
         boxes, scores, classes = self._filtered(decoded)
         kept = self._without_overlaps(boxes, scores)
         labels = [self._names.get(int(number), str(number)) for number in classes[kept]]
@@ -125,6 +127,7 @@ class NetworkDetector:
 
     def _size(self, across: int, down: int) -> tuple[int, int]:
         """Return width and height of the input for an image of this size, px."""
+        # The longer side is the wanted one; both are rounded to cells, as the network halves them.
         scale = self._parameters.input_size / max(across, down)
         free = [max(1, round(side * scale / _CELL)) * _CELL for side in (across, down)]
         return self._fixed[0] or free[0], self._fixed[1] or free[1]
@@ -138,8 +141,10 @@ class NetworkDetector:
     def _run(self, picture: Frame) -> dict[str, Array]:
         """Run the network on an image of its input's size."""
         form = getattr(self, "form", None)  # not known before the first run
+        # YOLOX was trained on BGR as OpenCV reads it, the others on RGB.
         pixels = picture[:, :, ::-1] if form == YOLOX else picture
         values = pixels.astype(self._type)
+        # Real numbers are 0 to 1, but for YOLOX, which takes levels.
         if self._type is not np.uint8 and form != YOLOX:
             values = values / self._type(255)
         if self._is_planar:
@@ -155,6 +160,7 @@ class NetworkDetector:
 
     def _class_names(self, count: int | None) -> dict[int, str]:
         """Return the names of the classes by their numbers; empty where nothing tells them."""
+        # A user's names win, then the file's, then what the form or the count tells.
         words = [word.strip() for word in self._parameters.names.split(",") if word.strip()]
         if words:
             if count is not None and len(words) != count:
@@ -185,6 +191,7 @@ class NetworkDetector:
     def _filtered(self, decoded: NetworkBoxes) -> tuple[Array, Array, npt.NDArray[np.int64]]:
         """Return boxes, scores and classes of usable boxes of the chosen classes, best first."""
         usable = np.isfinite(decoded.boxes).all(axis=1) & (decoded.boxes[:, 2:] > 0).all(axis=1)
+        # Above zero, the score of rows that had numbers without meaning.
         usable &= decoded.scores >= max(self._parameters.min_score, 1e-9)
         if self._classes:
             usable &= np.isin(decoded.classes, sorted(self._classes))

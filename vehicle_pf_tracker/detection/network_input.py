@@ -35,6 +35,7 @@ class Fit:
     def to_image(self, boxes: Array) -> Array:
         """Map boxes (N, 4: left, top, width, height) in px of the input to px of the image."""
         scale = np.array([*self.scale, *self.scale])
+        # Offsets move corners, not sizes.
         mapped: Array = (boxes - np.array([*self.offset, 0.0, 0.0])) / scale
         return mapped
 
@@ -52,12 +53,14 @@ def letterboxed(frame: Frame, width: int, height: int, *, centred: bool) -> tupl
         Put it in the middle; else in the upper left corner.
     """
     across, down = frame_size(frame)
+    # The smaller ratio, so that both sides fit; at least one px of either.
     ratio = min(width / across, height / down)
     small, fit = stretched(frame, max(1, round(across * ratio)), max(1, round(down * ratio)))
     size = frame_size(small)
     left, top = ((width - size[0]) // 2, (height - size[1]) // 2) if centred else (0, 0)
     picture: Frame = np.full((height, width, 3), PADDING, np.uint8)
     picture[top : top + size[1], left : left + size[0]] = small
+    # The scale as it was rounded, not the ratio: boxes map back exactly.
     return picture, Fit(fit.scale, (float(left), float(top)))
 
 

@@ -33,9 +33,11 @@ _STRIDES = ((8, 16, 32), (8, 16, 32, 64))
 """Sizes of cells in px that networks have."""
 _RAW_CENTRE = 32.0
 """Largest centre of boxes, in cells or px, up to which YOLOX's boxes are relative to their cells,
-as its own export leaves them. In px, the last cell's centre is where the input ends."""
+as its own export leaves them: offsets of a few cells. In px, the last cell's centre is where the
+input ends."""
 _NORMALISED = 2.0
-"""Largest coordinate up to which SSD's boxes are shares of the image; beyond it they are px."""
+"""Largest coordinate up to which SSD's boxes are shares of the image; beyond it they are px. A
+choice: shares of boxes over the border are a little above 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +67,13 @@ def form_of(outputs: Mapping[str, Array], width: int, height: int) -> str:
     InputError
         If it is none of those above.
     """
+    # By names first: shapes of SSD's outputs differ between exports.
     if _ssd_names(list(outputs)) is not None:
         return SSD
     if len(outputs) == 1:
         (output,) = outputs.values()
         if output.ndim == 3 and output.shape[0] == 1:
+            # One row for each cell: no other axis is likely to have just that number.
             counts = {len(_cells(width, height, strides)[0]) for strides in _STRIDES}
             if output.shape[1] in counts and output.shape[2] > 5:
                 return YOLOX
@@ -94,6 +98,7 @@ def decode(form: str, outputs: Mapping[str, Array], width: int, height: int) -> 
     (output,) = outputs.values()
     rows = _finite(output[0] if form == YOLOX else output[0].T)
     boxes = _placed(rows[:, :4], width, height) if form == YOLOX else rows[:, :4]
+    # YOLOX multiplies the score of an object by that of its class; YOLOv8 has classes only.
     scores = rows[:, 5:] * rows[:, 4:5] if form == YOLOX else rows[:, 4:]
     classes = scores.argmax(axis=1)
     best = scores[np.arange(len(scores)), classes]

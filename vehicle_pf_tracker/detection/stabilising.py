@@ -19,20 +19,26 @@ Image: TypeAlias = npt.NDArray[np.uint8]
 
 _CORNERS, _QUALITY, _APART = 120, 0.01, 10
 """Most corners that are followed, their least strength, of the strongest one's, and their least
-distance in px: of thirty that are hidden by vehicles, ninety are left."""
+distance in px: of thirty that are hidden by vehicles, ninety are left. With 60 F falls from 34 to
+32."""
 _STEADY_AFTER = 30
-"""Images without a shake after which a camera is taken to be steady: one second of 30 Hz.
-The first shake after it is seen up to `_CHECKED_EVERY` images late."""
+"""Images without a shake after which a camera is taken to be steady: one second of 30 Hz. The first
+shake after it is seen up to `_CHECKED_EVERY` images late."""
 _CHECKED_EVERY = 5
-"""After `_STEADY_AFTER` images without a shake only every so many are measured."""
+"""After `_STEADY_AFTER` images without a shake only every so many are measured: a choice between
+time and a shake that is seen late."""
 _RETURN = 0.7
 """Largest distance in px at which a corner that is followed there and back may end: the grid of
 pixels makes half a px, each way."""
 _LARGEST_SHAKE = 0.1
-"""Largest shift of a shake, of the image's width; beyond it the camera was turned."""
+"""Largest shift of a shake, of the image's width; beyond it the camera was turned. A choice: what
+has left a moved image is not seen."""
 _RENEWED_AFTER = 300
-"""Images after which corners are chosen anew: the light changes."""
+"""Images after which corners are chosen anew: the light changes. A choice, ten seconds of 30 Hz:
+each time a rounding error of the registration goes into the reference."""
+# Larger than for a vehicle's points: only the latest shake predicts, and it may be of many px.
 _FLOW = PointFlow(window=15, levels=3, steps=10, precision=0.03)
+# One object: that the camera stands is told by identity.
 _STILL = np.eye(2, 3)
 
 
@@ -77,6 +83,7 @@ class Stabiliser:
 
     @staticmethod
     def _shifted(edges: Array, to: Array) -> Array:
+        # Only centres move: boxes stay upright, as a shake hardly turns or scales.
         centres = (edges[:, :2] + edges[:, 2:]) / 2
         return np.asarray(edges + np.tile(centres @ to[:, :2].T + to[:, 2] - centres, 2))
 
@@ -84,21 +91,24 @@ class Stabiliser:
         if self._reference is None:
             self._refer_to(grey)
             return
-        self._age += 1
+        self._age += 1  # of the reference
         if self._still >= _STEADY_AFTER and self._age % _CHECKED_EVERY:
             return
+        # Against the reference, not the image before: errors do not add up.
         found = self._similarity(self._reference, grey)
         if np.abs(found[:, 2]).max() > _LARGEST_SHAKE * grey.shape[1] or (found == _STILL).all():
             found = _STILL
         self._map = found
         self._still = self._still + 1 if found is _STILL else 0
         if self._age >= _RENEWED_AFTER:
+            # In the coordinates of the first reference, so that the background stays where it is.
             self._refer_to(grey if found is _STILL else self._moved(grey))
 
     def _similarity(self, reference: Image, grey: Image) -> Array:
         """Map from the present image to the reference."""
         if not len(self._corners):
             return _STILL
+        # The latest map is the guess: a pole swings, and is near where it was.
         back = np.asarray(cv2.invertAffineTransform(self._map))
         guess = (self._corners @ back[:, :2].T + back[:, 2]).astype(np.float32)
         moved, found, error = _FLOW.follow_and_return(reference, grey, self._corners, guess)
