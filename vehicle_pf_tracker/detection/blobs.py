@@ -26,11 +26,12 @@ from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED, MotionThresh
 Mask: TypeAlias = npt.NDArray[np.uint8]
 
 _LEAST_AREA = 0.0003
-"""Smallest area of a vehicle, of the image: 23 px in 320 x 240."""
+"""Smallest area of a vehicle, of the image, a choice: 23 px in 320 x 240, about five by five."""
 _LEAST_PIECE = 4
 """Smallest area in px of a piece of a vehicle: two by two, fewer have no shape."""
 _USUAL_FULLNESS, _ASPECT_SPREAD = 0.8, 0.3
-"""Usual share of a vehicle's box to start from; standard deviation of the aspect's logarithm."""
+"""Usual share of a vehicle's box to start from, learnt soon; standard deviation of the aspect's
+logarithm. A choice: front and side of a car, .8 and .5, are one and a half apart."""
 _FROM_AHEAD = 0.8
 """Usual height over width, to start from, of vehicles that drive towards or away from the camera:
 that of cars from the front."""
@@ -63,7 +64,7 @@ _SIZES_NEEDED, MEMORY = 50, 0.998
 """Least boxes that a usual size is taken from: of one vehicle that has driven through; and weight
 of those before each, or of earlier images: some minutes."""
 _RATE = 1 / _SIZES_NEEDED
-"""Rate at which the usual shape follows blobs of one vehicle each."""
+"""Rate at which the usual shape follows blobs of one vehicle each: over as many as a size takes."""
 WIDEST = 400
 """Largest width of a mask in px: finer says nothing more about vehicles. At 640 HOTA / IDF1 are
 28.0 / 34.0, halving to at most 400 gives 27.5 / 34.5."""

@@ -30,7 +30,7 @@ from vehicle_pf_tracker.core.errors import InputError
 YOLOX, YOLOV8, SSD = "YOLOX", "YOLOv8", "SSD"
 
 _STRIDES = ((8, 16, 32), (8, 16, 32, 64))
-"""Sizes of cells in px that networks have."""
+"""Sizes of cells in px of the networks in the table above: those of their usual exports."""
 _RAW_CENTRE = 32.0
 """Largest centre of boxes, in cells or px, up to which YOLOX's boxes are relative to their cells,
 as its own export leaves them: offsets of a few cells. In px, the last cell's centre is where the

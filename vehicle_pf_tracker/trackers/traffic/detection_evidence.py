@@ -41,7 +41,7 @@ number of one, is worth."""
 _CLUTTERED = 0.5
 """False alarms in a place from which it is said to be cluttered: one, halved once at most."""
 UNSAID = 0.5
-"""Probability of a vehicle where a detector claims nothing."""
+"""Probability of a vehicle where a detector claims nothing: even odds."""
 _LEAST_CLAIM = 0.01
 """Least probability that a detector's own score is taken for, either way: one in a hundred. It
 keeps the logarithm of the odds finite, and a detector from being surer than what became of its

@@ -61,7 +61,7 @@ _MOVES = 3.0
 _STANDS = 0.1
 """Way, of its width, below which a track has not moved: networks' boxes shake by half of it."""
 _KEPT_SAMPLES = 30
-"""Latest detections, one second of 30 Hz, of what has not driven yet, that are not learnt from."""
+"""Latest detections, one second of 30 Hz, not learnt from until it drives: it may be about to."""
 _BLIND_FROM = 2
 """Vehicles in sight, all missed in one image, by which the detector failed: all do not vanish."""
 _BLIND_FOR = 150.0
