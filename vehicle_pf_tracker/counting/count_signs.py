@@ -23,9 +23,9 @@ class Sign(str, Enum):
     SEEN = "seen"
     """A crossing of a vehicle that was seen, and detected in most of its images."""
     VAGUE = "vague"
-    """One that was predicted, or of a vehicle that was predicted in most of its images."""
+    """A crossing that was predicted, or of a vehicle that was predicted in most of its images."""
     DOUBTED = "doubted"
-    """An implausible one, which is in no total."""
+    """An implausible crossing, which is in no total."""
     JOINED = "joined"
     """A crossing in an image with ambiguous blobs, beside the sign that it has anyway."""
     PASSED = "passed"
@@ -33,7 +33,7 @@ class Sign(str, Enum):
     BROKEN = "broken"
     """A vehicle whose track ended shortly before the line, or began shortly behind it."""
     UNCONFIRMED = "unconfirmed"
-    """What drove over the line, or was lost at it, and never became a vehicle."""
+    """A track that drove over the line, or was lost at it, and was never confirmed as a vehicle."""
 
 
 def missed_at(
@@ -56,6 +56,8 @@ def missed_at(
         The side to which it may have crossed, and `PASSED` or `BROKEN`; None where it ended far
         from the edge, passed its ends, or has hardly driven.
     """
+    # 1. How far it has driven across the edge: within the noise of its boxes there is no
+    # direction, and so nothing that it may have missed.
     begin = edge.distance(first.point)
     end = edge.distance(last.point)
     driven = end - begin
@@ -63,12 +65,17 @@ def missed_at(
     if abs(driven) <= _DRIVEN * length:
         return None
     side = 1 if driven > 0 else -1
+    # 2. Whether the edge lies between its ends, or how near to an end, in lengths that it has at
+    # that end: perspective changes the length in px along the way.
     is_over = begin * end < 0
     gap = abs(begin) / first.extent(edge.normal(first.point))
     if has_ended:
         gap = min(gap, abs(end) / length)
     elif side * begin < 0:
+        # Followed still: a crossing ahead, or one that is not yet clear, may be counted later.
+        # Only one before its first point is missed for good.
         return None
+    # 3. Where a straight drive meets the endless line: beside the ends it is no crossing.
     share = begin / (begin - end)  # of a straight drive at the line, beyond 0 to 1 before or after
     (x, y), (to_x, to_y) = first.point, last.point
     at = x + share * (to_x - x), y + share * (to_y - y)

@@ -54,7 +54,7 @@ class _Vehicle:
     counted: set[tuple[str, str]] = field(default_factory=set)
 
     def follow(self, foot: FootPoint) -> _Passages:
-        """Return what it has passed with the step to a point."""
+        """Follow it to its next point, and return what it has passed on the way."""
         self.path.add(foot)
         lines = [
             (line.line.name, *at) for line in self.lines for at in line.follow(foot, self.path)
@@ -67,6 +67,7 @@ class _Vehicle:
     def missed(self, *, has_ended: bool) -> list[PlacedSign]:
         """Return signs of crossings that do not count, and may be true."""
         if not self.is_confirmed:
+            # Until it has ended it may be confirmed yet, and then its crossings count.
             if not has_ended or self.life.detected < _PROMISING:
                 return []
             places = [(one.place, one.direction) for one in self.waiting]
@@ -89,9 +90,12 @@ class _Vehicle:
             for own, zone in zip(self.zones, other.zones, strict=True)
             for at in zone.resume(own)
         ]
+        # The later track goes on, as its watches know the present sides; `resume` has given them
+        # the memory of this one.
         self.lines = other.lines
         self.zones = other.zones
         self.path = self.life.path = other.path
+        # What both tracks passed is one crossing: this vehicle has counted it already.
         self.waiting = [
             one for one in other.waiting if (one.place, one.direction) not in self.counted
         ]
@@ -133,12 +137,14 @@ class Counter:
         self._apart = apart
         self._lines = [LineEdge(line) for line in plan.lines]
         self._zones = [ZoneEdge(zone) for zone in plan.zones]
+        # Crossings by place, direction and class; a Counter of the standard library, not this one.
         self.totals: Tally[tuple[str, str, str]] = Tally()
         self.plane = plane
         self.vehicles: dict[int, _Vehicle] = {}  # by their tracks
         self._plausibility = Plausibility()
         self._occupancy = {zone.name: 0 for zone in plan.zones}
         self._last_ns: int | None = None
+        # Stamp of the image before the last: a vehicle whose last point is older was lost between.
         self._before_ns: int | None = None
         self._signs = SignTally()
 
@@ -194,8 +200,10 @@ class Counter:
     def forget_vehicles(self) -> None:
         """Discard where all vehicles were, as when a recording begins again; totals stay."""
         for serial, vehicle in self.vehicles.items():
+            # Those that were lost earlier have ended then: their signs must not count twice.
             if vehicle.last_ns == self._last_ns:
                 self._signs.end(serial, vehicle.missed(has_ended=True))
+            # None comes back: whichever track has this number next, it withdraws nothing.
             self._signs.keep(serial)
         self.vehicles.clear()
         self._occupancy = {zone.name: 0 for zone in self.plan.zones}
@@ -234,19 +242,26 @@ class Counter:
         """
         if self._last_ns is not None and stamp_ns < self._last_ns:
             self.forget_vehicles()
+        # 1. Shift the stamps first: `_follow` tells by them who was in the image before.
         self._before_ns = self._last_ns
         self._last_ns = stamp_ns
         self._occupancy = {zone.name: 0 for zone in self.plan.zones}
+        # 2. Follow all vehicles; the crossings of tentative ones wait for their confirmation.
         counted = [one for estimate in estimates for one in self._follow(estimate, stamp_ns)]
+        # Once blobs, always blobs: an interval is about all crossings since the totals began.
         self._signs.has_blobs = self._signs.has_blobs or ambiguous is not None
+        # 3. Count what is plausible. Where a blob may hold two vehicles, one crossing may be two.
         for one in counted:
             if not one.doubt:
                 self.totals[one.place, one.direction, one.label] += 1
                 if ambiguous:
                     self._signs.add((one.place, one.direction, one.label, Sign.JOINED))
         for serial, vehicle in self.vehicles.items():
+            # 4. In the image before, and not in this one: it has just ended. `_follow` takes these
+            # signs back if it comes again.
             if vehicle.last_ns == self._before_ns != stamp_ns:
                 self._signs.end(serial, vehicle.missed(has_ended=True))
+        # 5. Discard what no tracker can bring back: the memory of a node must not grow for weeks.
         self._drop_old(stamp_ns)
         return tuple(counted)
 
@@ -254,6 +269,8 @@ class Counter:
         mode: TrackMode = estimate.mode
         if mode is TrackMode.LOST:
             return []
+        # 1. Its memory, by its track: a tentative one has no number yet. After a gap the path is
+        # unknown, so that a passage in it is marked as not seen.
         vehicle = self.vehicles.get(estimate.serial)
         if vehicle is None:
             vehicle = self.vehicles[estimate.serial] = self._made(FootPoint.of(estimate, stamp_ns))
@@ -261,9 +278,13 @@ class Counter:
             vehicle.path.clear()
             mode = TrackMode.LOST
             self._signs.withdraw(estimate.serial)
+        # 2. The track that it turned out to be, before its own point: passages in the gap are
+        # earlier.
         joined = self.vehicles.pop(estimate.joined, None)
         self._signs.withdraw(estimate.joined)
         passages = [] if joined is None else vehicle.join(joined)
+        # 3. Its next point. A vehicle that was once confirmed stays one, whatever its mode
+        # becomes.
         foot = replace(FootPoint.of(estimate, stamp_ns), mode=mode)
         passages += vehicle.follow(foot)
         vehicle.last_ns = stamp_ns
@@ -271,6 +292,7 @@ class Counter:
         vehicle.life.add(foot, is_detected=not math.isnan(estimate.score))
         vehicle.is_confirmed = vehicle.is_confirmed or estimate.mode in CONFIRMED
         vehicle.waiting += _crossings(passages, vehicle.path, estimate)
+        # 4. Only confirmed vehicles count; then also what they passed before.
         if not vehicle.is_confirmed:
             return []
         for zone in vehicle.zones:
@@ -278,14 +300,17 @@ class Counter:
             self._occupancy[zone.zone.name] += is_one_more
         counted = vehicle.waiting
         vehicle.waiting = []
+        # Kept for `join`: a tentative track of the same vehicle may have passed here, too.
         vehicle.counted.update((one.place, one.direction) for one in counted)
         return [self._judged(one, estimate, vehicle.life) for one in counted]
 
     def _judged(self, one: Crossing, estimate: TrackEstimate, life: Life) -> Crossing:
         """Return a crossing by what is known of its vehicle now."""
         is_vague = life.is_vague or one.mode in (TrackMode.OCCLUDED, TrackMode.LOST)
+        # Number and class of now: when it crossed it may have been tentative, without either.
         one = replace(one, identity=estimate.identity, label=estimate.label or one.label)
         doubt = self._plausibility.doubt(one, life)
+        # Doubt first: such a crossing is in no total, however well it was seen.
         sign = Sign.DOUBTED if doubt else Sign.VAGUE if is_vague else Sign.SEEN
         self._signs.add((one.place, one.direction, one.label, sign))
         return replace(one, doubt=doubt)

@@ -49,7 +49,7 @@ class FootPoint:
 
     @classmethod
     def of(cls, estimate: TrackEstimate, stamp_ns: int) -> FootPoint:
-        """Make that of an estimate."""
+        """Make the foot point of an estimate."""
         box = estimate.box
         size = (box.width, box.height)
         covariance = estimate.foot_covariance
@@ -58,16 +58,19 @@ class FootPoint:
     @cached_property
     def is_seen(self) -> bool:
         """True where it is not only predicted."""
+        # LOST is seen, too: the counter marks so the first point after a gap in the track.
         return self.mode is not TrackMode.OCCLUDED
 
     def deviation(self, normal: Position) -> float:
         """Return its standard deviation along a unit vector by the tracker, px."""
         x, y = normal
         by_x, both, by_y = self.covariance
+        # Rounding may leave a variance of almost nothing below zero.
         return math.sqrt(max(by_x * x * x + 2 * both * x * y + by_y * y * y, 0.0))
 
     def extent(self, normal: Position) -> float:
         """Return the length of the box along a unit vector, px."""
+        # The projection of an upright rectangle: its extent across a slanted edge.
         return abs(normal[0]) * self.size[0] + abs(normal[1]) * self.size[1]
 
     @cached_property
@@ -82,6 +85,7 @@ class FootPoint:
         The covariance of a predicted vehicle grows until no place is certain any more, while the
         place where it most likely is stays the best answer: its margin does not grow.
         """
+        # The larger axis serves every edge: too wide a margin only delays a decision.
         by_x, _, by_y = self.covariance
         spread = _SURE * math.sqrt(max(by_x, by_y)) if self.is_seen else 0.0
         return max(self.rounding, spread)

@@ -24,11 +24,13 @@ class LineEdge:
         The line.
     """
 
+    # A line has no far side, as a zone has: no vehicle is too large for it.
     room = math.inf
 
     def __init__(self, line: CountingLine) -> None:
         self.line = line
         (x, y), (to_x, to_y) = line.start, line.end
+        # The line turned by a quarter to the right, as y points down in an image.
         self._normal = (y - to_y) / line.length, (to_x - x) / line.length
 
     def distance(self, point: Position) -> float:
@@ -65,6 +67,7 @@ class LineWatch:
 
     def resume(self, before: LineWatch) -> list[tuple[str, FootPoint]]:
         """Go on from the track of the same vehicle before it was hidden, in the same way."""
+        # First: what was counted before the gap is not counted again by the passage that ends it.
         self._done |= before._done
         return self._new(self._watch.resume(before._watch))
 
@@ -76,6 +79,7 @@ class LineWatch:
             return None
         side, sign = found
         direction = self._direction(side)
+        # Having been counted in this direction, it has missed nothing there.
         return None if direction in self._done else (direction, sign)
 
     def _direction(self, side: int) -> str:
@@ -87,5 +91,6 @@ class LineWatch:
         direction = self._direction(passage.side)
         if direction in self._done:
             return []
+        # Once for good: a vehicle that comes round again in this direction is the same one.
         self._done.add(direction)
         return [(direction, passage.at)]

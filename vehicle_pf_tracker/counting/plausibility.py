@@ -57,6 +57,7 @@ class Life:
     def add(self, foot: FootPoint, *, is_detected: bool) -> None:
         """Take the next image of it."""
         if foot.is_seen:
+            # A predicted point is no sight: it would end where nobody has seen it.
             self.last = foot
         self.images += 1
         self.detected += is_detected
@@ -70,9 +71,11 @@ class Life:
         """Tell whether the other began where this one must still have been, and it was not seen."""
         gap_ns = other.first.stamp_ns - self.last.stamp_ns
         if gap_ns <= 0:
+            # Both were seen at once, and so are two.
             return False
         driven = (self.path.pixels() or 0.0) * gap_ns / 1e9
         apart = math.dist(self.last.point, other.first.point)
+        # Summed: it hardly moved, and the other began upon it. One that drove on has left room.
         return apart + driven < max(self.side, other.side)
 
 
@@ -87,15 +90,20 @@ class Plausibility:
     def doubt(self, crossing: Crossing, life: Life) -> str:
         """Tell why a crossing by a vehicle of this life does not count; "" if it does."""
         past = self._past[crossing.place]
+        # By direction: in px the far carriageway is slower, and would make the near one suspect.
         same = [one for one, _ in past if one.direction == crossing.direction]
+        # By place: over a line across both carriageways both directions are usual, but not in one
+        # lane.
         near = [one for one, _ in past if math.dist(one.point, crossing.point) < _ROOM * life.side]
         if any(_is_twin(crossing, life, *other) for other in past):
             return TWICE
         if _is_faster(crossing, same):
             return FASTER
         against = all(one.direction != crossing.direction for one in near)
+        # Only if it was hardly detected: a vehicle that was well seen may be on the wrong side.
         if life.is_vague and len(near) >= _KNOWN and against:
             return AGAINST
+        # What is in doubt is not remembered: it would make the next of its kind plausible.
         past.append((crossing, life))
         return ""
 
@@ -103,6 +111,7 @@ class Plausibility:
 def _is_faster(crossing: Crossing, others: Iterable[Crossing]) -> bool:
     speeds = [one.speed_px for one in others if one.speed_px is not None]
     if crossing.speed_px is None or len(speeds) < _KNOWN:
+        # Unknown is no reason to doubt.
         return False
     return crossing.speed_px > _FASTEST * statistics.median(speeds)
 
@@ -113,11 +122,14 @@ def _is_twin(crossing: Crossing, life: Life, other: Crossing, before: Life) -> b
         return False
     if before.precedes(life):
         return True
+    # Two crossings in sight are two vehicles; only a predicted one may repeat another.
     if TrackMode.OCCLUDED not in (crossing.mode, other.mode):
         return False
     are_apart = life.first.stamp_ns > before.last.stamp_ns
     if not (are_apart or before.first.stamp_ns > life.last.stamp_ns):
         return False  # both were seen at the same time
+    # How far the earlier one has driven on when the other crosses, and how far apart they crossed
+    # along the line: about at right angles, hence the hypotenuse.
     speed = max(crossing.speed_px or 0.0, other.speed_px or 0.0)
     ahead = speed * abs(crossing.stamp_ns - other.stamp_ns) / 1e9
     apart = math.dist(crossing.point, other.point)

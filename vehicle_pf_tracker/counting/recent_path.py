@@ -56,6 +56,7 @@ class RecentPath:
         points = self._points
         points.append(foot)
         self._scatter = None
+        # Both bounds have to be passed: where images are rare, old points are kept for the number.
         while len(points) > _REMEMBERED and foot.stamp_ns - points[0].stamp_ns > _REMEMBERED_NS:
             points.popleft()
 
@@ -66,6 +67,7 @@ class RecentPath:
 
     def ends_at(self, foot: FootPoint) -> bool:
         """Tell whether this is its latest point, and none between two images."""
+        # By identity: points that `towards` makes between two images may share its stamp.
         return bool(self._points) and self._points[-1] is foot
 
     def pixels(self) -> float | None:
@@ -79,6 +81,7 @@ class RecentPath:
         if self._plane is None or len(latest) < _FEWEST:
             return None
         seconds, points = _arrays(latest)
+        # Outside its calibrated area the plane extrapolates: no speed is better than a wrong one.
         if any(self._plane.objection(self._plane.ideal(point)) for point in points):
             return None
         speed = _speed(seconds, self._plane.to_road(points))
@@ -91,12 +94,16 @@ class RecentPath:
         """
         if not self._points:
             return 0.0
+        # Kept until the next point: every line and zone asks for it along a normal of its own.
         if self._scatter is None:
             path = [foot for foot in self._points if foot.is_seen]
             # Noise of a detector differs from image to image, that of a tracker's estimates less.
             scales = {1, _images_in(path, _STRAIGHT_NS)}
             self._scatter = [_bends(path, apart) for apart in scales if len(path) > 2 * apart]
         along = np.array(normal)
+        # A prior of `_ASSUMED_BY` points: a few that happen to lie straight do not prove that
+        # there is no noise. Of the scales the worst counts, as too much noise only delays a
+        # passage.
         assumed = (_ASSUMED * self._points[-1].extent(normal)) ** 2
         variances = [
             (_ASSUMED_BY * assumed + max(float(along @ products @ along), 0.0))
@@ -118,6 +125,7 @@ class RecentPath:
         spread = float(since @ since)
         if spread <= 0:
             return None
+        # The end of the line of regression; its variance, of one point's, is least in the middle.
         x, y = points.mean(axis=0) + since[-1] * (since @ points / spread)
         return (float(x), float(y)), math.sqrt(1 / len(piece) + float(since[-1]) ** 2 / spread)
 
@@ -157,8 +165,10 @@ def _bends(path: list[FootPoint], apart: int) -> tuple[Array, float]:
     first = slice(None, -2 * apart)
     middle = slice(apart, -apart)
     last = slice(2 * apart, None)
+    # Two images of one stamp would divide by zero.
     whole = np.maximum(seconds[last] - seconds[first], np.finfo(float).tiny)
     share = ((seconds[middle] - seconds[first]) / whole)[:, np.newaxis]
     bends = points[middle] - (1 - share) * points[first] - share * points[last]
+    # A bend has the errors of three points: scaled so that it has the variance of one.
     bends /= np.sqrt(1 + share**2 + (1 - share) ** 2)
     return _OVERLAP * (bends.T @ bends), _OVERLAP * len(bends)

@@ -113,6 +113,8 @@ class SideWatch:
         A predicted vehicle that is then seen on the other side after all has not passed back: the
         forecast was early, and its passage is not returned again.
         """
+        # The order matters: the point of the crossing is needed where the side changes, and the
+        # furthest point is one on the side that it is on after that.
         distance = self.edge.distance(foot.point)
         self._note_crossing(foot, distance)
         side = self._clear_side(foot, distance, path)
@@ -152,14 +154,18 @@ class SideWatch:
             drive.
         """
         if not before.side:
+            # The earlier track was on no clear side: there is nothing to go on from.
             return None
+        # Passages are those of the vehicle: only its first needs no drive of its own length.
         self._passages += before._passages
         self._ahead = self._ahead or before._ahead
         if not self.side:
+            # Not clear yet: it stays on the side of before until its own points say otherwise.
             self.side = self._began = before.side
             self._furthest = before._furthest
             self._is_forecast = before._is_forecast
             return None
+        # The side on which this track began: what it did since is counted by its own passages.
         side = self._began
         self._began = before._began
         if side == before.side:
@@ -180,6 +186,7 @@ class SideWatch:
         # One of both may lie on the edge, within the noise, on the side that it did not come to.
         at = last.towards(first, begin / (begin - end)) if begin * end < 0 else first
         seen = min(abs(begin), abs(before._furthest))  # the rest of the way was predicted
+        # As in `_may_change`: back over the edge it must have driven its own length.
         is_back = before._passages and seen + abs(end) < first.extent(self.edge.normal(at.point))
         if is_back or not self.edge.has(at.point):
             return None
@@ -207,6 +214,8 @@ class SideWatch:
         # The first side may be wrong: it is the drive from there that makes a passage.
         if abs(distance) <= min(foot.margin if self.side else foot.rounding, most):
             return 0
+        # The test by scatter is for a change of side of a point that was seen: predicted points
+        # scatter around nothing, and points between two images are not in the path.
         is_known = self.side not in (0, side)
         if not (is_known and foot.is_seen and path.ends_at(foot)):
             return side
@@ -222,11 +231,14 @@ class SideWatch:
         """Tell whether the vehicle has really driven from its present side to this one."""
         if not self.side or (self._is_forecast and foot.is_seen):
             return True
+        # From the furthest point, not from the edge: noise around a standing vehicle spans little.
         driven = side * (distance - self._furthest)
         normal = self.edge.normal(foot.point)
         scatter = path.scatter(normal)
         if not self._passages:
             return driven >= _AT_ONCE * scatter
+        # Any later passage may be the shake of a vehicle that waits on the edge; in a zone smaller
+        # than itself it cannot drive its own length.
         needed = max(_RANGE * scatter, min(foot.extent(normal), self.edge.room))
         if not foot.is_seen:
             needed = max(needed, _FORESEEN * foot.deviation(normal))
@@ -244,6 +256,7 @@ class SideWatch:
             self._began = side
             return None
         if self._is_forecast and foot.is_seen:
+            # Seen on the other side after all: the forecast passage is taken back, not made again.
             self._is_forecast = False
             self._passages -= self._ahead == before
             return None

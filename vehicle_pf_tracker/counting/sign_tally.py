@@ -35,6 +35,7 @@ class SignTally:
     def end(self, serial: int, signs: list[PlacedSign]) -> None:
         """Add the signs of a track that is not followed any more."""
         if signs:
+            # Kept by track besides the total, to be subtracted if the track comes back.
             self._ended[serial] = signs
             self._total.update(signs)
 
@@ -60,6 +61,7 @@ class SignTally:
     ) -> Tally[Sign]:
         """Return the signs at a place in a direction, of some classes, with a few `more`."""
         found: Tally[Sign] = Tally()
+        # The sum of two Counters also drops what withdrawals have left at 0.
         for (at, to, label, sign), number in (self._total + Tally(more)).items():
             if (at, to) == (place, direction) and is_asked(label):
                 found[sign] += number

@@ -48,6 +48,7 @@ class VehicleClasses:
         """Return estimates of the next image, numbered vehicles by the class decided for them."""
         named = tuple(self._named(estimate) for estimate in estimates)
         followed = {estimate.identity for estimate in estimates}
+        # Of vehicles that are followed only: a node runs for weeks.
         self._votes = {number: vote for number, vote in self._votes.items() if number in followed}
         return named
 
@@ -62,6 +63,7 @@ class VehicleClasses:
         return frozenset(number for number, vote in self._votes.items() if not vote.is_decided)
 
     def _named(self, estimate: TrackEstimate) -> TrackEstimate:
+        # A tentative vehicle has no number, and what motion finds has no class.
         if not (estimate.identity and estimate.label):
             return estimate
         vote = self._votes.setdefault(estimate.identity, _Vote(estimate.label))
@@ -69,6 +71,7 @@ class VehicleClasses:
             if estimate.label != vote.label:
                 vote.label = estimate.label
                 vote.steady = 0
+            # An image without a detection adds no vote, but time that the user waits.
             vote.steady += not math.isnan(estimate.score)
             vote.images += 1
             vote.is_decided = vote.steady >= _STEADY or vote.images >= _LONGEST

@@ -47,6 +47,7 @@ class ZoneEdge:
         low, high = self._outline.min(axis=0), self._outline.max(axis=0)
         steps = (np.arange(_GRID) + 0.5) / _GRID
         across, down = (low + np.outer(steps, high - low)).T.tolist()
+        # At least a px, as the grid may miss the inside of a sliver.
         self.room = max(1.0, *(self.distance((x, y)) for x in across for y in down))
 
     def distance(self, point: Position) -> float:
@@ -57,7 +58,9 @@ class ZoneEdge:
         """Return the unit vector across the side of the zone that is nearest to a point."""
         begin = self._outline
         along = np.roll(begin, -1, axis=0) - begin
+        # Two corners on one point make a side without length.
         squares = np.maximum((along**2).sum(axis=1), np.finfo(np.float32).tiny)
+        # Nearest point on each side of the outline, as a share of the side.
         shares = (((np.array(point) - begin) * along).sum(axis=1) / squares).clip(0, 1)
         away = np.array(point) - (begin + shares[:, np.newaxis] * along)
         x, y = along[np.argmin((away**2).sum(axis=1))].tolist()
@@ -100,6 +103,7 @@ class ZoneWatch:
         last = self._last
         self._last = foot
         if last is None:
+            # Without a margin: the occupancy needs an answer now, and no entry is counted by it.
             self.is_inside = self._watch.edge.distance(foot.point) > 0
         between = [] if last is None else self._between(last, foot)
         return self._new([self._watch.follow(at, path) for at in (*between, foot)])
@@ -110,6 +114,7 @@ class ZoneWatch:
         apart = math.dist(last.point, foot.point)
         if abs(edge.distance(last.point) + edge.distance(foot.point)) >= apart:
             return []  # it cannot have reached the outline and come back
+        # Steps of half the zone's inner radius: none can go in and out again between two points.
         steps = min(math.ceil(2 * apart / edge.room), _MOST_STEPS)
         return [last.towards(foot, step / steps) for step in range(1, steps)]
 
@@ -119,6 +124,7 @@ class ZoneWatch:
 
     def _new(self, passages: list[Passage | None]) -> list[tuple[str, FootPoint]]:
         if self._watch.side:
+            # Until the side is clear, what the first point has said stands.
             self.is_inside = self._watch.side > 0
         done = [passage for passage in passages if passage is not None]
         return [(ZONE_ENTRY if passage.side > 0 else ZONE_EXIT, passage.at) for passage in done]
