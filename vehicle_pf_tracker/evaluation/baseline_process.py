@@ -96,8 +96,11 @@ class Worker:
     def __init__(self, subject: str, python: Path | None, words: Sequence[str]) -> None:
         self._subject = subject
         self._python = str(baseline_python(python))
+        # A file, as nobody reads it while it works: a full pipe would stop the worker.
         self._log = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the process
         try:
+            # Isolated (-I): this process's PYTHONPATH must not bring its OpenCV into that
+            # environment.
             command = [self._python, "-I", str(WORKER), *words]
             pipe = subprocess.PIPE
             self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=self._log)
@@ -110,6 +113,7 @@ class Worker:
         self._answers = self._process.stdout
         try:
             self.versions: dict[str, str] = self._answer()
+        # Also where a user interrupts: no process is left behind.
         except BaseException:
             self.close()
             raise
@@ -149,6 +153,7 @@ class Worker:
         return answer
 
     def _death(self) -> InputError:
+        # The last line of a traceback is its reason.
         status = self._process.wait()
         self._log.seek(0)
         lines = self._log.read().decode(errors="replace").strip().splitlines()

@@ -79,6 +79,8 @@ def serve_opencv(requests: BinaryIO, name: str, models: dict[str, str]) -> Answe
     tracker: Any = None
     while line := requests.readline():
         request = json.loads(line)
+        # The pixels follow their request: read them even if the tracker fails, or the next line
+        # would be pixels.
         shape = request["height"], request["width"], 3
         pixels = np.frombuffer(requests.read(shape[0] * shape[1] * 3), np.uint8)
         image = cv2.cvtColor(pixels.reshape(shape), cv2.COLOR_RGB2BGR)
@@ -116,6 +118,7 @@ def tracker_maker(cv2: Any, name: str, models: dict[str, str]) -> Callable[[], A
 
 def step(tracker: Any, image: Any, box: list[int] | None) -> dict[str, Any]:
     """Start on `box`, or follow what it was started on."""
+    # CPU of this thread: other cells of the grid on the machine do not count.
     before = time.thread_time()
     if box is not None:
         tracker.init(image, tuple(box))
@@ -134,6 +137,7 @@ def serve_traffic(requests: BinaryIO) -> Answers:
         ((task, content),) = json.loads(line).items()
         try:
             yield score(**content) if task == "score" else track(**content)
+        # The libraries' own errors about odd input; the process lives on for the next request.
         except (ArithmeticError, LookupError, TypeError, ValueError) as error:
             yield {"error": f"{type(error).__name__}: {error}"}
 
@@ -147,6 +151,8 @@ def score(frames: int, truth: list[list[float]], tracks: list[list[float]]) -> d
     clear = CLEAR({"PRINT_CONFIG": False}).eval_sequence(data)
     identity = Identity({"PRINT_CONFIG": False}).eval_sequence(data)
     return {
+        # TrackEval gives these by threshold of localisation; the score is the mean over all of
+        # them.
         **{name: 100 * float(np.mean(hota[name])) for name in ("HOTA", "DetA", "AssA", "LocA")},
         "IDF1": 100 * float(identity["IDF1"]),
         "MOTA": 100 * float(clear["MOTA"]),
@@ -161,6 +167,7 @@ def sequence_data(frames: int, truth: Any, tracks: Any) -> dict[str, Any]:
     """Arrange boxes as TrackEval's data sets do behind their preprocessing."""
     data: dict[str, Any] = {"num_timesteps": frames, "similarity_scores": []}
     for name, rows in (("gt", truth), ("tracker", tracks)):
+        # TrackEval indexes by identities: numbers from 0 without a gap.
         known, numbers = np.unique(rows[:, 1], return_inverse=True)
         data[f"num_{name}_ids"] = len(known)
         data[f"num_{name}_dets"] = len(rows)
@@ -175,6 +182,7 @@ def overlaps(first: Any, second: Any) -> Any:
     """Intersection over union of each pair of boxes (left, top, width, height)."""
     low = np.maximum(first[:, None, :2], second[None, :, :2])
     ends = (first[:, :2] + first[:, 2:])[:, None], (second[:, :2] + second[:, 2:])[None]
+    # Boxes that lie apart have a negative extent along an axis.
     common = np.clip(np.minimum(*ends) - low, 0, None).prod(axis=2)
     union = first[:, None, 2:].prod(axis=2) + second[None, :, 2:].prod(axis=2) - common
     return common / np.maximum(union, np.finfo(float).eps)
@@ -187,6 +195,7 @@ def track(
     import supervision  # noqa: PLC0415 - takes a second
     import trackers  # noqa: PLC0415
 
+    # Made anew for each request: numbers of tracks must not go on from another scene.
     one = getattr(trackers, TRAFFIC[tracker])(**options)
     rows = table(detections)
     tracks: list[list[float]] = []

@@ -107,6 +107,7 @@ class Baseline(Worker):
         pixels = np.ascontiguousarray(frame)
         answer = self._ask({"height": height, "width": width, **request}, pixels)
         found = answer["box"] is not None
+        # Where it has given up its last box stands, as for every system.
         if found:
             self._box = Box(*answer["box"])
         return BaselineAnswer(self._box, found, float(answer["seconds"]))
@@ -151,6 +152,7 @@ def baseline_rows(
     limit = max_diff_ns(PAIRED_WITHIN_S)
     started = False
     for number, (stamp, frame) in enumerate(frames, start=1):
+        # An image that cannot be read goes to no tracker, as in a node.
         if frame is None:
             yield EstimateRow.without(number, stamp, REJECTED)
         elif started:
@@ -160,6 +162,7 @@ def baseline_rows(
             yield baseline_row(baseline.start(frame, first_truth.box), number, stamp)
         else:
             yield EstimateRow.without(number, stamp, WAITING)
+    # Only now is it known that the first truth lies between the images, or beyond them.
     if not started:
         raise InputError(
             f"no image is within {PAIRED_WITHIN_S:g} s of the first truth, "

@@ -21,8 +21,10 @@ from vehicle_pf_tracker.trackers.registry import Variant
 def result_key(facts: Mapping[str, Any], modules: Iterable[str]) -> str:
     """Digest facts, the code of `modules`, and the versions of what it runs on."""
     code = source_digest(frozenset(modules))
+    # Another NumPy, OpenCV or processor may move the last digits, and these a random choice.
     made_by = {**versions(), "platform": platform.machine(), "code": code}
     text = json.dumps({**facts, "made by": made_by}, sort_keys=True, allow_nan=False)
+    # 128 bits: no two results of any evaluation share them.
     return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
@@ -68,6 +70,7 @@ def source_digest(modules: frozenset[str]) -> str:
         own = Path(found.origin)
         paths |= set(own.parent.glob("*.py")) if "." in name else {own}
     digest = hashlib.sha256()
+    # Sorted, as a set of paths has another order in each process.
     for path in sorted(paths):
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()

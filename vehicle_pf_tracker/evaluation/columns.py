@@ -46,6 +46,7 @@ class Column:
 
     def value(self, metrics: Metrics) -> float | None:
         """Return the metric of a run; of occlusions the mean of those that have it."""
+        # Of the run itself, or of each of its occlusions; `recovered` has both names.
         if hasattr(metrics, self.key) and self.key != "recovered":
             value: float | None = getattr(metrics, self.key)
             return None if value is None else float(value)

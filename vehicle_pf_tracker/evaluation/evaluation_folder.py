@@ -29,7 +29,8 @@ from vehicle_pf_tracker.results.output_files import read_csv, write_csv
 from vehicle_pf_tracker.results.run_folder import ESTIMATES, RUN
 
 FORMAT = 2
-"""Format of the folder; folders of another format are refused."""
+"""Format of the folder; folders of another format are refused. Counted up when the layout
+changes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +85,7 @@ def write_truth(path: Path, truths: Mapping[int, Truth]) -> None:
     InputError
         If the file cannot be written.
     """
+    # By the number of the frame, so that a report is written again without the recording.
     rows = (
         [frame, truth.stamp_ns, *astuple(truth.box), truth.occlusion.name.lower()]
         for frame, truth in sorted(truths.items())
@@ -168,6 +170,7 @@ class EvaluationFolder:
             If it has no result, with the reason, or cannot be read.
         """
         folder = cell_folder(self.path, recording, system, seed)
+        # First: a failed cell has no estimates, and its reason is worth more than "not run".
         if (folder / FAILED).is_file():
             raise InputError(read_document(folder / FAILED).get("reason", "no reason was given"))
         if not (folder / ESTIMATES).is_file():

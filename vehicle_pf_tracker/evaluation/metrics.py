@@ -38,11 +38,11 @@ NORMALISED_PRECISION = 0.2
 """Threshold of the normalised precision that the LaSOT benchmark ranks by."""
 
 PRECISION_THRESHOLDS: Array = np.arange(51, dtype=np.float64)
-"""Errors of the centre in px: 0, 1, ... 50."""
+"""Errors of the centre in px: 0, 1, ... 50, as OTB draws them."""
 SUCCESS_THRESHOLDS: Array = np.linspace(0.0, 1.0, 21)
-"""Intersections over union: 0, 0.05, ... 1."""
+"""Intersections over union: 0, 0.05, ... 1, as OTB draws them."""
 NORMALISED_THRESHOLDS: Array = np.linspace(0.0, 0.5, 51)
-"""Errors of the centre in sizes of the true box: 0, 0.01, ... 0.5."""
+"""Errors of the centre in sizes of the true box: 0, 0.01, ... 0.5, as TrackingNet and LaSOT do."""
 # Modes whose frames are counted.
 _MODES = (*(mode.value for mode in Mode), WAITING, REJECTED)
 
@@ -82,7 +82,9 @@ def curves(frames: Sequence[FrameScore]) -> dict[str, Curve]:
         return {}
     errors = np.array([[f.error, f.normalised_error] for f in frames], dtype=np.float64)
     errors[np.isnan(errors)] = np.inf  # of None
+    # Where there is no box to compare, nothing overlaps.
     overlaps = np.array([frame.overlap or 0.0 for frame in frames])
+    # Frames against thresholds, (F, K): the mean over the frames is the curve.
     passed = {
         "precision": (PRECISION_THRESHOLDS, errors[:, :1] <= PRECISION_THRESHOLDS),
         "success": (SUCCESS_THRESHOLDS, overlaps[:, np.newaxis] > SUCCESS_THRESHOLDS),
@@ -192,6 +194,7 @@ class Metrics:
 
 def measure(scores: Scores) -> Metrics:
     """Take the metrics of a run."""
+    # 1. Groups of frames: a metric differs from the next by its group more than by its formula.
     counted = scores.counted
     found = curves(scores.counted)
     visible = [frame for frame in counted if not frame.hidden]
@@ -201,6 +204,7 @@ def measure(scores: Scores) -> Metrics:
     precision, success, normalised = map(found.get, ("precision", "success", "normalised"))
     times = [frame.row.step_ms for frame in scores.frames if frame.row.step_ms is not None]
     modes = Counter(frame.row.mode for frame in scores.frames)
+    # 2. Each metric of its group.
     return Metrics(
         frames=len(scores.frames),
         frames_scored=len(counted),
@@ -213,6 +217,7 @@ def measure(scores: Scores) -> Metrics:
         median_px=_quantile(errors, 0.5),
         p95_px=_quantile(errors, 0.95),
         max_px=_quantile(errors, 1.0),
+        # In a share a frame without an error is a miss; in means and quantiles it is not there.
         p_error_lt_15px=_share([f.error is not None and f.error < CLOSE_PX for f in counted]),
         precision_20px=precision.at(PRECISION_PX) if precision else None,
         precision_auc=precision.auc if precision else None,
@@ -227,7 +232,9 @@ def measure(scores: Scores) -> Metrics:
         occluded_recall=_share([frame.row.mode == Mode.OCCLUDED for frame in hidden]),
         lost_hidden=sum(frame.row.mode == Mode.LOST for frame in hidden),
         lost_visible=sum(frame.row.mode == Mode.LOST for frame in visible),
+        # All frames: it leaves out by itself those that cannot fail.
         failures=count_failures(scores.frames),
+        # Known modes in a fixed order, absent ones as 0; then what else a file has.
         frames_by_mode={name: modes.pop(name, 0) for name in _MODES} | modes,
         step_ms_p50=_quantile(times, 0.5),
         step_ms_p95=_quantile(times, 0.95),

@@ -89,6 +89,7 @@ class FrameScore:
     def normalised_error(self) -> float | None:
         """Error of the centre in sizes of the true box (Mueller et al. 2018, TrackingNet)."""
         offset = self._offset
+        # Without an area there is no size to measure in.
         if offset is None or self.truth is None or self.truth.box.area <= 0:
             return None
         return math.hypot(offset[0] / self.truth.box.width, offset[1] / self.truth.box.height)
@@ -140,6 +141,7 @@ def score_frames(
     InputError
         If there is truth, but none of it belongs to a frame.
     """
+    # By stamps, not by numbers: recordings drop images, and truth may have another rate.
     pairs = associate([row.stamp_ns for row in rows], [t.stamp_ns for t in truths], max_diff)
     if truths and not pairs:
         raise InputError(
@@ -156,10 +158,13 @@ def score_frames(
 
 def _standing(rows: Sequence[EstimateRow]) -> Iterator[EstimateRow | None]:
     """Yield for each row the last estimate before it; waiting for a target discards it."""
+    # Kept from row to row: silence is scored as holding still.
     last: EstimateRow | None = None
     for row in rows:
+        # A new start: the estimate for the target before is no estimate of the next one.
         if row.mode == WAITING:
             last = None
+        # Before it is replaced: what stands in a frame is from an earlier one.
         yield last
         if _is_estimate(row):
             last = row
@@ -217,7 +222,9 @@ class OcclusionScore:
 
 def score_occlusions(counted: Sequence[FrameScore]) -> tuple[OcclusionScore, ...]:
     """Judge every total occlusion in the scored frames of a recording, given in its order."""
+    # Stretches of hidden and of other frames by turns: each hidden one is judged by the next.
     parts = [list(part) for _, part in itertools.groupby(counted, lambda frame: frame.hidden)]
+    # After the last stretch nothing follows: such an occlusion is not judged.
     pairs = zip(parts, [*parts[1:], []], strict=False)
     return tuple(_judge(part, seen) for part, seen in pairs if part[0].hidden)
 
@@ -230,9 +237,12 @@ def threshold(frame: FrameScore) -> float:
 
 def _judge(hidden: Sequence[FrameScore], seen: Sequence[FrameScore]) -> OcclusionScore:
     last = hidden[-1].row.frame
+    # By the number of the frame: time passes in frames without truth, too.
     judged = [f for f in seen if f.row.frame >= last + SETTLING_FRAMES and f.error is not None]
     after = _mean_error(judged)
+    # Both are means over the same frames, as the vehicle may grow meanwhile.
     limit = statistics.fmean(map(threshold, judged)) if judged else None
+    # Three answers: too few frames say neither yes nor no.
     recovered: bool | None = None
     if after is not None and limit is not None and len(judged) >= FEWEST_JUDGED:
         recovered = after < limit
@@ -251,8 +261,10 @@ def _judge(hidden: Sequence[FrameScore], seen: Sequence[FrameScore]) -> Occlusio
 
 
 def _frames_to_recover(last_hidden: int, seen: Sequence[FrameScore]) -> int | None:
+    # Each frame by its own threshold, as the vehicle grows or shrinks meanwhile.
     on_vehicle = [frame.error is not None and frame.error < threshold(frame) for frame in seen]
     for index, frame in enumerate(seen[: len(seen) - FEWEST_JUDGED + 1]):
+        # A row of them: an estimate that drifts across the vehicle has not recovered it.
         if all(on_vehicle[index : index + FEWEST_JUDGED]):
             return frame.row.frame - last_hidden
     return None
@@ -273,5 +285,7 @@ def count_failures(frames: Sequence[FrameScore]) -> int:
 
     Frames in which the vehicle is hidden or the truth is unknown do not end a stretch.
     """
+    # No overlap is known before the first estimate, or without a size: a miss, too.
     missed = (not frame.overlap for frame in frames if frame.counts and not frame.hidden)
+    # A stretch is one failure however long it is, as no system is started again here.
     return sum(failed for failed, _ in itertools.groupby(missed))

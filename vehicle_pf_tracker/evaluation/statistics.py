@@ -59,8 +59,10 @@ def summarise(values: Sequence[float]) -> Summary | None:
 
 
 def _interval(values: Sequence[float]) -> tuple[float, float]:
+    # Every sample of equal values has their mean: there is nothing to draw.
     if min(values) == max(values):
         return values[0], values[0]
+    # A fixed seed: a report that is written again has the same bytes.
     result = stats.bootstrap(
         (np.asarray(values),),
         np.mean,
@@ -75,8 +77,10 @@ def _interval(values: Sequence[float]) -> tuple[float, float]:
 def mean_of_means(runs: Mapping[str, Sequence[float | None]]) -> float | None:
     """Return the mean over recordings of the mean over their runs; None if a run has no value."""
     means = []
+    # Recordings weigh alike, however many runs each has.
     for values in runs.values():
         known = [value for value in values if value is not None]
+        # A run without a value has failed: the mean of the others would reward that.
         if len(known) < len(values) or not known:
             return None
         means.append(statistics.fmean(known))

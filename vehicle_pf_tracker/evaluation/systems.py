@@ -59,6 +59,7 @@ class System:
     ) -> System:
         """Make the system of a variant; a parameter set is named in its label."""
         label = f"{variant}@{parameter_set}" if parameter_set else variant
+        # Only particle filters draw random numbers.
         is_deterministic = not issubclass(find_variant(variant).parameters, ParticleParameters)
         return cls(label, variant, is_deterministic, parameter_set, overrides, parameters)
 
@@ -68,6 +69,7 @@ class System:
     ) -> System:
         """Make the system of a baseline; `build` is the version of its OpenCV."""
         label = f"{BASELINE}{name}"
+        # A part of the cache key: a baseline of another OpenCV is run again.
         parameters = (*models, ("opencv", build))
         return cls(label, label, True, "", models, parameters, python)
 
@@ -127,6 +129,7 @@ class System:
         return parameters
 
     def _made(self, kind: type[Any], **more: Value) -> Any:
+        # Those of tracker and session stand in one list: each takes its own.
         own = {name: value for name, value in self.parameters if name in specs(kind)}
         return from_mapping(kind, {**own, **more})
 
@@ -142,5 +145,7 @@ class System:
         checked = {key: kinds[key].check(value) for key, value in values.items()}
         parameters = tuple({**dict(self.parameters), **checked}.items())
         changed = System.of_variant(self.kind, parameters, name, tuple(sorted(checked.items())))
+        # Made once to be checked: bounds that hold between two parameters show only then. The seed
+        # does not matter.
         changed.tracker_parameters(0)
         return changed

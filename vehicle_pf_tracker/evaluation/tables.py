@@ -208,6 +208,7 @@ def _occlusion_cells(seeds: Sequence[OcclusionScore]) -> Iterator[TableCell]:
     verdicts = [o.recovered for o in seeds if o.recovered is not None]
     exits = [o.error_at_exit_px for o in seeds if o.error_at_exit_px is not None]
     frames = [o.frames_to_recover for o in seeds if o.frames_to_recover is not None]
+    # The share sorts the column; what is read is the count, as seeds are few.
     share = statistics.fmean(verdicts) if verdicts else None
     text = f"{sum(verdicts)} of {len(verdicts)}" if verdicts else "not judged"
     yield TableCell(text, share, share == 1)
@@ -221,17 +222,20 @@ def _metrics_table(
     columns: Sequence[Column],
     text: Callable[[str, Summary | None, Column], str],
 ) -> Table:
+    # A metric that no system has, such as recoveries without occlusions, gets no column.
     kept = [column for column in columns if any(row.get(column.key) for row in table.values())]
     best = {column.key: _best(table, column) for column in kept}
 
     def cell(label: str, column: Column) -> TableCell:
         summary = table[label].get(column.key)
         value = summary.mean if summary else None
+        # As it is shown: two that read alike are both best.
         is_best = value is not None and round(value, column.decimals) == best[column.key]
         within = interval_text(summary, column)
         note = f"95 % interval of the mean: {within}" if within else ""
         return TableCell(text(label, summary, column), value, is_best, note)
 
+    # Columns of a group stand beside each other in `COLUMNS`, which groupby needs.
     grouped = itertools.groupby(kept, lambda column: column.group)
     return Table(
         [Header(column.label, column.unit, column.help) for column in kept],

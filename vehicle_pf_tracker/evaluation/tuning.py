@@ -97,6 +97,7 @@ def _given(spec: ParameterSpec, span: str) -> BaseDistribution:
     low, high = (float(spec.parse(text)) for text in (low_text, high_text))
     if low >= high:
         raise InputError(f"the range of {spec.name} is empty: {span}")
+    # A range that spans a factor is searched by ratios, as a derived one is.
     return _between(spec, low, high, is_logarithmic=low > 0 and high / low >= FACTOR)
 
 
@@ -107,6 +108,7 @@ def _derived(spec: ParameterSpec, value: Value) -> BaseDistribution:
         if not spec.choices:
             raise InputError(f"{spec.name} can be any word, and so not be searched")
         return CategoricalDistribution(spec.choices)
+    # Bounds of 0 to 1 are searched wholly, and evenly: ratios would crowd at 0.
     least, most = spec.bounds or (-math.inf, math.inf)
     if most - least <= 1:  # a share
         return _between(spec, least, most)
@@ -124,6 +126,7 @@ def _between(
 ) -> BaseDistribution:
     if spec.kind is float:
         return FloatDistribution(low, high, log=is_logarithmic)
+    # Optuna takes logarithms of integers from 1 on only.
     low = max(low, 1.0) if is_logarithmic else low
     return IntDistribution(round(low), round(high), log=is_logarithmic)
 
@@ -183,11 +186,16 @@ def open_study(what: SearchTask, journal: Path) -> optuna.Study:
         direction="maximize" if OBJECTIVES[what.objective] else "minimize",
         load_if_exists=True,
     )
+    # 1. Close what an interrupted search has left: the sampler would take it for under way.
     for left in study.get_trials(states=[TrialState.RUNNING]):  # when it was interrupted
         study.tell(left.number, state=TrialState.FAIL)
+    # 2. Begin with the values of before: no search can then end below them.
     if not study.get_trials():
         base = dict(what.base.parameters)
         study.enqueue_trial({name: base[name] for name in what.space})
+    # 3. A sampler whose seed is how far the search is: one that goes on does not draw its first
+    # trials again. Trials of a batch do not know each other's scores; the constant liar keeps them
+    # apart.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the option counts as experimental in some versions
         study.sampler = optuna.samplers.TPESampler(
@@ -221,15 +229,19 @@ def search(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the first trial may lie outside of a given range
             asked = [study.ask(dict(what.space)) for _ in range(min(BATCH, count - done))]
+        # All runs of a batch at once, so that workers do not wait at the end of each trial.
         grids = [what.cells(one.params) for one in asked]
         found: dict[GridCell, Any] = {}
         on_progress(done * runs, count * runs)
         for number, (cell, outcome) in enumerate(
             runner([cell for grid in grids for cell in grid]), start=1
         ):
+            # Kept by cell: runners give them back in any order.
             found[cell] = outcome.metrics and getattr(outcome.metrics, what.objective)
             on_progress(done * runs + number, count * runs)
         for one, grid in zip(asked, grids, strict=True):
+            # A trial without a score on every recording is pruned: it says nothing, and is not
+            # repeated.
             scores: dict[str, list[float | None]] = {}
             for cell in grid:
                 scores.setdefault(cell.source.name, []).append(found[cell])
@@ -259,6 +271,7 @@ def check_gain(
     verdict : str
         Sentence on whether the gain holds on the recordings held out.
     """
+    # 1. Scores by recording, (systems, seeds), those held out apart.
     sign = 1 if OBJECTIVES[objective] else -1
     scores: dict[str, dict[str, Array]] = {"tuned on": {}, "held out": {}}
     for name in (entry.name for entry in evaluation.folder.recordings):
@@ -266,6 +279,8 @@ def check_gain(
         found = [[getattr(run.metrics, objective) for run in some] for some in runs]
         part = "held out" if name in held_out else "tuned on"
         scores[part][name] = np.array(found, dtype=float)  # None is NaN
+    # 2. A row for each recording and for the mean of each part. Gains are by seed: their spread is
+    # what chance does.
     rows = []
     gains = []
     for part, by_name in scores.items():
@@ -273,6 +288,8 @@ def check_gain(
         for name, (base, best) in {**by_name, f"mean of {len(by_name)}": mean}.items():
             rows.append([f"{part}: {name}", _text(base), _text(best), _text(best - base, "+")])
         gains.append(summarise(list(sign * (mean[1] - mean[0]))))
+    # 3. The verdict, from what was held out alone; NaN of a missing score is no gain, hence `not
+    # >`.
     tuned, other = gains
     assert tuned is not None and other is not None
     low, high = (other.mean if end is None else end for end in (other.low, other.high))

@@ -19,7 +19,7 @@ _MOST_PLANES = 48
 """Bins integrated at once: OpenCV 5 takes 128 channels at most, and small blocks stay cached."""
 _MOST_VALUES = 1 << 22
 """Bins times pixels integrated at once: bounds the memory to 32 MB of sums where windows are
-huge."""
+huge, a choice."""
 _EXACT_BITS = 53
 """Bits of an integer that a float64 represents exactly."""
 Bins: TypeAlias = npt.NDArray[np.intp]
@@ -39,6 +39,7 @@ def covered_region(frame: Frame, windows: Bounds, margin: int = 0) -> tuple[Fram
         Pixels kept around the windows, as far as the frame has them.
     """
     width, height = frame_size(frame)
+    # All windows share this part: it is numbered once, and not once for each window.
     left = max(int(windows.left.min()) - margin, 0)
     top = max(int(windows.top.min()) - margin, 0)
     right = min(int(windows.right.max()) + margin, width)
@@ -94,6 +95,7 @@ def _count(indices: npt.NDArray[Any], active: Bins, bins: int, windows: Bounds) 
     # Several bins share a float64, each in a lane of its bits: fewer planes to integrate.
     lanes = max(_EXACT_BITS // lane_bits, 1)
     lookup = _lanes_of_bins(active.tobytes(), bins, lane_bits, lanes)
+    # Sums below 2 ** 53 are exact in a float64, so that lanes can be taken apart by their bits.
     sums = _window_sums(lookup.take(indices, axis=0), windows).astype(np.int64)
     shifts = lane_bits * np.arange(lanes)
     counts = (sums[..., np.newaxis] >> shifts) & ((1 << lane_bits) - 1)

@@ -26,24 +26,28 @@ TURN_INERTIA = 0.3
 """Resistance of the turn's fit, as the sum of the squared places of five points: the few that an
 occluder leaves must not turn all."""
 FEWEST_POINTS = 12
-"""Fewest tracked points that tell a change of size."""
+"""Fewest tracked points that tell a change of size, a choice: of six pairs along an axis two may
+err without moving the median far."""
 APART = 0.25
-"""Least distance of two points that tell a change of size, of the size."""
+"""Least distance of two points that tell a change of size, as a share of the box's side: 5 px of 20,
+of which half a px is a tenth."""
 LARGEST_STRETCH = 0.15
 """Bound of the change of log size per frame: vehicles that pass a camera at 10 images a second
 change by 0.12."""
 LEAST_RATIO = 0.2
-"""Bound of the ratio of two distances, whose logarithm is taken."""
+"""Bound of the ratio of two distances, whose logarithm is taken: a choice, far beyond what
+`LARGEST_STRETCH` lets pass."""
 
 FLOW_CELL_PX = 4
 """Px between points of a surface: dense flow is no finer."""
 STRAYED_PX = 3.0
-"""Distance in px from where its vehicle would have taken it, from which a point has moved on its
-own: what a second occluder drives, or flow that has failed."""
+"""A point farther than this from where its vehicle would have taken it, px, has moved on its own:
+with a second occluder, or by flow that has failed. A choice: a cell of the surface has 4 px."""
 FEWEST_CARRIED = 8
-"""Fewest points that a turn is fitted to."""
+"""Fewest points that a turn is fitted to, a choice: they give 16 numbers for its four."""
 NEARLY = 1.3
-"""Factor to the limits within which points take part in the fit of the turn."""
+"""Factor to the limits within which points take part in the fit of the turn, a choice: some are
+beyond a limit only until the turn is taken off."""
 
 
 def shared_turn(before: Array, after: Array, strayed: float) -> Array:
@@ -67,6 +71,7 @@ def shared_turn(before: Array, after: Array, strayed: float) -> Array:
 def solved(matrix: Array, right: Array) -> Array:
     """Solve a (2, 2) system, in a fraction of the time of `np.linalg.solve`."""
     (a, b), (c, d) = matrix.tolist()
+    # Cramer's rule; the callers' ridge keeps the determinant above zero.
     return np.asarray(np.array([[d, -b], [-c, a]]) @ right / (a * d - b * c))
 
 
@@ -93,6 +98,7 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
     half = len(before) // 2
     for axis in (0, 1):
         # Each of the lower half with one of the upper half: far apart for most, and no N² pairs.
+        # Stable, so that points in one place pair alike on every machine.
         order = before[:, axis].argsort(kind="stable")
         low = order[:half]
         high = order[-half:]
@@ -103,6 +109,7 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
         if far.sum() >= FEWEST_POINTS // 2:
             ratio = np.maximum(new[far] / old[far], LEAST_RATIO)
             change[axis] = median(np.log(ratio))
+    # Per frame no vehicle changes by more: what is beyond is an error, of which the sign is kept.
     return np.minimum(np.maximum(change, -LARGEST_STRETCH), LARGEST_STRETCH)
 
 
@@ -129,6 +136,7 @@ def carried_share(
     """
     (left, top), (columns, rows) = cells.tolist()
     block = slice(top, top + rows), slice(left, left + columns)
+    # Only whole cells of the box are looked at: flow between them is no finer.
     points = _middles(*flow.shape[:2])[block].reshape(-1, 2)
     middles = slice(FLOW_CELL_PX // 2, None, FLOW_CELL_PX)
     source = points + flow[middles, middles][block].reshape(-1, 2)

@@ -42,7 +42,8 @@ _CLEARANCE = 0.75
 _WEAR_IN_PLACE = 1 / 3
 """Share of a frame that the corners of a mounted camera age by in a frame."""
 _FLOW = PointFlow(window=9, levels=3, steps=10, precision=0.03)
-"""Windows of 13 px cost twice as much, and are no nearer to what 300 corners give."""
+"""Windows of 13 px cost twice as much, and are no nearer to what 300 corners give. Ten steps to .03
+px instead of OpenCV's 30 to .01 are a choice: the motion is that of many corners."""
 
 
 def fit_camera_motion(before: Array, after: Array) -> CameraMotion:
@@ -80,11 +81,14 @@ class CameraFlow:
         """
         reduced = small.image
         zoom = small.zoom
+        # 1. Keep this frame, whatever becomes of the measurement: the next is compared with it.
         last = self._last
         self._last = reduced
         # A frame of another size begins anew; in a tiny one corners say nothing.
         if last is None or last.shape != reduced.shape or min(reduced.shape) < _LEAST_SIDE:
             return CameraMotion()
+        # 2. Corners of the frame before; too few say nothing, and a mounted camera is looked at
+        # only.
         corners = self._background(last, target, zoom)
         if len(corners) < LEAST_CORNERS:
             return CameraMotion()
@@ -94,7 +98,7 @@ class CameraFlow:
             self._age += _WEAR_IN_PLACE - 1
             self._still += 1
             return CameraMotion()
-        # The search starts where the motion of the frame before would take the corners.
+        # 3. The search starts where the motion of the frame before would take the corners.
         guess = self._motion.apply(corners.astype(np.float64)).astype(np.float32)
         moved, found = _FLOW.follow(last, reduced, corners, guess)
         # Corners are carried on: those of the same points need no search of the grid.
@@ -143,6 +147,7 @@ def _stand(
 
 def _find_corners(grey: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
     """Find the strongest corner of each cell of a grid, (N, 2)."""
+    # The smaller eigenvalue: along an edge, where it is nothing, flow is not defined.
     strength = cv2.cornerMinEigenVal(grey, 3)
     rows, columns = grey.shape
     wide = (columns - 2 * _BORDER) // _GRID[0]

@@ -19,8 +19,8 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 
 _REDUCED_FROM = 1.7
-"""Frame px per canonical px from which the frame is averaged first: bilinear sampling alone would
-skip pixels, and the patch would shimmer as the target moves."""
+"""Frame px per canonical px from which the frame is averaged first: bilinear sampling, which
+reads two px an axis, would soon skip some, and the patch shimmer as the target moves."""
 
 _SPARSE_FROM = 4
 """Frame px per canonical px from which not all px are read: the cost would grow with the target."""
@@ -93,6 +93,7 @@ def cut_image(frame: Frame, centre: Array, zoom: Array, size: tuple[int, int]) -
     first = centre - sides / 2 * step + 0.5 * step - 0.5
     # By the lesser zoom: averaging more along the other axis would blur the target.
     reduction = max(int(min(step.tolist()) + 2 - _REDUCED_FROM), 1)
+    # The affine map then starts from the reduced piece: its px are blocks of the frame.
     if reduction > 1:
         frame, corner, factors = _reduced(frame, centre, sides * step, reduction)
         first = (first - corner + 0.5) / factors - 0.5

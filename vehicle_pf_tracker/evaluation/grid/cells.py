@@ -60,6 +60,7 @@ class GridCell:
             "max_diff": self.max_diff,
             **self.system.facts(self.seed),
         }
+        # A baseline runs none of our trackers: their changes leave its results valid.
         kind = self.system.kind
         modules = () if self.system.is_baseline else variant_modules(find_variant(kind))
         return result_key(facts, modules)
@@ -129,6 +130,7 @@ class Plan:
     def __post_init__(self) -> None:
         taken: set[str] = set()
         for system in self.systems:
+            # By the folder's name: labels that differ in signs only would share it.
             name = safe_name(system.label)
             if name in taken:
                 raise InputError(f"several systems would be called {system.label}; name them apart")
@@ -150,6 +152,8 @@ class Plan:
         """Write `evaluation.json` and the truth of every recording."""
         for source, truths in self.recordings.items():
             write_truth(make_folder(folder / RECORDINGS_FOLDER / source.name) / TRUTH, truths)
+        # The seeds of each system, too: a reader of the folder need not know which are
+        # deterministic.
         plan = {
             "format": FORMAT,
             "command": self.command,

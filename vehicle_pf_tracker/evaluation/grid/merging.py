@@ -52,6 +52,7 @@ def merge(parts: Sequence[Path], output: Path) -> int:
 
 def _check_alike(first: Path, one: Mapping[str, Any], part: Path, other: Mapping[str, Any]) -> None:
     """Refuse to join what is not one evaluation."""
+    # The command and the versions may differ: each part has its own --part, and its own machine.
     differing = [name for name in _PLANNED if one.get(name) != other.get(name)]
     if _contents(one) != _contents(other):
         differing.append("recordings")
@@ -74,8 +75,10 @@ def _copy(folder: Path, target: Path) -> None:
 
 def _copy_cell(cell: Path, target: Path) -> None:
     has_result = (cell / METRICS).is_file()
+    # Only a failed cell gives way, and only to a result.
     if target.exists() and (not has_result or (target / METRICS).is_file()):
         return
     target.parent.mkdir(parents=True, exist_ok=True)
+    # At its place only when it is whole: a copy that is broken off is no cell.
     with whole_folder(target) as partial:
         shutil.copytree(cell, partial, dirs_exist_ok=True)

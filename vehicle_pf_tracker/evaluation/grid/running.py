@@ -55,6 +55,7 @@ class CellResult:
 def run_cell(cell: GridCell) -> CellResult:
     """Run a cell; a failure is reported in the outcome, so that the others go on."""
     try:
+        # In the try: a recording that cannot be read fails its cells, and not the evaluation.
         seen = footage(cell.source)
         run_it = _run_baseline if cell.system.is_baseline else _run_variant
         rows, run = run_it(cell, seen)
@@ -148,11 +149,14 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) 
     """
     with output_errors(folder):
         for left in make_folder(folder).glob("**/.seed-*"):  # half written by a run that was killed
+            # What is begun is hidden until it is whole, and so easily told.
             shutil.rmtree(left, ignore_errors=True)
     plan.write(folder)
+    # After the plan: a folder without results is still one that can be gone on with.
     missing = [cell for cell in plan.cells() if not _is_stored(cell, cell.folder(folder))]
     on_progress(0, len(missing))
     for done, (cell, outcome) in enumerate(runner(missing), start=1):
+        # Each as soon as it is there: what is interrupted loses the runs under way only.
         _store(cell, outcome, cell.folder(folder), plan.command)
         on_progress(done, len(missing))
     return len(missing)
@@ -161,6 +165,7 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) 
 def _is_stored(cell: GridCell, folder: Path) -> bool:
     """Return whether the folder has the result of the cell; one that failed is tried again."""
     try:
+        # By the key, not the name: a result of other code or parameters is none.
         return bool(read_document(folder / run_folder.RUN).get("key") == cell.key())
     except InputError:  # it is not there, or nothing that can be read
         return False
@@ -175,4 +180,5 @@ def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]
             keys = {"command": command, "key": cell.key()}
             run_folder.write_run(partial, outcome.rows, {**outcome.run, **keys})
             write_json(partial / run_folder.METRICS, outcome.metrics.to_json())
+    # The rename, too, has to reach the disk.
     flush(folder.parent)

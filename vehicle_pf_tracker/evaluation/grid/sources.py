@@ -34,6 +34,7 @@ def find_recordings(locations: Sequence[str]) -> list[str]:
         for location in locations
         for recording in (recordings_at(location) if is_url(location) else _at_path(Path(location)))
     ]
+    # Named twice, as by a folder and by itself, it is one; the order stays.
     return list(dict.fromkeys(recordings))
 
 
@@ -72,6 +73,7 @@ class SourceFootage:
     def __init__(self, source: Source) -> None:
         path = _local(source.path)
         self.recording = open_source(path, topic=source.topic or None, identity=source.identity)
+        # Scores of another content would stand under this name, in the report and the cache.
         if _digest(self.recording, path) != source.digest:
             raise InputError(f"the recording {source.path} has changed since it was planned")
         self.truth = tuple(self.recording.truth())
@@ -138,6 +140,7 @@ def describe(
                 f"no stamp of the truth in {location} is within {max_diff:g} s of an image's; "
                 "a larger --max-diff may help"
             )
+        # The size of the first image that can be read: one decoded picture, not all.
         facts = len(stamps), *_size(recording, location), _digest(recording, path)
         place = location if is_url(location) else str(path.absolute())
         source = Source(names[location], place, recording.image_topic, *facts, identity)
@@ -169,8 +172,10 @@ def _digest(recording: Recording | Footage, path: Path) -> str:
     digest = hashlib.sha256()
     is_folder = isinstance(recording, FrameFolder)
     if is_folder:
+        # Its truth may stand in files beside the images, which the loop below does not read.
         digest.update(repr(recording.truth()).encode())
     for file in image_files(path) if is_folder else recording_files(path)[0]:
+        # With a separator, or a letter could move from a name to the content.
         digest.update(file.name.encode() + b"\0")
         with file.open("rb") as stream:
             while block := stream.read(_BLOCK):

@@ -48,6 +48,7 @@ class Aggregates:
 
 def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     """Summarise all runs."""
+    # 1. Values by system, metric and recording, and their means over the seeds.
     labels = [system.label for system in evaluation.folder.systems]
     runs = {label: some for label in labels if (some := evaluation.of(system=label))}
     values = {
@@ -64,8 +65,10 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     main = COMPARED[0].key
 
     def mean(label: str) -> float:
+        # A system without a score goes last.
         return statistics.fmean(means[label][main].values()) if means[label][main] else -math.inf
 
+    # 2. The best first: it is what the others are compared with.
     order = tuple(sorted(runs, key=mean, reverse=True))
     return Aggregates(
         order=order,
@@ -115,4 +118,5 @@ def _recoveries(runs: Sequence[ScoredRun]) -> tuple[int, int]:
 
 
 def _differences(values: Mapping[str, float], first: Mapping[str, float]) -> Summary | None:
+    # Paired by recording: how hard a recording is cancels out.
     return summarise([value - first[name] for name, value in values.items() if name in first])

@@ -203,6 +203,7 @@ def draw_errors(axes: Axes, errors: Array) -> None:
     errors : (S, N) array
         Errors in px by seed and frame; NaN where nothing is scored.
     """
+    # NaN stays NaN, and leaves a gap in the line.
     table = np.maximum(errors, LEAST_ERROR)
     frames = np.arange(1, table.shape[1] + 1)
     with warnings.catch_warnings():
@@ -240,6 +241,8 @@ def _errors(runs: Mapping[str, Sequence[ScoredRun]], truths: Mapping[int, Truth]
             for first, last in stretches(truths, {kind}):
                 axes.axvspan(first - 0.5, last + 0.5, color=COLOURS[kind.name.lower()], lw=0)
         draw_errors(axes, table)
+        # At least to 100 px, so that good systems do not look bad by their scale; room above the
+        # peak.
         axes.set_ylim(LEAST_ERROR, max(highest * 1.3, 100.0))
         axes.set_title(label, fontsize=_LETTERS, loc="left", pad=2.0)
     for axes in panels[count:]:
@@ -261,6 +264,7 @@ def svg_element(drawn: Drawn, number: int) -> str:
     element = text.getvalue()
     element = element[element.index("<svg") :]
     element = re.sub(r"(<metadata>.*?</metadata>|<!--.*?-->)\s*", "", element, flags=re.DOTALL)
+    # Figures share a page, where each id may occur once.
     element = re.sub(r' id="|href="#|url\(#', rf"\g<0>f{number}-", element)
     for name, colour in COLOURS.items():
         element = element.replace(colour, f"var(--{name})")

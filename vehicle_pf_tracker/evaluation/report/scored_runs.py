@@ -133,6 +133,7 @@ def score_folder(folder: EvaluationFolder) -> ScoredEvaluation:
 def _result(
     folder: EvaluationFolder, key: tuple[str, str, int], truth: Mapping[int, Truth]
 ) -> ScoredRun | FailedCell:
+    # As it was evaluated; a plan without the option is scored by the default.
     max_diff = float(folder.plan.get("options", {}).get("max_diff", PAIRED_WITHIN_S))
     try:
         rows, run = folder.cell(*key)

@@ -41,7 +41,9 @@ _APART = 30
 _WIDTH = 480
 """Width of a still, px: a third of the page, at twice its pixels."""
 _QUALITY = 80
+"""Quality of JPEG: a choice between blocks around the drawn edges and the size of the page."""
 _TRUTH = (255, 255, 255)
+"""Colour of the true box: white, which no system has (`plots.STYLES`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +88,9 @@ def worst_moments(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[
         truths = evaluation.truths[source.name]
         if not runs:
             continue
+        # The median over the seeds, so that no single unlucky run fills the page.
         errors = np.median([run.errors for run in runs], axis=0)
+        # In diagonals of the vehicle: px would show near vehicles only.
         relative = np.full(len(errors), -np.inf)
         for frame, truth in truths.items():
             if frame <= len(errors) and np.isfinite(errors[frame - 1]):
@@ -113,6 +117,7 @@ def _peaks(values: Array) -> Iterator[int]:
         if not np.isfinite(values[index]):
             return
         yield index
+        # Its neighbours are out: they show the same failure.
         values[max(index - _APART, 0) : index + _APART + 1] = -np.inf
 
 
@@ -164,6 +169,7 @@ def _frames(source: Source, wanted: set[int]) -> Iterator[tuple[int, Frame]]:
 
 def _drawn(frame: Frame, moment: Moment, slots: dict[str, int]) -> Frame:
     """Draw the true box dashed in white, and each system's in its colour."""
+    # Scaled before it is drawn on: lines and letters keep their widths.
     scale = _WIDTH / frame.shape[1]
     method = cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR
     scaled = cv2.resize(frame, None, fx=scale, fy=scale, interpolation=method)

@@ -130,6 +130,8 @@ def compare(
             lines = LineCounts(case[0])
             own = replace(parameters, seed=seed)
             tracks, detections, seconds = follow(case, own, make, lines)
+            # What moved depends on the tracks, and so on the seed; the baselines get what the
+            # first had.
             given.append(detections)
             result = judge(case, worker, OURS, seed, (tracks, seconds))
             if (trust := held_and_width(lines.results())) is not None:
@@ -201,8 +203,10 @@ def follow(
     for number, frame in enumerate(sequence.frames(), start=1):
         detections = None
         if given is not None:
+            # Before the clock starts: a baseline is not charged for it either.
             now = given[given[:, 0] == number]
             detections = Detections.make(now[:, 1:5], now[:, 5])
+        # CPU of the whole process: the detector may use several threads.
         before = time.process_time()
         stamp_ns = round(number * 1e9 / sequence.frame_rate)
         estimates = session.feed(frame, stamp_ns, detections)
@@ -210,6 +214,7 @@ def follow(
         if lines is not None:
             lines.add(number, stamp_ns, session)
         tracks += _rows(backdating.add(number, 0, estimates))
+    # Vehicles that are confirmed late get the rows of before, as in `tracks.txt`.
     tracks += _rows(backdating.rest())
     rows = np.array(tracks, dtype=np.float64).reshape(-1, 6)
     detected = np.vstack(recorder.rows) if given is None else given

@@ -19,11 +19,12 @@ from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPl
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 _ROWS = (0.2, 0.35, 0.5, 0.65, 0.8)
-"""Heights of lines across the whole image: far and near traffic."""
+"""Heights of lines across the whole image, as shares of it: far and near traffic. A choice, as those
+below: even steps, without the rims, where vehicles are cut."""
 _COLUMNS = (0.25, 0.5, 0.75)
-"""Places of upright lines, for traffic across the image."""
+"""Places of upright lines, as shares of the width, for traffic across the image."""
 _HALVES = (0.3, 0.45, 0.6, 0.75)
-"""Heights of lines across the left and the right half, as of one carriageway."""
+"""Heights of lines across the left and the right half, as shares, as of one carriageway."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +80,7 @@ class LineCounts:
         if not session.found.images:
             return
         self._first = self._first or number
+        # In regions without truth a crossing would count as false.
         known = [one for one in session.estimates if not self._is_ignored(one.position)]
         self._counter.update(known, stamp_ns, ambiguous=session.ambiguous)
 
@@ -105,7 +107,9 @@ class LineCounts:
     def _true_counter(self) -> Counter:
         sequence = self._sequence
         counter = Counter(self._plan)
+        # In the same order in each image, whatever the file has: the same crossings in doubt.
         rows = sequence.truth[np.argsort(sequence.truth[:, 1], kind="stable")]
+        # From the same image on: what crossed while the detector learnt is no miss of the count.
         for number in range(max(self._first, 1), sequence.frame_count + 1):
             now = rows[rows[:, 0] == number]
             stamp_ns = round(number * 1e9 / sequence.frame_rate)

@@ -35,7 +35,7 @@ _MOST_INSIDE = 0.5
 """Share of an unmatched box in a region without truth above which it is left out: most of it is not
 known to be wrong."""
 _WINDOW = 30
-"""Frames before and after an occlusion in which the identity is looked for: about a second."""
+"""Frames before and after an occlusion in which the identity is looked for: a second at 30 Hz."""
 _GLIMPSE = 5
 """Frames in sight below which two occlusions are one: a gap between two posts."""
 _LEAST = 10
@@ -65,6 +65,7 @@ def scorable(sequence: TrafficSequence, tracks: Array) -> tuple[Array, Array]:
     truth, tracks : array, shape (M, 6)
         Boxes to be scored.
     """
+    # Cut first: regions and overlaps are of what is in the image, as the truth is.
     tracks = _cut(tracks[:, :6], sequence.size)
     left = np.ones(len(tracks), dtype=np.bool_)
     for frame in range(1, sequence.frame_count + 1):
@@ -86,6 +87,7 @@ def _counts(sequence: TrafficSequence, frame: int, boxes: Array) -> npt.NDArray[
     now = sequence.truth[:, 0] == frame
     in_sight = sequence.truth[now & ~sequence.hidden, 2:]
     hidden = sequence.truth[now & sequence.hidden, 2:]
+    # Vehicles in sight come first: a box that fits one of them is scored, whatever is behind.
     free = np.ones(len(boxes), dtype=np.bool_)
     free[matches(in_sight, boxes)[1]] = False
     spare = np.flatnonzero(free)
@@ -107,6 +109,7 @@ def matches(first: Array, second: Array) -> tuple[npt.NDArray[np.intp], npt.NDAr
         Indices into `first` and `second`.
     """
     overlap = overlaps(first, second)
+    # Below the limit worth nothing: else a pair too far apart could break two good ones.
     overlap[overlap < MATCH] = 0
     rows, columns = linear_sum_assignment(-overlap)
     good = overlap[rows, columns] > 0
@@ -146,12 +149,15 @@ def kept_identities(sequence: TrafficSequence, tracks: Array) -> tuple[int, int]
         hidden = set(sequence.truth[rows & sequence.hidden, 0].astype(int).tolist())
         spells = list(_spells(seen, hidden))
         for before, after in pairwise(spells):
+            # A tracker that never had time to know the vehicle has nothing to keep.
             if len(before) >= _LEAST:
                 judged += 1
                 first, then = (
                     [followed[at, vehicle] for at in frames if (at, vehicle) in followed]
                     for frames in (before[-_WINDOW:], after[:_WINDOW])
                 )
+                # The last before, as that is what was hidden; the most frequent after, as one
+                # wrong box there is no lost identity.
                 kept += bool(first and then) and Tally(then).most_common(1)[0][0] == first[-1]
     return kept, judged
 
@@ -161,6 +167,7 @@ def _spells(seen: list[int], hidden: set[int]) -> Iterator[list[int]]:
     spell: list[int] = []
     for frame, before in zip(seen, [None, *seen], strict=False):
         if before is not None and any(number in hidden for number in range(before + 1, frame)):
+            # Too short to be followed: the occlusions before and after it are one.
             if len(spell) >= _GLIMPSE:
                 yield spell
             spell = []
@@ -199,6 +206,7 @@ def _line(sequence: TrafficSequence) -> CountingLine:
     for vehicle in np.unique(sequence.truth[:, 1]):
         boxes = sequence.truth[sequence.truth[:, 1] == vehicle, 2:]
         moved += np.abs(boxes[-1, :2] - boxes[0, :2])
+    # Sums over all vehicles: an upright line for traffic across the image.
     if moved[0] > moved[1]:
         return CountingLine("middle", (width / 2, 0.0), (width / 2, height))
     return CountingLine("middle", (0.0, height / 2), (width, height / 2))
@@ -206,6 +214,7 @@ def _line(sequence: TrafficSequence) -> CountingLine:
 
 def _crossings(sequence: TrafficSequence, tracks: Array, line: CountingLine) -> int:
     counter = Counter(CountingPlan(lines=(line,)))
+    # In the order of identities, so that truth and tracks are counted alike.
     order = np.argsort(tracks[:, 1], kind="stable")
     rows = tracks[order]
     total = 0
@@ -213,6 +222,7 @@ def _crossings(sequence: TrafficSequence, tracks: Array, line: CountingLine) -> 
         now = rows[rows[:, 0] == frame]
         estimates = [as_estimate(row) for row in now.tolist()]
         crossings = counter.update(estimates, round(frame * 1e9 / sequence.frame_rate))
+        # The counter follows from the first frame; only its crossings of before are left out.
         total += sum(one.stamp_ns >= _SETTLED_NS and not one.doubt for one in crossings)
     return total
 

@@ -126,6 +126,7 @@ def read_table(path: Path, least: int, most: int = 0) -> Array:
         rows.append(numbers_in(where, cells[: max(least, most)]))
         if not all(map(math.isfinite, rows[-1])):
             raise InputError(f"{where} has a number that is not finite, or an empty cell")
+    # Rows of several lengths, as after an edit by hand, are cut to what all have.
     width = min(map(len, rows), default=least)
     return np.array([row[:width] for row in rows], dtype=np.float64).reshape(-1, width)
 
@@ -133,10 +134,13 @@ def read_table(path: Path, least: int, most: int = 0) -> Array:
 def _hidden(folder: Path, truth: Array) -> npt.NDArray[np.bool_]:
     flags = folder / "gt" / "flags.csv"
     if not flags.is_file():
+        # A table without visibilities says nothing of occlusions: nothing is hidden.
         visible = truth[:, 8] if truth.shape[1] > 8 else np.ones(len(truth))
         return np.asarray(visible < TOTAL_BELOW)
     lines = flags.read_text(encoding="utf-8").splitlines()[1:]
     rows = (map(int, line.split(",")[:3]) for line in lines)
+    # 2 is a total occlusion in the flags; boxes are found by frame and number, whatever their
+    # order.
     total = {(frame, identity) for frame, identity, occlusion in rows if occlusion == 2}
     keys = truth[:, :2].astype(int).tolist()
     return np.array([tuple(key) in total for key in keys], dtype=np.bool_)

@@ -83,9 +83,12 @@ def _direction_histograms(
     column = np.empty(width, np.uint64)
     share = np.empty(width, np.float32)
     for x in range(width):
+        # The middle of a pixel in units of cells; half a cell further, as the first is the
+        # border's.
         place_x = (x + 0.5) / GRADIENT_CELL_PX + 0.5
         column[x] = np.uint64(place_x)
         share[x] = np.float32(place_x - np.floor(place_x))
+    # Outermost pixels have no central difference, and take no part.
     for y in range(1, height - 1):
         _gradients(grey, y, magnitudes, places)
         for x in range(1, width - 1):
@@ -113,7 +116,7 @@ def _direction_histograms(
 
 @inlined
 def _repeat_border(energy: npt.NDArray[np.float32]) -> None:
-    """Repeat the outermost inner cells beyond the border."""
+    """Repeat the outermost inner cells of energies (r + 2, c + 2) beyond the border."""
     rows = energy.shape[0] - 2
     columns = energy.shape[1] - 2
     for y in range(1, rows + 1):
@@ -136,6 +139,7 @@ def _scales(cells: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
             for x in range(1, columns + 1):
                 value = cells[o, y, x] + cells[o + _UNSIGNED, y, x]
                 energy[y, x] += value * value
+    # Blocks at the border would else be half empty, and their cells too bright.
     _repeat_border(energy)
     scales = np.empty((4, rows, columns), np.float32)
     for k in range(4):
@@ -164,10 +168,12 @@ def _normalise(
     """Write the channels of the inner cells; the inner loops, along x, are vectorised."""
     rows = features.shape[0]
     columns = features.shape[2]
+    # As float32: a float64 would widen, and halve the lanes of, the loops below.
     limit = np.float32(TRUNCATION)
     half = np.float32(0.5)
     texture = np.empty((4, columns), np.float32)
     for y in range(rows):
+        # By rows: what is summed over directions stays in the first cache.
         _clear(texture)
         for o in range(DIRECTIONS):
             for x in range(columns):
@@ -184,6 +190,7 @@ def _normalise(
                 texture[3, x] += d
         for o in range(_UNSIGNED):
             for x in range(columns):
+                # Unsigned: the same edge before a bright and a dark road.
                 value = cells[o, y + 1, x + 1] + cells[o + _UNSIGNED, y + 1, x + 1]
                 a = min(value * scales[0, y, x], limit)
                 b = min(value * scales[1, y, x], limit)

@@ -39,7 +39,8 @@ _NEVER = 1 << 31
 
 _RANGE = 4
 """Ratio of limits above which windows are counted from lists of their own: a window of faint edges
-lets almost every pixel pass, most of which other windows would then skip one by one."""
+lets almost every pixel pass, most of which other windows would then skip one by one. A choice of speed
+alone: 4 in squares is a gradient twice as strong."""
 
 TANGENTS: Tangents = np.tan(np.arange(1, DIRECTION_BINS // 4) * (2 * np.pi / DIRECTION_BINS))
 """Tangents of the directions between the bins of a quarter turn."""
@@ -49,6 +50,7 @@ TANGENTS.flags.writeable = False
 @inlined
 def direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
     """Bin 0 to 63, as `gradients.direction_bins` has it; integers are never near a tangent."""
+    # As the printed atan: half a turn, and a vertical gradient downwards.
     if not signed and (gx < 0 or (gx == 0 and gy < 0)):
         gx, gy = -gx, -gy
     if gx > 0 and gy >= 0:
@@ -69,6 +71,7 @@ def direction_bin(gx: int, gy: int, tangents: Tangents, signed: bool) -> int:
         across = gx
     # Fifteen products and comparisons, in place of an arctangent.
     for tangent in tangents:
+        # A sum of comparisons has no branch to be mispredicted.
         first += across >= along * tangent
     return first
 
@@ -82,7 +85,7 @@ def _raise_to(numbers: Strengths, others: Strengths) -> None:
 
 @inlined
 def _extent(middles: Rectangles) -> tuple[int, int, int, int]:
-    """Least x and y, and largest x and y."""
+    """Return the least x and y, and the largest, of windows' middles, px."""
     x0, y0 = middles[0]
     x1, y1 = x0, y0
     for i in range(len(middles)):
@@ -115,6 +118,7 @@ def _peaks_of(strengths: Strengths, middles: Rectangles, half: tuple[int, int]) 
     for y in range(max(y0 - up, 0), min(y1 + up + 1, height)):
         for x in range(left, right):
             rows[y - y0 + up, x - x0 + across] = strengths[y, x]
+    # Windows of a power of two that overlap cover any height: a maximum may count a pixel twice.
     span = 1
     while 2 * span <= 2 * up + 1:
         for y in range(len(rows) - span):
@@ -126,6 +130,7 @@ def _peaks_of(strengths: Strengths, middles: Rectangles, half: tuple[int, int]) 
         _raise_to(row, rows[y + 2 * up + 1 - span])
         along = 1
         while 2 * along <= 2 * across + 1:
+            # In a copy: a maximum in place would read what it has just raised.
             _copy(row, kept)
             _raise_to(row, kept[along:])
             along *= 2
@@ -143,6 +148,7 @@ def _limits_of(peaks: Strengths, rule: tuple[float, float]) -> Numbers:
     share, least = rule
     limits = np.empty(len(peaks), np.int64)
     for i in range(len(peaks)):
+        # A window without any gradient has no edge point, whatever its share of nothing is.
         limits[i] = _NEVER
         if peaks[i] > 0:
             # In integers, the comparison of a million pixels needs no conversion.
@@ -324,6 +330,7 @@ def count_edges(
     totals = np.zeros(len(middles), np.int64)
     is_open = np.empty(len(limits), np.bool_)
     for i in range(len(limits)):
+        # Windows that are closed have their counts; those without edges are from the beginning.
         is_open[i] = limits[i] != _NEVER
         for k in range(counts.shape[1]):
             counts[i, k] = 0

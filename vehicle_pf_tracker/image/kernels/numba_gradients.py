@@ -36,12 +36,15 @@ def gradients(grey: Grey) -> Images:
     smooth = np.empty(width + 2, np.int16)
     slope = np.empty(width + 2, np.int16)
     for y in range(height):
+        # Mirrored about the outermost row; of a single row that is itself.
         above = y - 1 if y > 0 else min(1, height - 1)
         below = y + 1 if y < height - 1 else max(height - 2, 0)
         for x in range(width):
             over = grey[above, x]
             here = grey[y, x]
             under = grey[below, x]
+            # Sobel's kernel is separable: smoothed and differenced down here, the other way along
+            # x below. The largest gradient, 4 * 255, fits 16 bits.
             smooth[x + 1] = np.int16(over) + np.int16(2) * np.int16(here) + np.int16(under)
             slope[x + 1] = np.int16(under) - np.int16(over)
         for row in (smooth, slope):
@@ -51,6 +54,7 @@ def gradients(grey: Grey) -> Images:
             column = np.uint64(x)
             along = smooth[column + np.uint64(2)] - smooth[column]
             down = slope[column] + 2 * slope[column + np.uint64(1)] + slope[column + np.uint64(2)]
+            # Squares of up to 2 * 1020² need 32 bits.
             gx[y, x], gy[y, x] = along, down
             strengths[y, x] = np.int32(along) * np.int32(along) + np.int32(down) * np.int32(down)
     return gx, gy, strengths

@@ -24,6 +24,7 @@ NOT_KEPT = (
 )
 
 _FASTMATH = {"reassoc", "contract"}
+"""Sums may be reordered, so that loops are vectorised, and products fused into them."""
 _notices: list[str] = []
 
 
@@ -47,6 +48,7 @@ def compiled(*signatures: Any) -> Callable[[FunctionT], FunctionT]:
             # Compiled here, at import, for the types that are given: a step never waits for it.
             result: FunctionT = build(cache=True)(function)
         except Exception as error:  # no folder, a full disk, or what a torn file makes of pickle
+            # Once: all kernels have the same folder, and so the same trouble.
             if not _notices:
                 _notices.append(NOT_KEPT.format(str(error).partition("\n")[0]))
             result = build()(function)

@@ -80,12 +80,14 @@ class CellTable(NamedTuple):
     values: Reals
 
 
+# A choice: references of several features and trackers of one process, some KB each.
 @functools.lru_cache(maxsize=32)
 def table_of(reference: Reference) -> CellTable:
     """Return the table of a reference, computed once."""
     return CellTable(*number_cells(reference.histogram, _LANES))
 
 
+# As many as features are in use at a time; a table has some KB.
 @functools.lru_cache(maxsize=8)
 def _every_bin(bins: int) -> Table:
     """Table in which the cell of each bin is its own number, to count all."""
@@ -101,6 +103,7 @@ def roots_up_to(count: int) -> Reals:
     return _roots(min(1 << int(count).bit_length(), _MOST_ROOTS))
 
 
+# A choice: the powers of two up to `_MOST_ROOTS` are 17.
 @functools.lru_cache(maxsize=32)
 def _roots(length: int) -> Reals:
     table = np.sqrt(np.arange(length + 1, dtype=np.float64))
@@ -141,6 +144,7 @@ def _placed_cells(
     frame: Frame, positions: Positions, window: Window, reference: Reference, bits: int
 ) -> tuple[Cells, Pixels, tuple[int, int]]:
     """Return cells of the part that windows cover, their middles in it, and its first pixel."""
+    # Only the part of the frame that windows cover is numbered: cost follows them, not the frame.
     half = window.half_width, window.half_height
     kernels = _kernels("numba_windows")
     pixels, (left, top, right, bottom) = kernels.place_windows(
@@ -181,6 +185,7 @@ class NumbaKernels(Kernels):
         # The very type: a subclass may count otherwise.
         if type(feature) in _COUNTED_PIXELS:
             return _compare_pixels(feature, frame, positions, window, table)
+        # Gradients of each window by itself, as printed, share nothing: they have no kernel.
         if type(feature) is GradientDirections and feature.in_frame:
             return _compare_edges(feature, frame, positions, window, table)
         return super().similarity(feature, frame, positions, window, reference)
@@ -292,6 +297,7 @@ def _count_edges(
         _kernels("numba_gradients").gradients(grey),
         pixels,
         half,
+        # Squared, as the strengths are, and in float32, as the version in numpy compares them.
         (np.float32(feature.threshold) ** 2, np.float32(feature.floor) ** 2),
         (cells, edges.TANGENTS, feature.signed),
         counts,

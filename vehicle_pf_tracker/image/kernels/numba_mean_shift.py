@@ -33,6 +33,7 @@ _ARGUMENTS = CELL_PLANES, RECTANGLES, _OFFSETS, REALS, REALS
 """Both kernels take the same: cells, centres, offsets, profile and values."""
 
 
+# A choice: of each size of a window one; targets change theirs slowly.
 @functools.lru_cache(maxsize=8)
 def ellipse(window: Window) -> tuple[Offsets, Reals]:
     """Offsets x, y (P, 2) and profile (P,) of the kernel's pixels."""
@@ -135,6 +136,7 @@ def shift_kernels(
     weights = np.empty(len(values))
     steps = np.empty((len(pixels), 2))
     for i in range(len(pixels)):
+        # Until it is known that the window has a colour of the reference.
         steps[i, 0] = steps[i, 1] = np.nan
         x, y = pixels[i]
         _weigh_cells(cells, x, y, offsets, profile, masses)

@@ -72,6 +72,7 @@ def number_cells(histogram: Histogram, lanes: int) -> tuple[Table, Histogram]:
     `lanes`. A reference that follows the vehicle is numbered in each frame, which numpy does in
     half a dozen calls.
     """
+    # 32768 bins are five bits a channel, the most that `colour` takes, and cells are 16 bits wide.
     if len(histogram) > 1 << 15 or lanes < 1:
         raise IndexError("there are more bins than cells can number")
     active = 0

@@ -43,16 +43,16 @@ from vehicle_pf_tracker.image.window import Positions
 
 # Costs, roughly in cycles; they decide about the way to a result, and not about the result.
 _PIXEL = 4
-"""Entering or leaving of a pixel in a histogram."""
+"""Entering or leaving of a pixel in a histogram: its cell is read, and a count read and written."""
 _STEP = 10
-"""Move to the next column, whatever the number of bins."""
+"""Move to the next column, whatever the number of bins: calls and tests of the border; a choice."""
 _BINS_AT_ONCE = 8
-"""Bins that are added in a cycle."""
+"""Bins that are added in a cycle: 16-bit counts of a column in a register of 128 bits."""
 
 
 @inlined
 def _extent(pixels: Pixels) -> Extent:
-    """Least x and y, and largest x and y."""
+    """Return the least x and y, and the largest, of windows' middles, px."""
     x0, y0 = pixels[0]
     x1, y1 = x0, y0
     for i in range(len(pixels)):
