@@ -43,6 +43,7 @@ def fingerprint() -> dict[str, str]:
     """Return versions and a digest of our code, which decide the numbers on this machine."""
     digest = hashlib.sha256()
     for path in sorted(_PACKAGE.rglob("*.py")):
+        # With its place: a module that is moved is other code.
         digest.update(path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + path.read_bytes())
     # Not the platform's whole name, which has the kernel's build in it.
     decisive = {name: str(value) for name, value in versions().items() if name != "platform"}
@@ -87,6 +88,7 @@ def run_on_cluster(
         return
     with _connected(address, seconds) as client:
         own = fingerprint()
+        # Before the first task, so that a wrong version costs no time.
         _compare(own, _fingerprints(client))
         on_notice(f"{_workers_words(client)}; the dashboard is {client.dashboard_link}")
         yield from _results(client, function, tasks, key, own)
@@ -100,6 +102,7 @@ def _results(
     own: Mapping[str, str],
 ) -> Iterator[tuple[TaskT, ResultT]]:
     distributed = _distributed()
+    # Two tasks of one key are one: Dask would run the second under the name of the first.
     by_key = {key(task): task for task in tasks}
     # Not pure for Dask: a worker of this run, not a result of an earlier one, has to answer.
     submitted = [
@@ -116,6 +119,7 @@ def _results(
         if error is None:
             yield by_key[future.key], future.result()
         else:
+            # Its workers died each time, as of too little memory: the others go on meanwhile.
             given_up.append(f"{future.key}: {' '.join(str(error).split())}")
     if given_up:
         raise InputError(f"the cluster gave up {len(given_up)} of {len(by_key)}, {given_up[0]}")
@@ -124,6 +128,7 @@ def _results(
 def _checked(function: Callable[[TaskT], ResultT], task: TaskT, own: Mapping[str, str]) -> ResultT:
     """Call `function` on a worker, after its versions were compared."""
     with _ONE_TASK:
+        # On the worker itself, each time: one that joined on the way was not asked at the start.
         _compare(own, {socket.gethostname(): fingerprint()})
         cv2.setNumThreads(1)
         return function(task)

@@ -66,6 +66,7 @@ class CountedVehicles:
         self.classes = VehicleClasses()
         self.estimates: tuple[TrackEstimate, ...] = ()
         self.has_begun_anew = False
+        # To be compared with: the session begins anew by itself, as when time jumps.
         self._restarts = session.restarts
 
     def follow(
@@ -83,15 +84,18 @@ class CountedVehicles:
         began = time.perf_counter()
         self.session.feed(image, stamp_ns, detections)
         detector = self.session.detector
+        # After the image, when its whole cost is known; it decides about the next.
         if isinstance(detector, PacedDetector):
             detector.pace(time.perf_counter() - began, self.session.tracker.frame_period)
         self.has_begun_anew = self.session.restarts != self._restarts
         if self.has_begun_anew:  # first: nothing of discarded vehicles is counted with this image
             self.begin_anew()
+        # Classes before counts, as a crossing keeps the class that its vehicle has then.
         self.estimates = self.classes.named(self.session.estimates)
         self.trails.add(self.estimates)
         crossings = self.counter.update(self.estimates, stamp_ns, ambiguous=self.session.ambiguous)
         for crossing in crossings:
+            # What is counted by class must not change its class in later rows.
             self.classes.decide(crossing.identity)
         self._recent.add(crossings, stamp_ns)
         return crossings
@@ -151,6 +155,7 @@ class _PacedMaker:
 
     def every(self) -> int:
         """Return the parameter in use, which may change."""
+        # Looked up for each image: it may be set while the node runs.
         return self.tracker.parameters.detector.every
 
     def __call__(self) -> PacedDetector:
@@ -176,6 +181,7 @@ def session_and_counter(
     InputError
         If the network or the file of lines and zones cannot be used, or a library is missing.
     """
+    # First: a library that is missing is said before a network is fetched.
     check_library()
     parameters = configuration.tracker
     plane = configuration.session.road.fixed_plane()

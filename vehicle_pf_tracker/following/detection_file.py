@@ -46,10 +46,14 @@ class DetectionFile:
         text = read_text(path, "the detections")
         for where, cells in table_rows(path, text, 6, "the detections"):
             frame, _, *box = numbers_in(where, cells[:7])
+            # A frame of 0 or a fraction is another format, and to be refused; a box without area
+            # is an irregularity.
             if not (1 <= frame <= _LAST_FRAME and frame.is_integer()):
                 raise InputError(f"{where} has the frame {frame:g}; frames are integers from 1")
             numbers.extend((frame, *box[:4], box[4] if len(box) > 4 else 1.0))
         rows: Array = np.frombuffer(numbers, np.float64).reshape(-1, 6)
+        # Sorted once, to be found by bisection; within a frame the order of the file stays, on
+        # which ties depend.
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
         self.notices: list[str] = []
         usable = np.isfinite(rows).all(axis=1) & (rows[:, 3:5] > 0).all(axis=1)

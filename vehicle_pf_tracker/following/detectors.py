@@ -36,6 +36,7 @@ def detector_maker(
     InputError
         If the network cannot be used.
     """
+    # It learns a background, and so is made anew for each stream; a network keeps nothing.
     if parameters.kind == MOTION:
         return MotionDetector
     if parameters.kind == MODEL:

@@ -87,6 +87,7 @@ class OfflineTracker:
         self.session = Session(variant, parameters, settings)
         self.start_frame: int | None = None
         self._notices = list(self.session.tracker.kernels.notices)
+        # A target of the settings goes before: truth only starts what waits for one.
         self._first_truth = first_truth if self.session.waiting else None
         self._limit_ns = max_diff_ns(max_diff)
         road = self.session.settings.road
@@ -94,6 +95,7 @@ class OfflineTracker:
         self._localisation = Localisation(variant.name, road) if has_road else None
         self._on_road: list[Mapping[str, float]] = []
         self._off_road: Counter[str] = Counter()
+        # A copy, from which each is taken: what is left was in no frame.
         self._targets = dict(targets)
         self._stillness = Stillness()
         self.estimate: Estimate | None = None
@@ -122,12 +124,16 @@ class OfflineTracker:
         stamp_ns = found.stamp_ns
         frame = found.frame
         next_ns = None if following is None else following.stamp_ns
+        # One entry for each row, also where the frame is rejected below: columns stay as long.
         self._on_road.append({})
+        # The frame nearest to its stamp, which takes the frame after this one to know.
         truth = self._first_truth
         if truth and is_nearest(stamp_ns, next_ns, truth.stamp_ns, self._limit_ns):
             self._configure_target(truth.box)
             self._first_truth = None
         if (box := self._targets.pop(number, None)) is not None:
+            # Configured, as if it had been in the settings: a recording that loops begins on it
+            # again.
             if is_first:
                 self._configure_target(box)
             else:
@@ -179,6 +185,7 @@ class OfflineTracker:
         self._notices += [f"frame {number}: {event}" for event in self.session.events]
         if estimate is None:
             return EstimateRow.without(number, stamp_ns, WAITING)
+        # The first only: a later target goes on with the same table.
         if self.start_frame is None:
             self.start_frame = number
         if estimate.begins:
@@ -192,6 +199,8 @@ class OfflineTracker:
     def _ends_run(self, error: InputError | TrackerError) -> bool:
         if isinstance(error, TrackerError):
             return error.persists
+        # Before it has begun, an error is the user's target or source; later ones are single
+        # images.
         return self.start_frame is None and not isinstance(error, StrayImageError)
 
     def _locate(self, estimate: Estimate, stamp_ns: int) -> None:

@@ -71,6 +71,7 @@ def fetch(url: str, path: Path, demanded: str, progress: Progress = silent) -> N
     pooch, requests = _libraries()
     pooch.get_logger().setLevel("WARNING")  # it would print the sum
     make_folder(path.parent)
+    # At each fetch, as no other moment is sure to come.
     _remove_leftovers(path.parent)
     download = _Download(url, path, progress, requests)
     with output_errors(path):
@@ -148,6 +149,8 @@ class _Download:
 
     def _part(self) -> Path | None:
         """Return what an earlier fetch has left; None where there is nothing."""
+        # The largest of several states of the server's file; whether it is still that one,
+        # `If-Range` asks.
         found = self._path.parent.glob(f"{self._path.name}.*.part")
         return max(found, key=lambda one: one.stat().st_size, default=None)
 
@@ -155,6 +158,7 @@ class _Download:
         """Fetch into `part`, or a new one, and move it to `output`; False if it does not fit."""
         requests = self._requests
         done = part.stat().st_size if part else 0
+        # Uncompressed: offsets and lengths are then those of the file.
         headers = {"Accept-Encoding": "identity"}
         if part is not None and done:
             tag = unquote(part.name.removesuffix(".part")[len(self._path.name) + 1 :])
@@ -164,6 +168,7 @@ class _Download:
                 return False
             answer.raise_for_status()
             goes_on = answer.status_code == requests.codes.partial_content
+            # It sends all: the file has changed, or the server knows no ranges.
             if not goes_on:
                 done = 0
                 part = self._new_part(answer.headers.get("ETag", ""), part)
@@ -194,10 +199,12 @@ class _Download:
         self, chunks: Iterator[bytes], file: IO[bytes], done: int, total: int | None
     ) -> None:
         """Write the chunks of a file that has `done` bytes already, of `total` if it is known."""
+        # Twice: by what the server says before, and by what it sends below.
         if total is not None and total > _MOST_BYTES:
             raise InputError(f"the network {self._url} has {total} bytes; no network is so large")
         try:
             for chunk in chunks:
+                # A page to log in has status 200, and its markup begins with this; ONNX does not.
                 if not done and chunk.lstrip()[:1] == b"<":
                     raise InputError(
                         f"the network {self._url} is a page, not a network: open the address in a "
@@ -208,9 +215,11 @@ class _Download:
                     raise InputError(f"the network {self._url} does not end; it is not kept")
                 self._progress(f"fetching {self._url}", done / total if total else None)
         except InputError:
+            # What is refused must not be gone on with.
             file.truncate(0)
             raise
         except self._requests.RequestException:
+            # Without a length, a connection that broke has not sent all.
             total = total or done + 1
         if not done or (total is not None and done < total):
             raise InputError(f"the network {self._url} broke off after {done} bytes; try again")

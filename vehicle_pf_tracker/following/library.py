@@ -110,10 +110,12 @@ class Estimates(Sequence[EstimateRow]):
         frame = frame_at(open_source(self.source, beside=Beside.IGNORED), number)
         annotator = Annotator()
         row = self.rows[number - 1]
+        # The path drawn behind the vehicle is that of all frames before.
         for estimate in self._estimates[:number]:
             annotator.follow(estimate)
         states = [(annotator, row, self._estimates[number - 1])]
         start_ns = self.rows[0].stamp_ns
+        # The clock begins again where stamps go back, as in the videos.
         for earlier in self.rows[:number]:
             start_ns = start_of_clock(start_ns, earlier.stamp_ns)
         elapsed_ns = row.stamp_ns - start_ns
@@ -162,6 +164,7 @@ def track(
         target = Box(*target)
     given = from_mapping(found.parameters, parameters)
     targets = {1: target} if target else {}
+    # A target given by hand goes before the truth.
     first_truth = None if target else truth
     tracker = OfflineTracker(found, given, first_truth=first_truth, targets=targets)
     rows = []
@@ -169,6 +172,7 @@ def track(
     for row in tracker.rows((one.stamp_ns, one.frame) for one in opened.frames()):
         rows.append(row)
         one = tracker.estimate
+        # Without its particles: only the path is drawn later.
         light = one and replace(one, particles=_NO_PARTICLES, weights=_NO_PARTICLES[:, 0])
         estimates.append(light)
     notices = (*opened.notices, *tracker.notices)

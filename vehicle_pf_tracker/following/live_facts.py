@@ -28,6 +28,7 @@ class RecentCrossings:
     def add(self, crossings: Iterable[Crossing], stamp_ns: int) -> None:
         """Take the plausible crossings of the next image."""
         self._of.extend(one for one in crossings if not one.doubt)
+        # Also below 0: after time has gone back they are of another minute.
         while self._of and not 0 <= stamp_ns - self._of[0].stamp_ns < _MINUTE_NS:
             self._of.popleft()
 
@@ -52,13 +53,16 @@ def traffic_facts(
     when : str
         Time of the image, and words about it.
     """
+    # 1. Vehicles in view, and a table of their classes.
     confirmed = [one for one in estimates if one.mode in CONFIRMED]
     hidden = sum(one.mode is TrackMode.OCCLUDED for one in confirmed)
     speeds = [kmh for one in confirmed if (kmh := counter.speed_kmh(one.serial)) is not None]
     tables = []
     classes = Tally(one.label or "unknown" for one in confirmed)
+    # A detector of motion knows no classes: then the table says nothing.
     if set(classes) - {"unknown"}:
         tables.append(_table("in view", ("class", "vehicles"), classes.most_common()))
+    # 2. Lines, with the interval of the true count beside what was counted.
     lines = [
         (
             line.name,
@@ -74,6 +78,7 @@ def traffic_facts(
     if lines:
         columns = ("line", "direction", "counted", "last minute", "km/h", "90 %")
         tables.append(_table("lines", columns, lines))
+    # 3. Zones.
     zones = [
         (zone.name, counter.occupancy[zone.name], *(counter.count(zone.name, to) for to in both))
         for zone in counter.plan.zones
@@ -81,6 +86,7 @@ def traffic_facts(
     ]
     if zones:
         tables.append(_table("zones", ("zone", "inside", "entered", "left"), zones))
+    # 4. The summary in words.
     vehicles = sum(counter.is_vehicle(one.label) for one in confirmed)
     words = [when, f"{vehicles} vehicles in view"]
     words += [f"{hidden} hidden"] if hidden else []

@@ -54,6 +54,7 @@ def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
     if not path.is_file():
         fetch(url, path, demanded, progress)
     found = _sum_of(path)
+    # Also of a file in the cache: it may have been kept when no sum was demanded.
     if demanded and found != demanded:
         raise InputError(
             f"the network {url} has the SHA-256 {found}, not {demanded}; delete {path} to fetch it "
@@ -91,6 +92,7 @@ def cached(url: str) -> Path:
     try:
         parts = urlsplit(url)
         is_usable = parts.scheme in {"http", "https"} and bool(parts.hostname)
+        # Read, as only this raises for a port that is no number.
         _ = parts.port
     except ValueError as error:  # brackets, a port that is no number
         raise InputError(f"the network {url} has no address that can be read: {error}") from None
@@ -98,6 +100,7 @@ def cached(url: str) -> Path:
         raise InputError(f"the network {url} is at no http or https address")
     cache = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser()
     name = _UNSAFE.sub("_", unquote(PurePosixPath(parts.path).name))[-_LONGEST_NAME:]
+    # 48 bits of the whole URL: files of one name from two places do not meet.
     digest = hashlib.sha256(url.encode()).hexdigest()[:12]
     return cache / "vehicle_pf_tracker" / "models" / f"{digest}-{name}"
 

@@ -74,6 +74,7 @@ def _loaded(model: str, progress: Progress) -> Network:
             "networks need ONNX Runtime: install the extra [video], "
             "pip install 'vehicle_pf_tracker[video]'"
         ) from None
+    # After the runtime: without it there is no use in fetching a network.
     path, _ = model_file(model, progress)
     options = runtime.SessionOptions()
     options.log_severity_level = 3  # errors: it warns of every unused weight
@@ -82,6 +83,7 @@ def _loaded(model: str, progress: Progress) -> Network:
             str(path), options, providers=["CPUExecutionProvider"]
         )
     except Exception as error:  # ONNX Runtime's errors have no base of their own
+        # One line of its reason: some of its errors have pages.
         reason = " ".join(str(error).split())[:200]
         kept = discard(model)
         raise InputError(f"the network {model} cannot be loaded: {reason}{kept}") from None

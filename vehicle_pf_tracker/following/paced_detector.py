@@ -74,12 +74,15 @@ class PacedDetector:
         self.seconds = 0.0
         self.disturbed = self.is_blind = False
         self._images = 0
+        # Mean time in s that an image costs without the detector, kept from image to image.
         self._others = 0.0
 
     def detect(self, frame: Frame, tracks: Sequence[FollowedVehicle] = ()) -> Detections:
         """Find vehicles, if it is this image's turn; see `Detector`."""
         self._images += 1
+        # 0 leaves the choice to `pace`, after the last image.
         self.every = self._wanted() or self.every
+        # Of this image alone: a camera is not disturbed where nobody looked.
         self.disturbed = False
         self.is_blind = self._images > 1 and self._images <= self.every
         if self.is_blind:
@@ -95,9 +98,11 @@ class PacedDetector:
 
     def pace(self, seconds: float, period: float) -> None:
         """Take the time that the last image cost in all, and the images' period, s."""
+        # Only an image that was looked at has the detector's cost in it.
         others = seconds - (self.seconds if self._images == 1 else 0.0)
         self._others += (others - self._others) * (_RECENT if self._others else 1.0)
         if self._wanted() == 0:
+            # Bounded in time and not in images: vehicles drive on between two looks.
             most = max(round(_LONGEST / period), 1)
             left = _SHARE * period - self._others
             least = math.ceil(self.seconds / left) if left > 0 else most

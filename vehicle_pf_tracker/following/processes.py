@@ -48,10 +48,12 @@ def run_in_processes(
     """
     # Fresh processes: forked ones would inherit locks of OpenCV's threads.
     pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _prepare)
+    # Those of before are not ours to end.
     others = multiprocessing.active_children()
     try:
         futures = {pool.submit(function, task): task for task in tasks}
         for future in as_completed(futures):
+            # Taken out: a result that was given is not kept until the end.
             yield futures.pop(future), future.result()
     except BrokenProcessPool as error:
         raise InputError(
@@ -75,6 +77,7 @@ def _prepare() -> None:
 def _end_with_parent() -> None:
     parent = multiprocessing.parent_process()
     assert parent is not None
+    # Returns when the parent is gone, however it ended.
     parent.join()
     os._exit(1)
 

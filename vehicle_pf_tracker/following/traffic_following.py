@@ -116,9 +116,11 @@ class TrafficRun(CountedVehicles):
                 crossings = self._step(number, found)
                 if found.frame is None or crossings is None:
                     continue
+                # With the first image that was used: only it tells the size.
                 if not self.summary.frames:
                     self._check_plan_and_detections(frame_size(found.frame))
                 estimates = self.estimates
+                # Rows of vehicles whose class may change wait in `files`.
                 undecided = self.classes.undecided
                 files.write(number, found.stamp_ns, estimates, crossings, undecided)
                 self.summary.add(estimates)
@@ -146,6 +148,8 @@ class TrafficRun(CountedVehicles):
         frames = self.summary.frames
         found = self.session.found
         inside = found.boxes - found.outside
+        # From the first cause that would explain it to the last: each further one supposes that
+        # those before it hold.
         if found.disturbed and 2 * found.images < frames:
             why = (
                 "the camera moves, and motion is detected before a standing one only; give "
@@ -178,17 +182,20 @@ class TrafficRun(CountedVehicles):
         try:
             crossings = super().follow(found.frame, found.stamp_ns, detections)
         except (InputError, TrackerError) as error:
+            # One image is rejected, and the run goes on; a tracker that is broken ends it.
             if isinstance(error, TrackerError) and error.persists:
                 raise
             self._note(f"frame {number} was rejected: {error}")
             return None
         if self.has_begun_anew:
+            # Vehicles given by hand go on under new numbers where the session has begun anew.
             kept = self.session.successors
             self._by_name = {name: kept[old] for name, old in self._by_name.items() if old in kept}
         for event in self.session.events:
             if event not in self._last_events:  # one that lasts is told once
                 self._note(f"frame {number}: {event}")
         self._last_events = list(self.session.events)
+        # After the image was followed: a box is where its vehicle is in it.
         self._add_targets(found.frame, number)
         return crossings
 
@@ -209,6 +216,7 @@ class TrafficRun(CountedVehicles):
                 check_target(box, *frame_size(frame))
             except InputError as error:
                 raise InputError(f"in frame {number}, {error}") from None
+            # A second box of one name corrects the first: two tracks would be two vehicles.
             if name in self._by_name:
                 self.session.remove(self._by_name[name])
             self._by_name[name] = self.session.add(box, "" if name.isdecimal() else name)

@@ -146,10 +146,12 @@ class TrafficTracker(CountedVehicles):
             labels as boxes. Boxes that seem to be of another form are warned of once.
         """
         _chosen(format, "format", (_LTWH, _XYXY, _CXCYWH))
+        # Before the reshape, which would cut rows of five numbers into others.
         if boxes is not None and np.ndim(boxes) > 1 and np.shape(boxes)[-1] not in {0, 4}:
             raise ValueError("a box is left, top, width and height in px")
         check_frame(np.asarray(frame))
         frame = _swapped(frame) if self._is_bgr else frame
+        # A library has no clock of its own: images are evenly spaced unless stamps say more.
         stamp_ns = self._stamp_ns + self._period_ns if stamp_ns is None else stamp_ns
         self._stamp_ns = checked_stamp(stamp_ns)
         self._images += 1
@@ -164,6 +166,7 @@ class TrafficTracker(CountedVehicles):
         """Warn once of boxes that are two corners, taken for sizes, or no px of this image."""
         if self._is_warned or len(self._boxes) >= _JUDGED:
             return
+        # Gathered over images: a few boxes of one image may fit either form.
         self._boxes = np.concatenate([self._boxes, boxes])
         found = misfit(self._boxes, size)
         # A vehicle that drives in from the right reaches beyond the image, too, but not as corners.
@@ -185,6 +188,7 @@ class TrafficTracker(CountedVehicles):
         names = given.data.get("class_name", ids)
         labels = None if names is None else [str(name) for name in names]
         if labels is not None and ids is not None:
+            # Learnt from what is given: supervision's ids are its user's, and ours are words.
             self._class_ids.update(zip(labels, map(int, ids), strict=True))
         scores = given.confidence
         form = _XYXY
@@ -226,6 +230,7 @@ class TrafficTracker(CountedVehicles):
             Rows of ``tracks.txt``: the number of the image from 1, id, left, top, width, height,
             confidence (half of it of an occluded vehicle) and three times -1.
         """
+        # Seven columns for no row, which has no width.
         given = np.asarray(rows, np.float64).reshape(-1, np.shape(rows)[-1] or 7)
         scores = given[:, 6] if given.shape[1] > 6 else None
         tracks = self.update(frame, given[:, 2:6], scores, stamp_ns=stamp_ns)

@@ -29,6 +29,7 @@ class CameraMotion:
 
     def apply(self, positions: Array) -> Array:
         """Move positions (..., 2) with the background."""
+        # Rows are points: the transposed matrix stands on the right.
         return np.asarray(positions @ self.turn.T + self.shift)
 
     def apply_to_velocities(self, velocities: Array) -> Array:
@@ -43,4 +44,5 @@ class CameraMotion:
     def still(self) -> bool:
         """True if the background does not move."""
         (scale, across), (down, same) = self.turn.tolist()
+        # Exactly: a camera that stands is reported by exactly this, see `shared_similarity`.
         return scale == same == 1 and across == down == 0 and not self.shift.any()

@@ -89,6 +89,7 @@ class RgbMarginals(CountedFeature):
         region, windows = covered_region(frame, bounds(frame, positions, window))
         levels = marginal_bins(region)
         # A pixel has a bin of each channel: three counts of 21 bins, not one of 63.
+        # Active bins ascend, so that those of a channel stand together.
         edges = np.searchsorted(active, [0, CHANNEL_BINS, 2 * CHANNEL_BINS, self.bins])
         counts = [
             bin_counts(
@@ -104,4 +105,5 @@ class RgbMarginals(CountedFeature):
 
 def marginal_bins(pixels: Frame) -> npt.NDArray[np.uint16]:
     """Bin 0 to 20 of every value, ``floor(v * 21 / 256)``."""
+    # In integers, so that every implementation has the same bin; 255 * 21 fits 16 bits.
     return np.asarray((pixels.astype(np.uint16) * np.uint16(CHANNEL_BINS)) >> np.uint16(8))

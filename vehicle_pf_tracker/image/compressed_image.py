@@ -61,6 +61,7 @@ class CodedImage:
         InputError
             If it is damaged.
         """
+        # Decoded late: the node looks at the size first, and a stray is never decoded.
         if self._frame is None:
             image = None
             with suppress(cv2.error):
@@ -106,6 +107,7 @@ def read_compressed(format: str, data: Buffer) -> CodedImage:  # noqa: A002
         width, height, end = _jpeg_size(coded)
     else:
         raise InputError(f"{name} is neither JPEG nor PNG")
+    # First: one that is cut off may lack its size for that reason alone.
     if not end:
         raise InputError(f"{name} is cut off before its end")
     if not width:
@@ -158,7 +160,7 @@ def _number(data: bytes) -> int:
 
 
 def jpeg(frame: Frame, quality: int = 95) -> bytes:
-    """Code an RGB frame as a JPEG file; at OpenCV's default quality edges stay sharp."""
+    """Code an RGB frame as a JPEG file; at OpenCV's default quality, 95 %, edges stay sharp."""
     image = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
     _, coded = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, quality])
     return coded.tobytes()

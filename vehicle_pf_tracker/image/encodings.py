@@ -80,6 +80,7 @@ def frame_of_message(message: Any) -> Frame:
             f"the image encoding {message.encoding!r} is unknown; these are read: {known}"
         )
     _check_layout(layout, message)
+    # Checked first, so that OpenCV sees only what it can convert.
     frame: Frame = layout.convert(_pixels(layout, message), bool(message.is_bigendian))
     return frame
 
@@ -143,6 +144,7 @@ def _stretched(pixels: Bytes, is_bigendian: bool) -> Bytes:
     sample = values[:: max(values.shape[0] // _SAMPLED, 1), :: max(values.shape[1] // _SAMPLED, 1)]
     low, high = np.percentile(sample, _TAILS)
     every = np.arange(2**16, dtype=np.float64)
+    # An even image has no range: divided by one level, it becomes black and not a fault.
     greys = np.rint(np.clip((every - low) * (255.0 / max(high - low, 1.0)), 0, 255))
     return np.asarray(greys.astype(np.uint8)[values])
 

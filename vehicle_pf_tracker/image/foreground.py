@@ -20,18 +20,23 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.small_grey import SmallGrey
 
 _KEPT_EVERY = 4
-"""Frames between two that are kept for the background."""
+"""Frames between two that are kept for the background: those in a row show the same vehicles. With
+`_KEPT` two seconds at 30 Hz."""
 _KEPT = 15
 """Frames that the background is the median of: two seconds, of which a vehicle that moves by its
 length within one hides less than half."""
 _FEWEST = 6
-"""Frames below which there is no background yet."""
+"""Frames below which there is no background yet, a choice: the median of six is wrong only where
+three of them show vehicles."""
 _LOOKED_AT = 4
-"""Every so many of them is looked at for other vehicles, when one is hidden: half a second."""
+"""Step between kept frames that are searched for other vehicles when one is hidden: with
+`_KEPT_EVERY` half a second at 30 Hz."""
 _LATEST = 12
-"""Frames kept besides: outlines of just before a doubt are what later ones are compared with."""
+"""Latest frames kept besides, 0.4 s at 30 Hz, a choice: outlines of just before a doubt are what
+later ones are compared with."""
 _AROUND = 1.5
-"""Half sides of the neighbourhood, of the box's longer side."""
+"""Half side of the square that is looked at around a box, in longer sides of it, a choice: the box
+may have moved by its length, and what reaches the rim has no outline."""
 _WIDER = 2.0
 """Times as far around what is hidden: it may be 1.5 diagonals away, and twice as large."""
 _LEAST_CONTRAST = 12.0
@@ -40,9 +45,10 @@ _NOISE_FACTOR = 4.0
 """Least difference of a foreground pixel in median differences around, each two thirds of the
 noise's standard deviation, so that the factor is 2.7 of these."""
 _GROWN = 1.3
-"""Size of the box, of itself, whose inside an outline has mostly to lie in."""
+"""Factor to a box inside of which an outline has mostly to lie, a choice: the estimate may be off
+by a seventh of its size on each side."""
 _LEAST_PIECE = 4
-"""Area in px below which a connected piece is noise."""
+"""Area in px of the reduced frame below which a connected piece is noise: 2 x 2, a choice."""
 
 
 class Outline(NamedTuple):
@@ -112,6 +118,7 @@ class Foreground:
         The background has to be learnt.
         """
         kept = list(self._background)[::-1]
+        # Ages count from the latest frame, and kept frames may be older by up to three.
         since = (self._frames - 1) % _KEPT_EVERY
         return (
             (float(since + _KEPT_EVERY * back), self._boxes(kept[back]))
@@ -158,6 +165,7 @@ class Foreground:
         else:
             background = median([each.image[rows, columns] for each in self._background])
         moving = _moving(piece, background)
+        # From here on in px of the piece; the outline goes back to px of the frame.
         inner = centre * small.zoom - corner
         bounds = _bounds(moving, inner, size * small.zoom)
         if bounds is None:

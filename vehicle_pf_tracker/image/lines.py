@@ -93,6 +93,7 @@ def lengths_inside(segments: Segments, windows: Bounds) -> Array:
         at_high = (high[:, np.newaxis] - start[:, axis]) / safe[:, axis]
         enter = np.maximum(enter, np.minimum(at_low, at_high))
         leave = np.minimum(leave, np.maximum(at_low, at_high))
+    # Outside it leaves before it enters: no length.
     return np.asarray(np.maximum(leave - enter, 0.0) * np.hypot(*step.T))
 
 

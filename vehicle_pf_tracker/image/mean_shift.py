@@ -64,6 +64,7 @@ def kernel_histogram(
         Sums to one.
     """
     bins = bin_count(bits)
+    # All bins are active in a reference that is being taken.
     pixel = _pixels(frame, np.asarray([position]))
     cells = _cells(frame, pixel, window, np.arange(bins), bits)
     return np.asarray(_masses(cells, epanechnikov(window)[1], bins)[0])
@@ -124,6 +125,7 @@ def mean_shift(
     total = weights.sum(axis=1)
     moved = total > 0
     step = (weights @ offsets)[moved] / total[moved, np.newaxis]
+    # A window without a colour of the target stays: it has no mean to go to.
     shifted = np.array(positions, dtype=np.float64)
     shifted[moved] = pixel[moved] + 0.5 + step
     return shifted
@@ -146,6 +148,7 @@ def _cells(frame: Frame, pixel: Centres, window: Window, active: Indices, bits: 
     reach = np.array([window.half_width, window.half_height])
     first = pixel.min(axis=0) - reach
     end = pixel.max(axis=0) + reach + 1
+    # Kernels may reach out of the frame: there the region has the cell of no pixel.
     low = np.maximum(first, 0)
     high = np.minimum(end, frame_size(frame))
     region = np.full((end - first)[::-1], len(active) + 1)

@@ -52,6 +52,7 @@ class PointFlow:
         found : (N,) array
             True for the points that were found.
         """
+        # The layout that OpenCV wants: (N, 1, 2) of float32.
         start = np.ascontiguousarray(points, np.float32).reshape(-1, 1, 2)
         first = None if guess is None else np.array(guess, np.float32).reshape(-1, 1, 2)
         moved, found, _ = cv2.calcOpticalFlowPyrLK(
@@ -79,6 +80,7 @@ class PointFlow:
         error : (N, 2) array
             Offset of the end of the way back from where it should be.
         """
+        # A point that does not come back to its place has been lost on one of the two ways.
         moved, found = self.follow(before, after, points, guess)
         # Back from where they are to where they came from: the way out says where to look.
         back = None if guess is None else points

@@ -15,9 +15,10 @@ from vehicle_pf_tracker.core.array import Array
 _Complex: TypeAlias = npt.NDArray[np.complex128]
 
 AGREEING_PX = 0.7
-"""Residual of a corner that agrees with the motion, in px of the reduced frame."""
+"""Residual of a corner that agrees with the motion, in px of the reduced frame: a choice, which
+noise of flow stays below, and a camera that moves does not."""
 LEAST_CORNERS = 6
-"""Fewest corners that four numbers are fitted to."""
+"""Fewest corners that four numbers are fitted to: 12 coordinates, so that one may err. A choice."""
 STILL_SHARE = 0.5
 """Share of corners at rest from which the camera stands: a lorry moves many, not half."""
 FITS = 5

@@ -32,6 +32,7 @@ def bhattacharyya_coefficient(p: Array, q: Array) -> Array:
 
 def hellinger_distance(coefficient: Array) -> Array:
     """``sqrt(1 - rho)`` of a Bhattacharyya coefficient (P1 eq. 23), from 0 (equal) to 1."""
+    # Rounding may take a coefficient of the kernels above 1.
     return np.sqrt(np.maximum(1.0 - np.asarray(coefficient), 0.0))
 
 
@@ -65,4 +66,5 @@ class Reference:
     @cached_property
     def values(self) -> Histogram:
         """The histogram at the active bins, shape (K,)."""
+        # Cached: a reference serves many frames, and never changes.
         return self.histogram[self.active]

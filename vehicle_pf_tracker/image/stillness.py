@@ -57,6 +57,7 @@ class Stillness:
         self.is_suspect = False
         self._first = box
         self._began_ns = stamp_ns
+        # Since this target began; whatever moved before was another one.
         self._has_driven = False
         self._looked_ns: int | None = None
         self._before: Array | None = None
@@ -95,6 +96,7 @@ class Stillness:
         small = cv2.resize(frame, size, interpolation=cv2.INTER_AREA).mean(axis=2)
         before = self._before
         self._before = small
+        # Images of another size have no difference.
         if before is None or before.shape != small.shape:
             return False
         is_changed = np.abs(small - before) > _CHANGED

@@ -37,6 +37,7 @@ def doubts(frame: Frame, box: Box) -> list[str]:
         Target in px, at least partly inside.
     """
     width, height = frame_size(frame)
+    # All of them, not the first: the user may choose another box once.
     objections = []
     if min(box.width, box.height) < SMALLEST_SIDE:
         objections.append(f"it is only {box.width:g} x {box.height:g} px large")
@@ -54,10 +55,11 @@ def contrast(frame: Frame, box: Box) -> float:
     """
     across = _MARGIN * box.width
     down = _MARGIN * box.height
+    # Cut at the border: what lies outside has no pixels, and no contrast.
     left = max(int(box.x - across), 0)
     top = max(int(box.y - down), 0)
     right, bottom = np.ceil([box.x + box.width + across, box.y + box.height + down]).astype(int)
     patch = np.ascontiguousarray(frame[top : max(bottom, top), left : max(right, left)])
-    # Smoothed, since noise is no structure.
+    # Smoothed, since noise is no structure; by 1.5 px, a choice: the smallest box keeps its sides.
     smooth = cv2.GaussianBlur(patch, (0, 0), 1.5) if patch.size else None
     return math.inf if smooth is None else float(smooth.std(axis=(0, 1)).max())

@@ -28,7 +28,7 @@ from vehicle_pf_tracker.image.window import (
 )
 
 LEVELS = 8
-"""Grey levels of co-occurrences (P2, section III-D)."""
+"""Grey levels of co-occurrences (P2, section III-D): three bits of eight."""
 
 
 @dataclass(frozen=True)
@@ -136,6 +136,7 @@ class BinaryPatterns(CountedFeature):
     ) -> Counted:
         """Count windows; see `CountedFeature.counts`."""
         region, windows = covered_region(frame, bounds(frame, positions, window), margin=1)
+        # With the margin the neighbours of a window's rim are those in the frame.
         counts = bin_counts(patterns(to_grey(region)), active, self.bins, windows)
         return Counted(counts, areas(windows))
 

@@ -35,6 +35,7 @@ class Window:
     @classmethod
     def of_size(cls, width: float, height: float) -> Window:
         """Make the window nearest to a box of `width` x `height` px, half rounded to even."""
+        # Never less than its middle pixel.
         return cls(max(round((width - 1) / 2), 0), max(round((height - 1) / 2), 0))
 
     @property
@@ -93,6 +94,7 @@ def bounds(frame: Frame, positions: Positions, window: Window) -> Bounds:
     x = np.minimum(np.maximum(pixel[..., 0], 0), width - 1)
     y = np.minimum(np.maximum(pixel[..., 1], 0), height - 1)
     return Bounds(
+        # Ends are exclusive, hence one more on the right and below.
         np.maximum(x - window.half_width, 0),
         np.maximum(y - window.half_height, 0),
         np.minimum(x + window.half_width + 1, width),
@@ -120,12 +122,14 @@ def keep_inside(frame: Frame, positions: Positions) -> Positions:
     """Clip positions so that each lies on a pixel of `frame`, shape (..., 2)."""
     width, height = frame_size(frame)
     # np.clip does the same, slower.
+    # The middles of the outermost pixels, as continuous px begin at a pixel's corner.
     return np.minimum(np.maximum(positions, 0.5), (width - 0.5, height - 0.5))
 
 
 def is_outside(frame: Frame, x: float, y: float) -> bool:
     """Test whether a position lies beyond the border of `frame`."""
     width, height = frame_size(frame)
+    # The border itself is inside: the last pixel ends there.
     return x < 0 or y < 0 or x > width or y > height
 
 
@@ -143,6 +147,7 @@ class Counted(NamedTuple):
     @property
     def histograms(self) -> Histograms:
         """Counts relative to all; zero where nothing was counted."""
+        # A window without anything to count is divided by 1: all zero, and similar to nothing.
         return np.asarray(self.bins / np.maximum(self.totals, 1)[:, np.newaxis])
 
     def coefficients(self, values: Histograms) -> Coefficients:

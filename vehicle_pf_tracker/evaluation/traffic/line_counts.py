@@ -19,8 +19,8 @@ from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPl
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
 _ROWS = (0.2, 0.35, 0.5, 0.65, 0.8)
-"""Heights of lines across the whole image, as shares of it: far and near traffic. A choice, as those
-below: even steps, without the rims, where vehicles are cut."""
+"""Heights of lines across the whole image, as shares of it: far and near traffic. A choice, as
+those below: even steps, without the rims, where vehicles are cut."""
 _COLUMNS = (0.25, 0.5, 0.75)
 """Places of upright lines, as shares of the width, for traffic across the image."""
 _HALVES = (0.3, 0.45, 0.6, 0.75)

@@ -110,7 +110,7 @@ def load_kernels(choice: str) -> Kernels:
     if choice == "opencv":
         return Kernels()
     try:
-        # The commonest choice: auto takes numba wherever it can be had.
+        # Also for auto: only the attempt tells whether numba can be had.
         return load_numba()
     except ImportError as error:
         if choice == "numba":

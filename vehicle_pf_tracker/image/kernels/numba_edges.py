@@ -39,8 +39,8 @@ _NEVER = 1 << 31
 
 _RANGE = 4
 """Ratio of limits above which windows are counted from lists of their own: a window of faint edges
-lets almost every pixel pass, most of which other windows would then skip one by one. A choice of speed
-alone: 4 in squares is a gradient twice as strong."""
+lets almost every pixel pass, most of which other windows would then skip one by one. A choice of
+speed alone: 4 in squares is a gradient twice as strong."""
 
 TANGENTS: Tangents = np.tan(np.arange(1, DIRECTION_BINS // 4) * (2 * np.pi / DIRECTION_BINS))
 """Tangents of the directions between the bins of a quarter turn."""

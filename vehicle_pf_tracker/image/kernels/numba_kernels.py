@@ -87,7 +87,7 @@ def table_of(reference: Reference) -> CellTable:
     return CellTable(*number_cells(reference.histogram, _LANES))
 
 
-# As many as features are in use at a time; a table has some KB.
+# A choice: fewer features are in use at a time, and a table has some KB.
 @functools.lru_cache(maxsize=8)
 def _every_bin(bins: int) -> Table:
     """Table in which the cell of each bin is its own number, to count all."""
@@ -103,7 +103,7 @@ def roots_up_to(count: int) -> Reals:
     return _roots(min(1 << int(count).bit_length(), _MOST_ROOTS))
 
 
-# A choice: the powers of two up to `_MOST_ROOTS` are 17.
+# There are 17 powers of two up to `_MOST_ROOTS`.
 @functools.lru_cache(maxsize=32)
 def _roots(length: int) -> Reals:
     table = np.sqrt(np.arange(length + 1, dtype=np.float64))

@@ -45,9 +45,9 @@ from vehicle_pf_tracker.image.window import Positions
 _PIXEL = 4
 """Entering or leaving of a pixel in a histogram: its cell is read, and a count read and written."""
 _STEP = 10
-"""Move to the next column, whatever the number of bins: calls and tests of the border; a choice."""
+"""Move to the next column, whatever the number of bins: tests of the border, a choice."""
 _BINS_AT_ONCE = 8
-"""Bins that are added in a cycle: 16-bit counts of a column in a register of 128 bits."""
+"""Bins that are added in a cycle: eight 16-bit counts have 128 bits, a choice."""
 
 
 @inlined
@@ -169,6 +169,7 @@ def _gather(counts: Counts, columns: Columns, left: int, right: int) -> None:
 @inlined
 def _shift(counts: Counts, columns: Columns, leaving: int, entering: int) -> None:
     """Let a column leave and one enter, where they exist."""
+    # A window that the border cuts has no column there to lose, or to gain.
     if leaving >= 0 and entering < len(columns):
         for k in range(len(counts)):
             counts[k] += np.int32(columns[entering, k]) - np.int32(columns[leaving, k])
@@ -222,6 +223,7 @@ def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Sc
             continue
         top = max(y - up, 0)
         bottom = min(y + up + 1, height)
+        # Rows ascend, so that each row of pixels enters the columns once, and leaves them once.
         _follow_rows(columns, cells, rows, top, bottom)
         first = x0 + skipped
         _gather(sums, columns, max(first - left, 0), min(first + right, width))

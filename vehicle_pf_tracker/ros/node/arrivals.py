@@ -45,6 +45,7 @@ class Arrivals:
     def listen(self) -> None:
         """Start waiting for images: neither the time nor the images missed before count."""
         self._heard = self._clock()
+        # The publisher may be another one by now, or have sent to others meanwhile.
         self._number = None
 
     def add(self, info: Mapping[str, Any], age: float, count_publishers: Callable[[], int]) -> None:
@@ -69,6 +70,7 @@ class Arrivals:
             missing = number - self._number - 1
             if missing > 0 and count_publishers() == 1:
                 self.dropped += missing
+        # Also where it went back: the next gap is counted from here.
         self._number = number
 
     def rate(self) -> float:
@@ -78,4 +80,5 @@ class Arrivals:
         seconds = now - self._reported
         self._images_reported = self.images
         self._reported = now
+        # Two reports in one instant have no rate.
         return new / seconds if seconds > 0 else 0.0

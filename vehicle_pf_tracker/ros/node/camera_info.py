@@ -46,17 +46,21 @@ def lens_of_info(message: CameraInfo, *, rectified: bool) -> ImageLens:
     (fx, _, cx, *_), (_, fy, cy, *_) = rows[:2]
     if not (fx > 0 and fy > 0):
         raise InputError("camera_info has no calibration: its focal length is not above 0")
+    # A driver that does not bin leaves 0.
     across = max(message.binning_x, 1)
     down = max(message.binning_y, 1)
     model, coefficients = _distortion(message, rectified=rectified)
     centre = _binned(cx, message.roi.x_offset, across), _binned(cy, message.roi.y_offset, down)
     lens = Lens((fx / across, fy / down), centre, model, coefficients)
+    # Cut out first, then binned: the order in which CameraInfo defines them.
     width = message.roi.width or message.width  # 0 of a whole image
     height = message.roi.height or message.height
     return ImageLens(lens, (width // across, height // down))
 
 
 def _distortion(message: CameraInfo, *, rectified: bool) -> tuple[str, tuple[float, ...]]:
+    # A model with all coefficients 0 is no distortion, but for the fisheye, whose mapping is
+    # another one even then.
     coefficients = tuple(map(float, message.d))
     if rectified or (not any(coefficients) and message.distortion_model != "equidistant"):
         return "none", ()

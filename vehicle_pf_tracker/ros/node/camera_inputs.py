@@ -64,6 +64,7 @@ class CameraInputs:
     def open(self, road: RoadParameters) -> None:
         """Subscribe to what `road` asks for, and to nothing else."""
         asked = road.from_camera_info, road.from_tf, road.rectified
+        # Other parameters change more often: a subscription that is made anew would lose the lens.
         if asked == self._asked:
             return
         self.close()
@@ -94,6 +95,7 @@ class CameraInputs:
         try:
             self.lens = lens_of_info(message, rectified=self._rectified)
         except InputError as error:
+            # The lens of before stays: one broken message does not unmake a calibration.
             self._warn(str(error))
 
     def _on_transforms(self, message: Any) -> None:

@@ -70,6 +70,7 @@ class Diagnostics:
 
     def publish(self) -> None:
         """Publish one report."""
+        # Asked for each time, as publishers come and go without a callback.
         publishers = self.source.count_publishers() if self.source else 0
         values = {**self.health.report(), "matched publishers": publishers, **self._facts()}
         level, words = self._judge()
@@ -88,4 +89,5 @@ class Diagnostics:
             return level, self.health.mode
         words = f"no image for {SILENCE:g} s on {topic}: {self.source.explain_silence()}"
         self._node.get_logger().warning(words, throttle_duration_sec=_WARNING_PERIOD)
+        # A worse level of the tracker itself is not hidden by the silence.
         return max(level, DiagnosticStatus.WARN), words

@@ -70,6 +70,7 @@ class Health:
 
     def answered(self, mode: str, step_ms: float | None = None) -> None:
         """Note the mode that an image was answered with, and how long the step took."""
+        # Only a change starts the clock: the report says how long the mode has lasted.
         if mode != self.mode:
             self.mode = mode
             self._mode_since = self._clock()

@@ -58,6 +58,7 @@ def subscribe(
         )
     except RCLError as error:
         raise InputError(f"cannot subscribe to {topic}: {error}") from None
+    # rclpy reports a bad override by several kinds, none of which names the topic.
     except (ParameterException, InvalidQosOverridesError, RuntimeError) as error:
         raise InputError(f"the QoS overrides of {topic} do not fit: {error}") from None
 
@@ -87,6 +88,7 @@ class ImageInput:
         self._transport = transport
         self._kind = Image if transport == "raw" else CompressedImage
         self.topic = image_topic(node, transport)
+        # Best effort fits publishers of either kind, and a late image is worth less than the next.
         qos = QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._subscription = subscribe(node, self._kind, self.topic, callback, qos)
 
@@ -125,6 +127,7 @@ class ImageInput:
 
     def _elsewhere(self) -> str:
         """Name topics that images are on, with the setting that would take them."""
+        # The likeliest mistake first: the same camera, by the other transport.
         transport = "compressed" if self._transport == "raw" else "raw"
         other = image_topic(self._node, transport)
         if self._node.count_publishers(other):

@@ -69,6 +69,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
 
     def __init__(self, name: str, **options: Any) -> None:
         super().__init__(name, automatically_declare_parameters_from_overrides=True, **options)
+        # Before any declaration: afterwards what a user gave cannot be told from a default.
         self.overrides = take_overrides(self)
         self.failure = ""
         self.path = None
@@ -76,6 +77,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         self.accept: Callable[[Image | CompressedImage], None] | None = None
         self.inputs: list[Subscription] = []
         self.held = ExitStack()
+        # rclpy answers a request without a reason; ours is wrapped around its own callback.
         service = rclpy_internals.change_state_service(self)
         if service is not None:
             service.callback = partial(self._answer_change_state, service.callback)
@@ -97,7 +99,9 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
             if rclpy_internals.state_machine(self) is None:
                 words = "this release of rclpy was not tried: its state machine is hidden"
                 self.get_logger().warning(f"{words}; failed transitions are reported without why")
+            # Before the start, which may fail: a misspelt parameter is perhaps why.
             self.warn_of_overrides(qos=False)
+            # Last: a configured node may get an image at once.
             if self.table.configuration.node.autostart:
                 self.start()
         except InputError:
@@ -135,6 +139,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
             try:
                 change(message, self.path)
             except InputError as error:
+                # A wrong request of another node must not end this one.
                 self.path.journal.refuse(what, str(error))
 
         self.inputs.append(self.create_subscription(kind, topic, take, 10))
@@ -189,6 +194,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
 
     def cleanup(self) -> None:
         """Release session, outputs and services."""
+        # Resources first, in the reverse of their order; then nothing refers to them.
         self.held.close()
         self.path = None
         self.feed = None
@@ -199,8 +205,10 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         source = self.diagnostics.source
         if source is None or self.accept is None:
             return
+        # By ROS's clock, which stamps are of; all waiting is measured by the steady one.
         age = self.get_clock().now().nanoseconds - stamp_ns(image.header)
         self.diagnostics.health.arrivals.add(info, age * 1e-9, source.count_publishers)
+        # Counted first: an image that fails has arrived, too.
         self.accept(image)
 
     def warn_of_overrides(self, *, qos: bool) -> None:
@@ -217,6 +225,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
             With the reason, if one of the two failed.
         """
         for trigger in (self.trigger_configure, self.trigger_activate):
+            # rclpy swallows the exception of a callback; `failure` has kept its reason.
             if trigger() != TransitionCallbackReturn.SUCCESS:
                 raise InputError(self.failure)
 
@@ -269,6 +278,8 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         label = rclpy_internals.state_label(self)
         state_id = request.transition.id
         wanted = request.transition.label or str(state_id)
+        # rclpy raises before it calls one of ours where there is none: this stands until one says
+        # more.
         self.failure = "there is no such transition"
         try:
             response = answer(request, response)

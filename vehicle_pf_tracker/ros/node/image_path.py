@@ -116,6 +116,7 @@ class ImagePath:
         memory = own.incident_memory * 10**6
         self.incidents = IncidentRecorder(str(node.get_name()), memory) if memory else None
         self._kept = KeptTarget(node.get_fully_qualified_name()) if own.keep_target else None
+        # Last: it starts the feed on the target, and logs.
         self._go_on_with_kept()
 
     def take(self, message: Image | CompressedImage, detections: Any = None) -> None:
@@ -131,9 +132,13 @@ class ImagePath:
             # One image must not end a node that others rely on; a broken tracker must.
             self.journal.errors.say("error", traceback.format_exc())
             self._send(self._rejected(header, unexpected(error)))
+            # Answered first, then raised: the one `~/mode` of each image is what a replay waits
+            # for.
             if not isinstance(error, TrackerError) or error.persists:
                 raise
         else:
+            # Only of an image that was used: a stray must not decide what positions are measured
+            # in.
             self._frame_id = header.frame_id
             self._send(answer)
             self._keep_target()
@@ -141,6 +146,7 @@ class ImagePath:
     def _send(self, answer: Answer) -> None:
         """Publish and count an answer; what led to a new start of the tracker is written first."""
         if answer.is_restart:
+            # Before the new answer is kept, so that the recording ends with what went wrong.
             self._note_restart()
         self.journal.health.answered(answer.mode, answer.step_ms)
         own = self._configuration.node
@@ -169,6 +175,8 @@ class ImagePath:
         """
         box = configuration.session.target.box
         size = self._feed.size
+        # Only a target that is new: the images may have become smaller than an old one, and other
+        # parameters are to be set all the same.
         if box is not None and box != self._configuration.session.target.box and size:
             check_target(box, *size)
 

@@ -28,7 +28,7 @@ from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.own_files import ros_folder
 
 _LENGTH = 10.0
-"""Seconds that are kept: an occlusion and what led to it."""
+"""Seconds that are kept, a choice: an occlusion and what led to it."""
 _TOPICS = {
     Image: ("/camera/image_raw", "sensor_msgs/msg/Image"),
     CompressedImage: ("/camera/image_raw/compressed", "sensor_msgs/msg/CompressedImage"),
@@ -71,6 +71,7 @@ class IncidentRecorder:
     ) -> None:
         """Keep a message, and let go of old ones; a run can start on the target's `box`."""
         now = self._clock()
+        # As bytes, whose size is known, and which nobody changes.
         data = serialize_message(message)
         self._kept.append((now, stamp_ns(message.header), type(message), data, box))
         self._bytes += len(data)
@@ -98,8 +99,10 @@ class IncidentRecorder:
         with output_errors(ros_folder()):
             ros_folder().mkdir(parents=True, exist_ok=True)
         folder = ros_folder() / f"{self._name}_{time.strftime('%Y%m%d_%H%M%S')}"
+        # 1. Copy what is kept, while images wait: the thread must not see them come and go.
         messages = [(_TOPICS[kind], stamp, data) for _, stamp, kind, data, _ in self._kept]
         name = self._name
+        # A box that was followed in them becomes the truth, on which a run can start.
         first = next(((stamp, box) for _, stamp, _, _, box in self._kept if box is not None), None)
         text = to_yaml(
             configuration.specs(), shown_values(configuration.to_mapping()), f"{name}'s."
@@ -118,6 +121,7 @@ class IncidentRecorder:
             except InputError as error:
                 tell(f"the last seconds are not kept: {error}")
 
+        # 2. Write in a thread: seconds on a slow disk would cost as many images.
         self._writing = threading.Thread(target=write)
         self._writing.start()
         return folder

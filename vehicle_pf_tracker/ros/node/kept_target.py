@@ -44,6 +44,7 @@ class KeptTarget:
         """
         if box is None or time.monotonic() - self._saved < _SAVE_EVERY:
             return
+        # Before it is written: a full disk is tried once a second, too, and not with every image.
         self._saved = time.monotonic()
         write_private(self._path, json.dumps([box.x, box.y, box.width, box.height]))
 
@@ -61,6 +62,7 @@ class KeptTarget:
             return None
         except OSError as error:
             raise InputError(f"{self._path}: {error.strerror or error}") from None
+        # By the wall clock, as another process wrote it.
         age = time.time() - written
         if not -_CLOCK_STEP <= age <= _FRESH:
             when = f"{age:.0f} s old" if age > 0 else f"{-age:.0f} s of the future"
@@ -69,4 +71,5 @@ class KeptTarget:
             box = Box(*map(float, json.loads(text)))
         except (ValueError, TypeError, ArithmeticError, RecursionError):
             raise InputError(f"{self._path} holds no box [x, y, width, height]") from None
+        # Any image's size: that of the stream is not known before the first one.
         return check_target(box, LARGEST_SIDE_PX, LARGEST_SIDE_PX)

@@ -49,6 +49,8 @@ class KernelLoading:
         self._problem = ""
         self._thread: threading.Thread | None = None
         if may_compile(self.choice) and variant.name not in _rehearsed:
+            # A daemon: a compilation cannot be ended, and a node that is stopped does not wait for
+            # it.
             self._thread = threading.Thread(target=self._load, name=_THREAD, daemon=True)
             self._thread.start()
         else:
@@ -75,6 +77,8 @@ class KernelLoading:
             if kernels.name == "numba":
                 with suppress(Exception):  # a plug-in's own; its first image shows it
                     rehearse(self._variant, self._parameters)
+            # Also where the rehearsal failed: its kernels are compiled as they are called, as
+            # without it.
             _rehearsed.add(self._variant.name)
 
 

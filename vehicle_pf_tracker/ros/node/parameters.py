@@ -94,6 +94,7 @@ class ParameterTable:
         node.add_post_set_parameters_callback(self._apply)
 
     def _as_declared(self, one: Parameter) -> Parameter:
+        # `ros2 param set` makes an integer of 6, where 6.0 is declared.
         spec = self._specs.get(one.name)
         if spec is not None and spec.kind is float and one.type_ is Parameter.Type.INTEGER:
             return Parameter(one.name, Parameter.Type.DOUBLE, float(one.value))
@@ -108,6 +109,7 @@ class ParameterTable:
 
     def _apply(self, parameters: list[Parameter]) -> None:
         new = self._with(parameters)
+        # Setting what is set already must not begin anything anew.
         if new != self.configuration:
             self.configuration = new
             self._changed(new)
@@ -123,6 +125,7 @@ def take_overrides(node: Node) -> dict[str, Any]:
     for them, and is left as if it had not been.
     """
     given = {name: one.value for name, one in node.get_parameters_by_prefix("").items()}
+    # Undeclared again, to be declared with bounds and a description.
     for name in given.keys() - _OF_RCLPY:
         node.undeclare_parameter(name)
     return {name: value for name, value in given.items() if name not in _OF_RCLPY}

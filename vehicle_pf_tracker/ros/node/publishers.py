@@ -104,6 +104,7 @@ class Publishers:
         if not (is_kept or self.is_heard("mode")):
             return None
         level = messages.LEVELS[answer.mode]
+        # The worse of both: a doubt does not hide that the target is lost.
         if answer.is_doubtful:
             level = max(level, DiagnosticStatus.WARN)
         status = level, "target", answer.mode, {"mode": answer.mode, **answer.values}
@@ -124,6 +125,7 @@ class Publishers:
 
 def in_frame(header: Header, frame_id: str) -> Header:
     """Return a header of the same stamp in another frame."""
+    # A copy, as the header is the image's own, and belongs to other outputs, too.
     other = copy.copy(header)
     other.frame_id = frame_id
     return other

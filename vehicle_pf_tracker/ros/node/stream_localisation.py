@@ -55,6 +55,7 @@ class StreamLocalisation:
                 track.set_pose(self._cameras.poses.find(header.frame_id, parameters.frame_id))
         track.follow(estimate, stamp_ns(header), period)
         width, height = frame_size(frame)
+        # Set anew with each image: a driver may correct its camera_info.
         self._misfit = ""
         if lens is not None and lens.size != (width, height) and parameters.from_camera_info:
             self._misfit = (
@@ -70,6 +71,7 @@ class StreamLocalisation:
     @property
     def road(self) -> RoadEstimate | None:
         """Last position on the road; None where there is none."""
+        # A lens of another resolution puts the vehicle elsewhere: no position is better.
         return None if self._misfit else self._track.road
 
     @property

@@ -61,10 +61,12 @@ class TrackerFeed:
     ) -> None:
         self._variant = variant
         self._configuration = configuration
+        # What the session has of the parameters: it lags while kernels are loaded.
         self._applied = configuration
         self._localisation = localisation
         self._journal = journal
         self._session: Session | None = None
+        # Started here, so that it goes on while the node waits for images and for a target.
         self._loading = KernelLoading(variant, configuration.tracker)
         self._target_problem = ""
         self._stillness = Stillness()
@@ -81,12 +83,15 @@ class TrackerFeed:
         bool
             True once images can be tracked in.
         """
+        # By identity: each change makes another configuration, and comparing all is for each image
+        # too much.
         is_applied = self._session is not None and self._applied is self._configuration
         if is_applied or not self._loading.is_done:
             return self._session is not None
         self._applied = self._configuration
         tracker = self._configuration.tracker
         settings = self._configuration.session
+        # A seed that was drawn is logged when it is new, and not at each change of parameters.
         seed = None
         if self._session is None:
             self._session = Session(self._variant, tracker, settings)
@@ -143,6 +148,7 @@ class TrackerFeed:
         if not self.get_ready() or self._session is None:
             return self._waiting(header, self._loading.reason)
         try:
+            # Kept until the session has it: an image that cannot be read does not lose the target.
             if self.asked is not None:
                 self._session.set_target(self.asked)
                 self.asked = None
@@ -196,11 +202,13 @@ class TrackerFeed:
         if configuration.session.road != before.session.road:
             self._localisation.reconfigure(configuration.session.road)
         if configuration.tracker.kernels != self._loading.choice:
+            # The session goes on with the kernels that it has until these are there.
             self._loading = KernelLoading(self._variant, configuration.tracker)
         self.get_ready()
 
     def _waiting(self, header: Header, reason: str) -> Answer:
         """Answer an image in which nothing can be tracked, for this reason."""
+        # Once, and not with every image that waits for the same reason.
         if reason not in (self._loading.reason, self._target_problem):
             self._journal.refuse("target", reason)
             self._target_problem = reason
@@ -239,9 +247,11 @@ class TrackerFeed:
     def _doubts(self, header: Header, frame: Frame, estimate: Estimate) -> list[str]:
         """Log what speaks against the target, and return it, a sentence each."""
         sentences = []
+        # Stillness is about one target: with each new one it begins again.
         if estimate.begins:
             self._stillness.begin(estimate.box, stamp_ns(header))
             sentences += [f"the target is doubtful: {why}" for why in doubts(frame, estimate.box)]
+        # A predicted box moves by its model, which is no sign of a vehicle.
         if estimate.mode is Mode.TRACKING:
             sentences += self._stillness.look(frame, estimate.box, stamp_ns(header))
         for sentence in sentences:
@@ -253,6 +263,7 @@ class TrackerFeed:
         if session.refusal:
             self._journal.health.refusals.add(session.refusal)
         if session.events:
+            # A tracker that failed and began anew is an error; other events are warnings.
             log = self._journal.errors if session.recovered else self._journal.warnings
             log.say("event", "; ".join(session.events))
         return [*session.events]

@@ -68,6 +68,7 @@ class TrackerNode(ImageNode):
         localisation = StreamLocalisation(self._variant.name, road, self._cameras)
         topic = image_topic(self, configuration.node.image_transport)
         outputs = TrackerOutputs(self, topic, localisation, journal)
+        # Before what may fail below: `configure` releases it then.
         self.held.callback(outputs.close)
         self.feed = TrackerFeed(self._variant, configuration, localisation, journal)
         self.path = ImagePath(self, configuration, self.feed, outputs, journal)
@@ -77,6 +78,7 @@ class TrackerNode(ImageNode):
     def activate(self) -> None:
         """Open the inputs."""
         self.open_images()
+        # Only now are the overrides of the image topic declared.
         self.warn_of_overrides(qos=True)
         self._cameras.open(self.table.configuration.session.road)
         self._take_target("~/set_target", RegionOfInterest, target_messages.box_of_region)
@@ -84,6 +86,7 @@ class TrackerNode(ImageNode):
         self._take_target("~/clicked_point", PointStamped, self._box_at)
         if (kind := detection_type()) is not None:
             self._take_target("~/set_detection", kind, target_messages.box_of_detection)
+        # Once for each activation: replays and launch files wait for the word.
         self._has_logged_ready = False
         self._await_kernels()
 
@@ -97,6 +100,7 @@ class TrackerNode(ImageNode):
 
         def start(message: Any, path: ImagePath) -> None:
             assert self.feed is not None
+            # A RegionOfInterest has no header, and so no frame to be wrong.
             if kind is not RegionOfInterest:
                 path.check_frame_id(topic, message.header)
             self.feed.start_on(read(message))
@@ -113,6 +117,7 @@ class TrackerNode(ImageNode):
         source = self.diagnostics.source
         if self.feed is None or not self.feed.get_ready():
             return
+        # Until parameters are changed, which may ask for other kernels.
         self._ready_timer.cancel()
         if source is not None and not self._has_logged_ready:
             self._has_logged_ready = True

@@ -71,6 +71,7 @@ class TrackerOutputs:
     def send(self, answer: Answer, own: NodeParameters, *, is_kept: bool) -> DiagnosticArray | None:
         """Publish an answer, its `~/mode` last; returns that, if it was made."""
         if isinstance(answer, TrackerAnswer):
+            # Results before the picture: whoever acts on them does not wait for a drawing.
             if answer.estimate is not None:
                 self._publish_estimate(answer.header, answer.estimate, own, answer.period)
             if own.publish.overlay:
@@ -101,6 +102,8 @@ class TrackerOutputs:
             )
             publish("road_position", messages.point_message, there, road.position)
             publish("road_velocity", messages.velocity_message, there, road.velocity)
+        # Without a road in px; with one that gives no position now, no pose at all: the unit must
+        # not change on the way.
         elif not localisation.has_road and self._publishers.is_heard("pose_with_covariance"):
             position = np.asarray(estimate.position)
             covariance = localisation.covariance
@@ -112,6 +115,7 @@ class TrackerOutputs:
             return
         mode = answer.mode
         estimate = answer.estimate
+        # A copy: the frame is a view of the message, which others may have, too.
         picture: Frame = np.array(answer.frame, order="C")
         words = mode
         if estimate is not None:
