@@ -36,7 +36,7 @@ CONFIRMED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
 
 
 _Passages = list[tuple[str, str, FootPoint]]
-"""Place, direction, and where and when, of what a vehicle has passed."""
+"""Lines and zones that a vehicle has passed: name, direction, and the point and time."""
 
 
 @dataclass(slots=True)
@@ -238,7 +238,7 @@ class Counter:
         Returns
         -------
         tuple of Crossing
-            Those that are known with this image, also those in doubt.
+            Crossings that are known with this image, also those in doubt.
         """
         if self._last_ns is not None and stamp_ns < self._last_ns:
             self.forget_vehicles()

@@ -34,7 +34,7 @@ class Crossing:
         Speed of the lower edge's middle over the last half second, px/s; None where it was not
         followed for long enough.
     speed_kmh : float or None
-        The same on the road, km/h; None without a road, or outside its calibrated area.
+        Speed on the road, km/h; None without a road, or outside its calibrated area.
     point : (float, float)
         Where it crossed, px.
     doubt : str

@@ -16,11 +16,12 @@ _LEAST_MARGIN = 1.0
 """Distance from an edge in px at which the smallest box is clearly on one side: detections are
 rounded to whole pixels."""
 _MARGIN = 0.1
-"""Distance, of the box's height, at which any box is. Of two detectors on a real highway, the
-lower edges of nine boxes in ten lay within 9 and 12 % of the height around the true ones."""
+"""Share of its height beyond which any box is clearly on one side. Of two detectors on a real
+highway, the lower edges of nine boxes in ten lay within 9 and 12 % of the height around the true
+ones."""
 _SURE = 2.0
-"""Standard deviations that the tracker's own covariance must leave on this side: it is wrong in one
-of forty, and a second look follows with the next image."""
+"""Standard deviations that the tracker's own covariance must leave on this side: it is wrong in
+one of forty, and a second look follows with the next image."""
 
 
 @dataclass(frozen=True)  # without slots, which cannot hold what all edges ask for

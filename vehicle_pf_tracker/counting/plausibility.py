@@ -24,21 +24,23 @@ _KNOWN = 5
 _FASTEST = 3.0
 """Speed, of the median of the others there, that no vehicle has: at 100 km/h it would be 300."""
 _ROOM = 1.5
-"""Distance, in sides of the box, within which there is no room for a second vehicle."""
+"""Distance, in sides of the box, within which there is no room for a second vehicle, a choice:
+they are one apart where they touch, and drive with a gap."""
 _REMEMBERED = 200
-"""Crossings of a place that are remembered: some minutes of a busy road."""
+"""Crossings of a place that are remembered, a choice: some minutes of a busy road, and a cost per
+crossing that does not grow."""
 
 
 @dataclass(slots=True)
 class Life:
-    """Where and when a vehicle was seen, and how well.
+    """Record of where and when a vehicle was seen, and how well.
 
     Attributes
     ----------
     first, last : FootPoint
         First and last point at which it was seen.
     path : RecentPath
-        Its latest path.
+        Latest path of the vehicle.
     images, detected : int
         Number of images of it, and of its detections.
     """
@@ -51,7 +53,7 @@ class Life:
 
     @property
     def side(self) -> float:
-        """Its longer side, px."""
+        """Longer side of its last box that was seen, px."""
         return max(self.last.size)
 
     def add(self, foot: FootPoint, *, is_detected: bool) -> None:

@@ -16,7 +16,8 @@ _STEADY = 15
 vehicles by YOLOX-Nano 4 changed class, and 33 keep the one they would have had in the end. After 5
 and 30 it is 34."""
 _LONGEST = 60
-"""Images after which it is decided in any case: rows are held back for it, and a user waits."""
+"""Images after which it is decided in any case, two seconds at 30 Hz, a choice: rows are held back
+for it, and a user waits."""
 
 
 @dataclass(slots=True)

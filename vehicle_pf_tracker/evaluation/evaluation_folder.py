@@ -70,7 +70,8 @@ CELLS_FOLDER = "cells"
 FAILED = "failed.json"
 """File in the folder of a run that failed, with the reason."""
 RECORDINGS_FOLDER = "recordings"
-"""Folder of what the report needs of each recording, so that it can be written again without it."""
+"""Folder of what the report needs of each recording, so that it can be written again without
+it."""
 TRUTH = "truth.csv"
 """File of a recording's truth there."""
 COLUMNS = ("frame", "stamp_ns", "x", "y", "width", "height", "occlusion")
@@ -125,11 +126,11 @@ class EvaluationFolder:
     plan : mapping of str to Any
         Content of `evaluation.json`.
     recordings : tuple of Source
-        See the plan for the order.
+        Recordings in the order of the plan.
     systems : tuple of System
-        See the plan for the order.
+        Systems in the order of the plan.
     seeds : tuple of int
-        See the plan for the order.
+        Seeds in the order of the plan.
 
     Raises
     ------

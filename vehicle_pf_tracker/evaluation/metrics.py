@@ -246,6 +246,7 @@ def is_on_target(frame: FrameScore) -> bool:
     """Return whether the error is below half the true box's diagonal."""
     error = frame.error
     truth = frame.truth
+    # Relative to the vehicle alone; `threshold` excuses 15 px, this does not.
     return truth is not None and error is not None and error < truth.box.diagonal / 2
 
 

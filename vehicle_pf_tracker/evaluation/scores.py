@@ -30,7 +30,7 @@ SETTLING_FRAMES = 15
 """Frames after the last hidden one before a track is judged: half a second at 30 Hz, in which a
 tracker may re-detect the vehicle."""
 FEWEST_JUDGED = 5
-"""Fewest frames that a recovery is judged by: the mean of fewer says more of noise."""
+"""Fewest frames that a recovery is judged by, a choice: the mean of fewer says more of noise."""
 CLOSE_PX = 15.0
 """Error in px that counts as on the vehicle, however small it is: the threshold of
 Abdulla et al. 2022, section V, table III, P(error < 15 px)."""
@@ -83,6 +83,7 @@ class FrameScore:
     def error(self) -> float | None:
         """Distance of the centres in px; None without truth or before the first estimate."""
         offset = self._offset
+        # Centres, as not every system estimates a size.
         return None if offset is None else math.hypot(*offset)
 
     @property
@@ -143,6 +144,7 @@ def score_frames(
     """
     # By stamps, not by numbers: recordings drop images, and truth may have another rate.
     pairs = associate([row.stamp_ns for row in rows], [t.stamp_ns for t in truths], max_diff)
+    # Stamps of two clocks are a mistake; scored, they would look like a tracker that fails.
     if truths and not pairs:
         raise InputError(
             f"no stamp of the truth is within {max_diff:g} s of an estimate's "
@@ -171,6 +173,7 @@ def _standing(rows: Sequence[EstimateRow]) -> Iterator[EstimateRow | None]:
 
 
 def _is_estimate(row: EstimateRow) -> bool:
+    # A number that is not finite is no estimate: it would make every mean infinite.
     return row.position is not None and all(map(math.isfinite, row.position))
 
 
@@ -255,6 +258,7 @@ def _judge(hidden: Sequence[FrameScore], seen: Sequence[FrameScore]) -> Occlusio
         error_after_px=after,
         threshold_px=limit,
         recovered=recovered,
+        # Before the settling: how far off it is when the vehicle can be seen again.
         error_at_exit_px=seen[0].error if seen else None,
         frames_to_recover=_frames_to_recover(last, seen),
     )

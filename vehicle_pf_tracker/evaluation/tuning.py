@@ -209,7 +209,7 @@ def search(
 ) -> list[FrozenTrial]:
     """Make trials until there are `count`, and return them in order.
 
-    Those that could not be scored on all recordings have no value.
+    Trials that could not be scored on all recordings have no value.
 
     Parameters
     ----------

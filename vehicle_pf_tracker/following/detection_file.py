@@ -52,8 +52,8 @@ class DetectionFile:
                 raise InputError(f"{where} has the frame {frame:g}; frames are integers from 1")
             numbers.extend((frame, *box[:4], box[4] if len(box) > 4 else 1.0))
         rows: Array = np.frombuffer(numbers, np.float64).reshape(-1, 6)
-        # Sorted once, to be found by bisection; within a frame the order of the file stays, on
-        # which ties depend.
+        # Sorted once, to be found by bisection; within a frame the order of the file stays,
+        # so that each run has the same ties.
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
         self.notices: list[str] = []
         usable = np.isfinite(rows).all(axis=1) & (rows[:, 3:5] > 0).all(axis=1)

@@ -71,7 +71,7 @@ class OfflineTracker:
     start_frame : int or None
         Number of the frame that the target was first set in; None until then.
     estimate : Estimate or None
-        That of the last frame; None where it has none.
+        Estimate of the last frame; None where it has none.
     """
 
     def __init__(

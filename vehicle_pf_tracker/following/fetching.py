@@ -34,9 +34,11 @@ _CHUNK = 1 << 16
 _BLOCK = 1 << 20
 """Bytes of a file that are summed at once, so that a large one needs no memory."""
 _MOST_BYTES = 2**31
-"""Size of the largest file of a network: protobuf, which ONNX is written in, has no larger ones."""
+"""Size of the largest file of a network: protobuf, which ONNX is written in, has no larger
+ones."""
 _LEFT_SECONDS = 7 * 86400.0
-"""Age after which what is left of a fetch that nobody went on with is removed: a week."""
+"""Age after which what is left of a fetch that nobody went on with is removed: a week, a
+choice."""
 _LONGEST_TAG = 60
 """Letters of a server's name for a file's state that fit into a file's name, three bytes each."""
 _NO_RANGE = 416
@@ -55,9 +57,9 @@ def fetch(url: str, path: Path, demanded: str, progress: Progress = silent) -> N
     Parameters
     ----------
     url : str
-        Its address, http or https.
+        Address of the file, http or https.
     path : Path
-        Where it is kept.
+        Place at which it is kept.
     demanded : str
         SHA-256 that it must have; empty where none is known.
     progress : Progress

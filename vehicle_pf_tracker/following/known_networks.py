@@ -30,11 +30,11 @@ class KnownNetwork:
     Attributes
     ----------
     url : str
-        Its makers' address.
+        Address of the makers' file.
     sha256 : str
         Sum of the file there, as others state it.
     bytes : int
-        Its size, as others state it.
+        Size of the file, as others state it.
     licence : str
         Licence of the makers' repository; the weights have no other.
     """

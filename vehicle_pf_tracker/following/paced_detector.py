@@ -16,8 +16,8 @@ from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import Detector, FollowedVehicle
 
 _SHARE = 0.8
-"""Share of the images' period that detecting and following may take; decoding and drawing need the
-rest."""
+"""Share of the images' period that detecting and following may take, a choice; decoding and
+drawing need the rest."""
 _LONGEST = 0.1
 """Longest time between two looks of a detector, s, also where the rate cannot be kept. On a dual
 carriageway at 30 Hz every third image leaves 97 % of IDF1, every sixth 56 %."""

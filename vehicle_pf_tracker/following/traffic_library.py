@@ -44,7 +44,7 @@ _XYXY = "xyxy"
 _CXCYWH = "cxcywh"
 """Form of a box: centre, width, height."""
 _JUDGED = 50
-"""Boxes by which their form is judged: some images, in which not all vehicles leave."""
+"""Boxes by which their form is judged, a choice: some images, in which not all vehicles leave."""
 
 
 class TrafficTracker(CountedVehicles):
@@ -70,7 +70,7 @@ class TrafficTracker(CountedVehicles):
     Attributes
     ----------
     crossings : tuple of Crossing
-        What the last image has added to the counts.
+        Crossings that the last image has added to the counts.
 
     Raises
     ------

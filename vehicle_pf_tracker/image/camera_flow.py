@@ -17,9 +17,11 @@ from vehicle_pf_tracker.image.shared_motion import LEAST_CORNERS, STILL_SHARE, s
 from vehicle_pf_tracker.image.small_grey import SmallGrey
 
 _LEAST_SIDE = 32
-"""Side of the reduced frame in px below which its corners are too close to define a motion."""
+"""Side of the reduced frame in px below which its corners are too close to define a motion, a
+choice: of 32 the borders leave 20."""
 _GRID = (8, 6)
-"""Cells along x and y that give one corner each, so that no lorry gives most of them."""
+"""Cells along x and y that give one corner each, so that no lorry gives most of them. A choice:
+they are square in an image of 4 to 3."""
 _ENOUGH = 16
 """Corners followed below which others are found, a third of the grid's: fewer may all be on one
 side of the image, and tell no zoom."""
@@ -28,22 +30,29 @@ _BORDER = 6
 _LEAST_STRENGTH = 1e-4
 """Smallest eigenvalue of a corner; below it a patch of road matches its whole surroundings."""
 _REFRESHED_AFTER = 5
-"""Frames that corners are followed before others are found; finding costs more than following."""
+"""Frames that corners are followed before others are found; finding costs more than following. A
+choice: what has left the image is replaced within a sixth of a second at 30 Hz."""
 _STANDS_AFTER = 30
-"""Frames of measured stillness after which the camera is taken to be mounted (1 s at 30 Hz)."""
+"""Frames of measured stillness after which the camera is taken to be mounted: 1 s at 30
+Hz, a choice."""
 _CHECKED_EVERY = 5
-"""Frames between two measurements of a mounted camera, unless its corners change."""
+"""Frames between two measurements of a mounted camera, unless its corners change: a choice.
+In between only the change around the corners is looked at."""
 _UNCHANGED = 4.0
-"""Mean change around a corner in grey levels below which it has not moved: noise, no edge."""
+"""Mean change around a corner in grey levels below which it has not moved, a choice: noise, no
+edge."""
 _NEIGHBOURHOOD = 5
-"""Side in px of the window over which changes around a corner are averaged, as noise cancels."""
+"""Side in px of the window over which changes around a corner are averaged: of 25 px noise
+is a fifth. A choice."""
 _CLEARANCE = 0.75
-"""Distance of corners from the target's centre, of its size: half of it, and a margin."""
+"""Distance of corners from the target's centre, as a share of its size: half of it, and half of
+that as a margin, a choice."""
 _WEAR_IN_PLACE = 1 / 3
-"""Share of a frame that the corners of a mounted camera age by in a frame."""
+"""Share of a frame that the corners of a mounted camera age by in a frame, a choice: they are
+found anew after 15 instead of 5."""
 _FLOW = PointFlow(window=9, levels=3, steps=10, precision=0.03)
-"""Windows of 13 px cost twice as much, and are no nearer to what 300 corners give. Ten steps to .03
-px instead of OpenCV's 30 to .01 are a choice: the motion is that of many corners."""
+"""Windows of 13 px cost twice as much, and are no nearer to what 300 corners give. Ten steps to
+.03 px instead of OpenCV's 30 to .01 are a choice: the motion is that of many corners."""
 
 
 def fit_camera_motion(before: Array, after: Array) -> CameraMotion:

@@ -23,7 +23,8 @@ _REDUCED_FROM = 1.7
 reads two px an axis, would soon skip some, and the patch shimmer as the target moves."""
 
 _SPARSE_FROM = 4
-"""Frame px per canonical px from which not all px are read: the cost would grow with the target."""
+"""Frame px per canonical px from which not all px are read: the cost would grow with the target.
+A choice: half of those of a block are left, 8 of 16."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -35,10 +35,10 @@ UPSAMPLING = 2
 _LABEL_SIGMA = 1 / 16
 """Standard deviation of the ideal response, of the target's side; the value of STRCF."""
 _FIRST_STEPS = 8
-"""ADMM steps on the first image, which all later ones build on."""
+"""ADMM steps on the first image, which all later ones build on: a choice, as it is paid once."""
 _FIRST_GROWTH = 3.0
-"""Growth of the penalty in each of them: the limit in space is enforced step by
-step, by a penalty that is 2187 times the first one in the end."""
+"""Growth of the penalty in each of them: the limit in space is enforced step by step, by a penalty
+that is 2187 times the first one in the end."""
 _STEPS = 2
 """ADMM steps on later images: STRCF shows that two from the filter before are enough."""
 _GROWTH = 5.0
@@ -116,6 +116,7 @@ class CorrelationFilter:
         stiffness : float
             Resistance against change; the first image is learnt without any.
         """
+        # 1. The right-hand side of the normal equations, which all steps share.
         if self.weights is None:
             right_side = spectrum * self._label
             stiffness = 0.0
@@ -127,10 +128,11 @@ class CorrelationFilter:
             right_side = spectrum * self._label + before
             steps = _STEPS
             growth = _GROWTH
+        # 2. What the steps need of this image.
         conjugate = spectrum.conj()
         # Energy of all channels at each frequency: the only non-zero eigenvalue of x x^H.
         power = (spectrum * conjugate).sum(axis=0).real
-        # ADMM in its scaled form: the multiplier, with the solution added, is confined.
+        # 3. ADMM in its scaled form: the multiplier, with the solution added, is confined.
         multiplier = confined = np.zeros(1, np.complex64)
         for step in range(steps):
             penalty = self.penalty * growth**step

@@ -25,8 +25,8 @@ _MARGIN = 3
 """Pixels around the region that are needed to detect an edge on its border: one for the gradient,
 one for Canny's suppression of non-maxima, one for its hysteresis."""
 _ANGLE_STEP = np.pi / 36
-"""Resolution of directions in the Hough transform: 5 degrees, a quarter of the width of the default
-eight direction bins."""
+"""Resolution of directions in the Hough transform: 5 degrees, a quarter of the width of the
+default eight direction bins."""
 
 
 def find_lines(frame: Frame, windows: Bounds, edge_threshold: float, shortest: int) -> Segments:
@@ -70,7 +70,7 @@ def lengths_inside(segments: Segments, windows: Bounds) -> Array:
     Parameters
     ----------
     segments : (S, 4) array
-        As from `find_lines`.
+        Segments, as `find_lines` returns them.
     windows : Bounds
         Pixel rectangles, arrays of shape (N,).
 

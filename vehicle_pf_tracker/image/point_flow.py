@@ -76,7 +76,7 @@ class PointFlow:
         Returns
         -------
         moved, found
-            As from `follow`; found both ways.
+            Positions and mask as from `follow`, of points that were found both ways.
         error : (N, 2) array
             Offset of the end of the way back from where it should be.
         """

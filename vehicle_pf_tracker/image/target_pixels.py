@@ -17,13 +17,15 @@ SMALLEST_SIDE = 6.0
 """Side in px below which a box has too few pixels to be told apart: on truck4_1, of 5 px, no
 tracker of docs/sequences.md is on target in more than an eighth of the frames."""
 LARGEST_SHARE = 0.4
-"""Share of the image above which a box leaves too little around it to be told apart from."""
+"""Share of the image above which a box leaves too little around it to be told apart from: a
+choice, a little less than half."""
 LEAST_CONTRAST = 6.0
-"""Contrast, of 255, below which a patch is an empty road. True boxes have at least 9.4 on truck4_1,
-of 5 px, and 12.6 on the 18 other sequences; of boxes thrown into the lower part of their images,
-which is mostly road, up to 47 % have less (`laboratory/target_contrast.py`)."""
+"""Contrast, of 255, below which a patch is an empty road. True boxes have at least 9.4 on
+truck4_1, of 5 px, and 12.6 on the 18 other sequences; of boxes thrown into the lower part of their
+images, which is mostly road, up to 47 % have less (`laboratory/target_contrast.py`)."""
 _MARGIN = 0.25
-"""Surroundings that belong to the patch, as a share of the box: a plain vehicle has its outline."""
+"""Surroundings that belong to the patch, as a share of the box, a choice: a plain vehicle
+has its outline."""
 
 
 def doubts(frame: Frame, box: Box) -> list[str]:

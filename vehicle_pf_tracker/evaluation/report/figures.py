@@ -149,6 +149,7 @@ def _curves(evaluation: ScoredEvaluation, aggregates: Aggregates, name: str) -> 
 
     The first of those with a style is on top; the others are grey, and not in the legend.
     """
+    # 1. Mean curves; recordings weigh alike, however many seeds they have.
     lines: dict[str, Curve] = {}
     slots = styled(aggregates)
     for label in aggregates.order:
@@ -162,10 +163,12 @@ def _curves(evaluation: ScoredEvaluation, aggregates: Aggregates, name: str) -> 
             lines[label] = Curve(thresholds, np.mean(means, axis=0))
     if not lines:
         return None
+    # 2. The axes, with room below for two columns of names.
     title, xlabel, ylabel = CURVES[name]
     rows = -(-sum(label in slots for label in lines) // 2)
     figure = Figure(figsize=(_NARROW, 2.2 + 0.16 * rows), layout="constrained")
     axes = figure.add_subplot(xlabel=xlabel, ylabel=ylabel, ylim=(0, 1))
+    # 3. The best last, and so on top.
     for label, line in reversed(lines.items()):
         style: dict[str, Any] = {"color": MUTED, "lw": 0.7, "alpha": 0.55}
         if label in slots:
@@ -180,6 +183,7 @@ def _curves(evaluation: ScoredEvaluation, aggregates: Aggregates, name: str) -> 
         axes.set_xlim(float(line.thresholds[0]), float(line.thresholds[-1]))
     axes.grid(axis="y", alpha=0.6)
     axes.set_axisbelow(True)
+    # 4. The legend, the best first again.
     handles, labels = axes.get_legend_handles_labels()  # drawn last to first
     figure.legend(
         handles[::-1],

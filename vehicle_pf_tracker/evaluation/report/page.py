@@ -51,6 +51,7 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
         systems=folder.systems,
         sources=folder.recordings,
         seeds=folder.seeds,
+        # A plan of an older version may lack either.
         plan={"versions": {}, "options": {}, **folder.plan},
         command=shlex.join(map(str, folder.plan.get("command", []))),
         failed=_failed_groups(evaluation.failed),

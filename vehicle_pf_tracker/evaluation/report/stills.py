@@ -53,9 +53,9 @@ class Moment:
     Attributes
     ----------
     source : Source
-        Its recording.
+        Recording that it is a frame of.
     frame : int
-        Its number, from 1.
+        Number of the frame, from 1.
     error : float
         Error of the first system there, px, median over its seeds.
     boxes : tuple of (str, Box)

@@ -110,13 +110,13 @@ class Report(NamedTuple):
     Attributes
     ----------
     page : Path
-        Its page.
+        Page of the report.
     evaluation : ScoredEvaluation
-        The results it shows.
+        Results that it shows.
     aggregates : Aggregates
-        Their means.
+        Means of the results.
     failures : list of str
-        Its parts that could not be made, a sentence each; the results do not depend on them.
+        Parts that could not be made, a sentence each; the results do not depend on them.
     """
 
     page: Path
@@ -151,6 +151,7 @@ def write_report(
     aggregates = aggregate(evaluation)
     page = folder / "report.html"
     on_stage("drawing the page")
+    # Made in the loop below: each part fails by itself, and the others are written.
     texts: dict[Path, Callable[[], str]] = {
         page: lambda: make_page(evaluation, aggregates),
         folder / "summary.md": lambda: summary_markdown(evaluation, aggregates),

@@ -112,7 +112,7 @@ def compare(
     worker : TrafficWorker
         Runs the baselines and scores.
     parameters : TrafficParameters
-        Those of the tracker; the seed is replaced.
+        Parameters of the tracker; the seed is replaced.
     seeds : sequence of int
         Seeds of the tracker, at least one.
     baselines : sequence of str

@@ -55,6 +55,7 @@ class LineCount:
     def is_held(self) -> bool:
         """True where the interval holds the true number."""
         low, high = self.interval
+        # Ends included, as `Trust.interval` gives them.
         return low <= self.true <= high
 
 
@@ -125,6 +126,7 @@ def held_and_width(counts: Sequence[LineCount]) -> tuple[float, float] | None:
     judged = [one for one in counts if one.is_judged]
     if not any(one.true for one in judged):
         return None
+    # Each line weighs alike: a busy one does not stand for its scene.
     held = np.mean([one.is_held for one in judged])
     width = np.mean([one.interval[1] - one.interval[0] for one in judged])
     return 100 * float(held), float(width)

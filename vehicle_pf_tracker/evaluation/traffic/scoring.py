@@ -32,15 +32,15 @@ MATCH = 0.5
 """Least overlap (intersection over union) of boxes that belong to each other: MOTChallenge's."""
 
 _MOST_INSIDE = 0.5
-"""Share of an unmatched box in a region without truth above which it is left out: most of it is not
-known to be wrong."""
+"""Share of an unmatched box in a region without truth above which it is left out: most of it is
+not known to be wrong."""
 _WINDOW = 30
 """Frames before and after an occlusion in which the identity is looked for: a second at 30 Hz."""
 _GLIMPSE = 5
-"""Frames in sight below which two occlusions are one: a gap between two posts."""
+"""Frames in sight below which two occlusions are one, a choice: a gap between two posts."""
 _LEAST = 10
-"""Frames in sight before an occlusion from which a tracker can know the vehicle: a third of a
-second at 30 Hz."""
+"""Frames in sight before an occlusion from which a tracker can know the vehicle, a choice: a
+third of a second at 30 Hz."""
 _LOW = 0.25
 """Threshold of scores that suits CenterNet's on cdnet_highway, which span 0.15 to 0.74. It was
 chosen by hand for that detector; the defaults of 0.6 and 0.7 discard nearly all of its boxes."""
@@ -75,6 +75,7 @@ def scorable(sequence: TrafficSequence, tracks: Array) -> tuple[Array, Array]:
 
 
 def _cut(tracks: Array, size: tuple[int, int]) -> Array:
+    # A vehicle that drives out is tracked beyond the border, where the truth ends.
     low = np.maximum(tracks[:, 2:4], 0)
     high = np.minimum(tracks[:, 2:4] + tracks[:, 4:6], size)
     inside = (high > low).all(axis=1)
@@ -93,6 +94,7 @@ def _counts(sequence: TrafficSequence, frame: int, boxes: Array) -> npt.NDArray[
     spare = np.flatnonzero(free)
     left_out = np.zeros(len(boxes), dtype=np.bool_)
     left_out[spare[matches(hidden, boxes[spare])[1]]] = True
+    # Regions of this frame, and those of all.
     regions = sequence.ignored[np.isin(sequence.ignored[:, 0], (EVERY_FRAME, frame)), 1:]
     common = intersections(_edges(boxes)[:, None], _edges(regions))
     inside = common > _MOST_INSIDE * boxes[:, 2:].prod(axis=1)[:, None]
@@ -126,7 +128,8 @@ def _edges(boxes: Array) -> Array:
 
 
 _SETTLED_NS = 2 * 10**9
-"""Crossings before are not counted: who is on the line when a clip begins has no past, ns."""
+"""Time in ns before which crossings are not counted, a choice: who is on the line when a clip
+begins has no past."""
 
 
 def kept_identities(sequence: TrafficSequence, tracks: Array) -> tuple[int, int]:
@@ -141,6 +144,7 @@ def kept_identities(sequence: TrafficSequence, tracks: Array) -> tuple[int, int]
     kept, judged : int
         Occlusions of vehicles that were in sight for `_LEAST` frames before.
     """
+    # Matched once per frame: an occlusion is then judged by looking up.
     followed = _followed(sequence, tracks)
     kept = judged = 0
     for vehicle in np.unique(sequence.truth[:, 1]).tolist():
@@ -165,6 +169,7 @@ def kept_identities(sequence: TrafficSequence, tracks: Array) -> tuple[int, int]
 def _spells(seen: list[int], hidden: set[int]) -> Iterator[list[int]]:
     """Divide frames in sight at total occlusions; glimpses between two are left out."""
     spell: list[int] = []
+    # Only hidden frames between two sightings divide them: one without truth does not.
     for frame, before in zip(seen, [None, *seen], strict=False):
         if before is not None and any(number in hidden for number in range(before + 1, frame)):
             # Too short to be followed: the occlusions before and after it are one.

@@ -84,6 +84,7 @@ def read_sequence(folder: Path) -> TrafficSequence:
     info = folder / "seqinfo.ini"
     if not info.is_file():
         raise InputError(f"{folder} is not a MOTChallenge folder: it has no {info.name}")
+    # Without interpolation: a % in a name is a letter.
     parser = configparser.ConfigParser(interpolation=None)
     try:
         parser.read_string(read_text(info, "the file"))

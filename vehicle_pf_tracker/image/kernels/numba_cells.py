@@ -74,7 +74,7 @@ def _direction_histograms(
     height, width = grey.shape
     columns = width // GRADIENT_CELL_PX + 2
     cells = np.zeros((DIRECTIONS, height // GRADIENT_CELL_PX + 2, columns), np.float32)
-    # A row of cells at a time stays in the first cache; whole images would not.
+    # 1. Buffers: a row of cells at a time stays in the first cache; whole images would not.
     sums = np.zeros(DIRECTIONS * columns, np.float32)
     above = np.zeros_like(sums)
     below = np.zeros_like(sums)
@@ -88,7 +88,7 @@ def _direction_histograms(
         place_x = (x + 0.5) / GRADIENT_CELL_PX + 0.5
         column[x] = np.uint64(place_x)
         share[x] = np.float32(place_x - np.floor(place_x))
-    # Outermost pixels have no central difference, and take no part.
+    # 2. Outermost pixels have no central difference, and take no part.
     for y in range(1, height - 1):
         _gradients(grey, y, magnitudes, places)
         for x in range(1, width - 1):
@@ -102,7 +102,7 @@ def _direction_histograms(
         place_y = (y + 0.5) / GRADIENT_CELL_PX + 0.5
         row = int(place_y)
         _share_row(sums, np.float32(place_y - row), above, below)
-        # The next row of pixels belongs to other cells: what was gathered is written.
+        # 3. The next row of pixels belongs to other cells: what was gathered is written.
         if int((y + 1.5) / GRADIENT_CELL_PX + 0.5) != row or y == height - 2:
             # Channel by channel: the innermost loop runs along memory.
             for o in range(DIRECTIONS):
@@ -173,7 +173,7 @@ def _normalise(
     half = np.float32(0.5)
     texture = np.empty((4, columns), np.float32)
     for y in range(rows):
-        # By rows: what is summed over directions stays in the first cache.
+        # 1. Signed directions. By rows: what is summed over directions stays in the first cache.
         _clear(texture)
         for o in range(DIRECTIONS):
             for x in range(columns):
@@ -190,13 +190,14 @@ def _normalise(
                 texture[3, x] += d
         for o in range(_UNSIGNED):
             for x in range(columns):
-                # Unsigned: the same edge before a bright and a dark road.
+                # 2. Unsigned: the same edge before a bright and a dark road.
                 value = cells[o, y + 1, x + 1] + cells[o + _UNSIGNED, y + 1, x + 1]
                 a = min(value * scales[0, y, x], limit)
                 b = min(value * scales[1, y, x], limit)
                 c = min(value * scales[2, y, x], limit)
                 d = min(value * scales[3, y, x], limit)
                 features[y, DIRECTIONS + o, x] = half * (((a + b) + c) + d)
+        # 3. Texture: the energy of all signed directions by neighbourhood.
         for k in range(4):
             for x in range(columns):
                 features[y, DIRECTIONS + _UNSIGNED + k, x] = (

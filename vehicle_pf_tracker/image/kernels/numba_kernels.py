@@ -47,10 +47,12 @@ _MODULES = ("numba_windows", "numba_gradients", "numba_edges", "numba_mean_shift
 """Modules whose kernels are compiled when they are imported, the commonest first."""
 
 _LANES = 16
-"""Cells are padded to a multiple of this, so that loops over them fill vector registers."""
+"""Cells are padded to a multiple of this, so that loops over them fill vector registers: the
+widest, of 512 bits, hold 16 counts."""
 
 _MOST_ROOTS = 1 << 16
-"""Largest table of square roots: 512 KB, which fits the second-level cache of common processors."""
+"""Largest table of square roots: 512 KB, which fits the second-level cache of common
+processors."""
 
 
 @functools.cache

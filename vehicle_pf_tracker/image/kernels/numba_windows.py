@@ -217,20 +217,20 @@ def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Sc
     rows = np.zeros(2, np.int64)
     result = np.empty(len(pixels))
     for y in range(y0, y1 + 1):
-        # Between the first and the last window of a row the sum slides; beyond, nothing is asked.
+        # 1. Between the first and last window of a row the sum slides; beyond, nothing is asked.
         skipped, end = _asked(heads, y - y0)
         if skipped == end:
             continue
         top = max(y - up, 0)
         bottom = min(y + up + 1, height)
-        # Rows ascend, so that each row of pixels enters the columns once, and leaves them once.
+        # 2. Rows ascend, so that each row of pixels enters the columns once, and leaves them once.
         _follow_rows(columns, cells, rows, top, bottom)
         first = x0 + skipped
         _gather(sums, columns, max(first - left, 0), min(first + right, width))
         for x in range(first, x0 + end):
             if x > first:
                 _shift(sums, columns, x - left - 1, x + right - 1)
-            # Windows on one pixel are the same: compared once, however many particles sit there.
+            # 3. Windows on one pixel are the same: compared once for all particles there.
             i = heads[y - y0, x - x0]
             if i:
                 across = min(x + right, width) - max(x - left, 0)

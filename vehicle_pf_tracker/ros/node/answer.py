@@ -21,7 +21,7 @@ class Answer:
     Attributes
     ----------
     header : Header
-        That of the image.
+        Header of the image.
     mode : str
         Mode of the estimate, `WAITING` or `REJECTED`.
     values : mapping

@@ -21,7 +21,8 @@ SILENCE = 5.0
 """Time without an image after which a warning is published, s: a camera that connects again is
 back within it, and nobody looks at a picture that stands for longer."""
 _WARNING_PERIOD = 30.0
-"""Interval between two lines in the log about one silence, s; /diagnostics has it each time."""
+"""Interval between two lines in the log about one silence, s, a choice; /diagnostics has it each
+time."""
 
 
 class Diagnostics:

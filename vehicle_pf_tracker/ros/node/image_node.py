@@ -51,7 +51,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
     accept : callable or None
         Takes each image: the path, or what lies before it; None while the node is not configured.
     feed : Feed or None
-        What follows in them; None while the node is not configured.
+        Tracker of one target or of traffic behind the path; None while the node is not configured.
     table : ParameterTable
         The parameters.
     diagnostics : Diagnostics

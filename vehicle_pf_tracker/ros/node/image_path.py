@@ -85,7 +85,7 @@ class ImagePath:
     configuration : Configuration
         The node's parameters.
     feed : Feed
-        What follows in the images.
+        Tracker, or trackers, that follow in the images.
     outputs : AnswerOutputs
         Publishers of the answers.
     journal : Journal

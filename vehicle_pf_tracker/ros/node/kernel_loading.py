@@ -34,7 +34,7 @@ class KernelLoading:
     variant : Variant
         Variant from the registry: only what its step needs is compiled.
     parameters : dataclass
-        Its parameters.
+        Parameters of the variant.
 
     Raises
     ------
