@@ -87,8 +87,10 @@ class Baseline(Worker):
         InputError
             If the baseline refuses the box, or has died.
         """
+        # Whole px, at least one, or OpenCV would refuse the box.
         width = max(round(box.width), 1)
         height = max(round(box.height), 1)
+        # Until it answers: a tracker that gives up at once stands on the box it was given.
         self._box = box
         return self._track(frame, box=[round(box.x), round(box.y), width, height])
 

@@ -78,6 +78,7 @@ def curves(frames: Sequence[FrameScore]) -> dict[str, Curve]:
     section 4: TrackingNet; Fan et al. 2019: LaSOT). ``success``: with an overlap above each; as in
     OTB's own code one equal to the threshold does not pass, so that a perfect track has 20/21.
     """
+    # Without truth there is no curve, rather than one of zeros.
     if not frames:
         return {}
     errors = np.array([[f.error, f.normalised_error] for f in frames], dtype=np.float64)
@@ -225,9 +226,11 @@ def measure(scores: Scores) -> Metrics:
         normalised_precision_auc=normalised.auc if normalised else None,
         normalised_precision_20=normalised.at(NORMALISED_PRECISION) if normalised else None,
         on_target=_share([is_on_target(frame) for frame in visible]),
+        # Claims are taken from the row itself, also where an earlier estimate is scored.
         hidden_not_tracking=_share([frame.row.mode != Mode.TRACKING for frame in hidden]),
         visible_tracking=_share([frame.row.mode == Mode.TRACKING for frame in visible]),
         occluded_precision=_share([frame.hidden for frame in occluded]),
+        # Once more with partial occlusions: who reports these as OCCLUDED is not wrong.
         occluded_precision_partial=_share([_is_occluded(frame) for frame in occluded]),
         occluded_recall=_share([frame.row.mode == Mode.OCCLUDED for frame in hidden]),
         lost_hidden=sum(frame.row.mode == Mode.LOST for frame in hidden),

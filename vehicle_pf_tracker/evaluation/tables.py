@@ -125,6 +125,7 @@ def overall_table(aggregates: Aggregates, keys: Collection[str] | None = None) -
         is_count = column is RECOVERED and judged
         return f"{recovered} of {judged}" if is_count else mean_text(summary, column)
 
+    # In the order of `COLUMNS`, whatever that of the keys.
     columns = [column for column in COLUMNS if keys is None or column.key in keys]
     return _metrics_table(aggregates.overall, columns, text)
 
@@ -247,6 +248,7 @@ def _metrics_table(
 def _best(table: Mapping[str, Summaries], column: Column) -> float | None:
     """Return the best value as it is shown; None where none is better than all others."""
     values = {round(s.mean, column.decimals) for row in table.values() if (s := row[column.key])}
+    # Where all read alike, a mark would say nothing.
     if column.higher_is_better is None or len(values) < 2:
         return None
     return max(values) if column.higher_is_better else min(values)

@@ -107,6 +107,7 @@ class Estimates(Sequence[EstimateRow]):
         InputError
             If there is no such frame, or it cannot be read.
         """
+        # Read again: a film of an hour does not fit into memory.
         frame = frame_at(open_source(self.source, beside=Beside.IGNORED), number)
         annotator = Annotator()
         row = self.rows[number - 1]

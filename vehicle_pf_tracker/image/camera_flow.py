@@ -33,17 +33,17 @@ _REFRESHED_AFTER = 5
 """Frames that corners are followed before others are found; finding costs more than following. A
 choice: what has left the image is replaced within a sixth of a second at 30 Hz."""
 _STANDS_AFTER = 30
-"""Frames of measured stillness after which the camera is taken to be mounted: 1 s at 30
-Hz, a choice."""
+"""Frames of measured stillness after which the camera is taken to be mounted, a choice: 1 s
+at 30 Hz."""
 _CHECKED_EVERY = 5
-"""Frames between two measurements of a mounted camera, unless its corners change: a choice.
-In between only the change around the corners is looked at."""
+"""Frames between two measurements of a mounted camera, unless its corners change: a choice. In
+between only the change around the corners is looked at."""
 _UNCHANGED = 4.0
 """Mean change around a corner in grey levels below which it has not moved, a choice: noise, no
 edge."""
 _NEIGHBOURHOOD = 5
-"""Side in px of the window over which changes around a corner are averaged: of 25 px noise
-is a fifth. A choice."""
+"""Side in px of the window over which changes around a corner are averaged, a choice: noise of
+25 px is a fifth of that of one."""
 _CLEARANCE = 0.75
 """Distance of corners from the target's centre, as a share of its size: half of it, and half of
 that as a margin, a choice."""

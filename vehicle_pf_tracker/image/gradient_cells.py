@@ -74,6 +74,7 @@ def _direction_histograms(grey: Grey) -> npt.NDArray[np.float32]:
     dy = (wide[2:, 1:-1] - wide[:-2, 1:-1] + 255).ravel()
     # An 8-bit gradient has 511 x 511 values: two look-ups replace a root and an arctangent.
     at = dy * 511 + dx
+    # The nearest direction alone; between cells, where positions are finer, shares are bilinear.
     direction = DIRECTION_OF.ravel()[at]
     magnitude = MAGNITUDE_OF.ravel()[at]
     first_y, share_y = _cell_shares(grey.shape[0])

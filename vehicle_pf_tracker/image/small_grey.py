@@ -45,6 +45,7 @@ def small_grey(frame: Frame) -> SmallGrey:
     width, height = frame_size(frame)
     # Never enlarged: interpolated pixels add cost and no motion.
     zoom = min(_LARGEST_SIDE / max(width, height), 1.0)
+    # Rounded down, so that there are at least as many rows as the result needs.
     step = int(1 / zoom)
     # The middle row of each step, so that the picture does not shift.
     small = np.ascontiguousarray(frame) if step < _SPARSE_FROM else frame[step // 2 :: step]

@@ -46,6 +46,7 @@ class PartialFourier:
     def __init__(
         self, cells: int, rows: slice, columns: slice, window: Array | None = None
     ) -> None:
+        # Matrices are made once: a part and its square keep their size while a target is followed.
         places = np.arange(cells)
         weights = np.ones(cells) if window is None else window
         # What is zero outside the part needs no rows or columns of the matrices.
@@ -57,6 +58,7 @@ class PartialFourier:
 
     def cells_of(self, spectrum: Spectrum) -> CellFeatures:
         """Cells of the part, (channels, rows, columns)."""
+        # Through the rows first: the part has few of them, and what follows is that much less.
         return product(product(self._to_rows, _coefficients(spectrum)), self._to_columns)
 
     def spectrum_of(self, cells: CellFeatures) -> Spectrum:

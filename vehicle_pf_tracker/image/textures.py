@@ -84,6 +84,8 @@ class HaralickStatistics(WindowFeature):
         """Describe windows; see `WindowFeature.histograms`."""
         matrices = Cooccurrence().histograms(frame, positions, window)
         values = descriptors(matrices)
+        # A descriptor and its complement are a histogram of two bins, whose coefficient is 1 only
+        # where they agree.
         pairs = np.stack([values, 1.0 - values], axis=2).reshape(len(values), self.bins)
         # A window of one column has no pair, and is similar to nothing.
         measured = matrices.any(axis=1, keepdims=True)

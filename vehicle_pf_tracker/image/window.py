@@ -88,6 +88,7 @@ def bounds(frame: Frame, positions: Positions, window: Window) -> Bounds:
     Bounds
         Arrays of shape (N,); every rectangle has at least one pixel.
     """
+    # Moved inside first, cut afterwards: so every window keeps its middle pixel.
     width, height = frame_size(frame)
     pixel = centres(positions)
     # np.clip does the same, four times slower on arrays of this size.
@@ -211,6 +212,7 @@ class CountedFeature(WindowFeature):
 
     def histograms(self, frame: Frame, positions: Positions, window: Window) -> Histograms:
         """Describe windows; see `WindowFeature.histograms`."""
+        # All bins are active where no reference says which count.
         return self.counts(frame, positions, window, np.arange(self.bins)).histograms
 
     def similarity(

@@ -228,6 +228,7 @@ def _list_points(
             found[here] = x
             here += strengths[y, x] >= limit
         index[y, right] = count + here
+        # Directions of these alone: most px of a window are no edge points.
         for i in range(here):
             x = found[i]
             number = direction_bin(np.int64(gx[y, x]), np.int64(gy[y, x]), tangents, signed)
@@ -267,6 +268,7 @@ def _check(
     """Raise an error where an index would lie outside an array."""
     height, width = images[2].shape
     table, tangents, _ = directions
+    # Once per call: the loops trust every index, and numba tests none.
     highest = 0
     for cell in table:
         highest = max(highest, np.int64(cell))
@@ -330,7 +332,7 @@ def count_edges(
     totals = np.zeros(len(middles), np.int64)
     is_open = np.empty(len(limits), np.bool_)
     for i in range(len(limits)):
-        # Windows that are closed have their counts; those without edges are from the beginning.
+        # A closed window has its counts; one without edges is closed from the beginning.
         is_open[i] = limits[i] != _NEVER
         for k in range(counts.shape[1]):
             counts[i, k] = 0

@@ -69,6 +69,7 @@ class Publishers:
         self._publishers = {
             name: node.create_lifecycle_publisher(kind, f"~/{name}", qos)
             for name, (kind, qos) in {**more, **_COMMON}.items()
+            # A message type that is not installed costs its topic, not the node.
             if kind is not None
         }
 
