@@ -93,6 +93,18 @@ def test_a_vehicle_with_two_boxes_has_one_number_and_two_vehicles_have_two(shift
     assert sum(one.mode is TrackMode.TRACKING for one in estimates) == tracker.last_identity
 
 
+def test_two_boxes_that_drive_as_one_and_part_later_have_two_numbers():
+    tracker = TrafficTracker(FLAT)
+    for index in range(60):
+        behind = max(0, index - 30)  # the second one brakes
+        boxes = [(20 + 4 * index, 100, 40, 30), (30 + 4 * index - 2 * behind, 108, 40, 30)]
+        estimates = tracker.step(scene(*boxes), Detections.make(boxes))
+        if index == 30:
+            assert tracker.last_identity == 1
+    assert tracker.last_identity == 2
+    assert sum(one.mode is TrackMode.TRACKING for one in estimates) == 2
+
+
 def test_a_vehicle_that_leaves_is_lost_and_the_border_hides_it():
     tracker = TrafficTracker(replace(FLAT, pixels=False))
     left, modes = -20, []

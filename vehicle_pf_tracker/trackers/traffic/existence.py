@@ -122,8 +122,7 @@ def believed(
     beliefs = tracks.beliefs
     lengths = beliefs.ways.lengths(tracks.edges)
     is_ripe = tracks.confirmed | (beliefs.log_odds >= step.parameters.birth.evidence)
-    settled = beliefs.has_driven | tracks.names.given  # needs no proof
-    now_drives = ~settled & is_ripe
+    now_drives = is_ripe & ~(beliefs.has_driven | tracks.names.given)
     if now_drives.any():
         displacement = step.parameters.birth.displacement
         now_drives &= drives(tracks, displacement, are_shapes=candidates.are_shapes)
@@ -133,12 +132,14 @@ def believed(
         # A piece drives as straight as its vehicle, whose rest is beside it until both are joined.
         now_drives &= is_old | ~_have_rest(edges, candidates.edges)
         proven &= is_old
-    proven |= now_drives
+    # What has driven stays proven: a second box of another vehicle may part from it later.
+    drove = now_drives | beliefs.has_driven
+    proven |= drove
     if step.parameters.birth.standing == IGNORE:
-        proven &= now_drives | (lengths >= _STANDS)
+        proven &= drove | (lengths >= _STANDS)
     # 3. Teach detections only now: what they show depends on the drive.
     tracks = _taught(tracks, now_drives, lengths, candidates, columns, experience)
-    return tracks, np.asarray(~tracks.confirmed & ~settled & is_ripe & proven)
+    return tracks, np.asarray(~tracks.confirmed & is_ripe & proven)
 
 
 def _weighed(tracks: Tracks, candidates: Candidates, columns: Integers, fits: Array) -> Tracks:
