@@ -94,6 +94,11 @@ def test_a_pass_over_the_vehicle_is_no_return():
     assert score.frames_to_recover == 6
 
 
+@pytest.mark.parametrize("frames", range(5))
+def test_too_few_frames_are_no_return(frames):
+    assert judged((5, 0, TOTAL), (frames, 2, NONE))[0].frames_to_recover is None
+
+
 def test_the_next_occlusion_ends_the_search():
     first, second = judged((1, 0, TOTAL), (4, 2, NONE), (2, 0, TOTAL), (5, 2, NONE))
     assert (first.frames_to_recover, second.frames_to_recover) == (None, 1)

@@ -267,7 +267,8 @@ def _judge(hidden: Sequence[FrameScore], seen: Sequence[FrameScore]) -> Occlusio
 def _frames_to_recover(last_hidden: int, seen: Sequence[FrameScore]) -> int | None:
     # Each frame by its own threshold, as the vehicle grows or shrinks meanwhile.
     on_vehicle = [frame.error is not None and frame.error < threshold(frame) for frame in seen]
-    for index, frame in enumerate(seen[: len(seen) - FEWEST_JUDGED + 1]):
+    starts = max(len(seen) - FEWEST_JUDGED + 1, 0)
+    for index, frame in enumerate(seen[:starts]):
         # A row of them: an estimate that drifts across the vehicle has not recovered it.
         if all(on_vehicle[index : index + FEWEST_JUDGED]):
             return frame.row.frame - last_hidden

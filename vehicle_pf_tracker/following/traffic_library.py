@@ -171,7 +171,7 @@ class TrafficTracker(CountedVehicles):
         found = misfit(self._boxes, size)
         # A vehicle that drives in from the right reaches beyond the image, too, but not as corners.
         are_corners = (self._boxes[:, 2:] > self._boxes[:, :2]).all(axis=1)
-        if found is not None and (found.is_fatal or 2 * np.count_nonzero(are_corners) > len(boxes)):
+        if found is not None and (found.is_fatal or 2 * are_corners.sum() > len(self._boxes)):
             self._is_warned = True
             warnings.warn(f"{found.sentence} (format=)", stacklevel=3)
 
