@@ -48,7 +48,7 @@ BATTERY = "{toy}/sequences --workers 1 -o {out}"
 ONE_CASE = "--seeds 1 --hard 1"
 PROGRAMS = {
     "laboratory.count_trust": Program(
-        "toy={toy}/traffic=good,motion two={toy}/traffic=poor@.2 -o {out}",
+        "toy={toy}/traffic=good,motion two={toy}/traffic=good@.2 -o {out}",
         ("calibration.md", "left_out.md", "runs.jsonl"),
     ),
     "laboratory.fusion_ablation": Program(
@@ -65,6 +65,7 @@ PROGRAMS = {
         ("cost.md", "cost.json"),
         needs=("baselines",),
     ),
+    "benchmarks.memory_parts": Program("", printed="| kernels and step of `apf` | +"),
     "laboratory.fusion_fit": Program(
         f"{BATTERY} {ONE_CASE} --budget 2 --cases 1", ("fit.json", "leave_one_camera_out.md")
     ),
