@@ -43,9 +43,11 @@ _WAIT = 0.5
 """Time in s before a shape is a vehicle that has a rest beside it, or no straight drive: the pieces
 of a blob are soon joined. 34 public clips of 24 to 30 Hz, before a lone one was excepted: IDF1
 42.4, 44.0 and 43.3 at 8, 15 and 22 images."""
-_REACH, _REST = 0.5, 0.25
-"""Distance, of its size, within which the rest of a piece is; and least area of a rest, of its own.
-At a quarter and a half, or without both, 1 and 6 more pieces of a close scene are vehicles."""
+_REACH = 0.5
+"""Distance, of its size, within which the rest of a piece is."""
+_REST = 0.25
+"""Least area of a rest, of the piece's own. With a reach of a quarter and half the area, or without
+both, 1 and 6 more pieces of a close scene are vehicles."""
 _SURELY_DRIVES = 50.0
 """Evidence for a drive above which scores are ignored: false alarms side by side reach 35."""
 _STRAIGHT_ENOUGH = 7.0
