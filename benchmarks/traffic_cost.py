@@ -39,7 +39,7 @@ from vehicle_pf_tracker.scenes.roads import Carriageway, countryside
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 COUNTS = (10, 20, 50)
 """Vehicles at once: a road, a dual carriageway, a jam."""
@@ -149,7 +149,9 @@ def row(
 def ours(sequence: TrafficSequence, *, motion: bool) -> tuple[float, float]:
     """Return the mean time of a settled frame in ms, and the mean number of vehicles followed."""
     session = TrafficSession(
-        TrafficTracker(TrafficParameters()), MotionDetector if motion else None, frame_rate=30.0
+        MultiVehicleTracker(TrafficParameters()),
+        MotionDetector if motion else None,
+        frame_rate=30.0,
     )
     rows = sequence.detections["good"]
     seconds = []
@@ -167,7 +169,7 @@ def ours(sequence: TrafficSequence, *, motion: bool) -> tuple[float, float]:
 def flood(count: int, frames: int) -> float:
     """Return the mean time in ms of an image with so many boxes, a half of which drive."""
     rng = stream(0, "flood")
-    tracker = TrafficTracker(TrafficParameters())
+    tracker = MultiVehicleTracker(TrafficParameters())
     image = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
     driving = rng.uniform((0, 0, 8, 8), (WIDTH, HEIGHT, 40, 40), (count // 2, 4))
     seconds = []

@@ -29,7 +29,7 @@ from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments,
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 UNDER = 0.3
 """Least overlap of a track with the true box: moving shadows and neighbours widen blobs."""
@@ -69,7 +69,7 @@ def follow(clip: Path, parameters: TrafficParameters) -> list[np.ndarray]:
     video = cv2.VideoCapture(str(clip))
     rate = video.get(cv2.CAP_PROP_FPS)
     session = TrafficSession(
-        TrafficTracker(parameters), lambda: MotionDetector(parameters.seed), frame_rate=rate
+        MultiVehicleTracker(parameters), lambda: MotionDetector(parameters.seed), frame_rate=rate
     )
     found: list[Array] = []
     while True:

@@ -23,7 +23,7 @@ from vehicle_pf_tracker.evaluation.traffic.scoring import matches
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 
 def main() -> None:
@@ -44,7 +44,7 @@ def judged(sequence: TrafficSequence, source: str) -> Counter[str]:
     """Count the frames of totally hidden vehicles by what their tracks say of the occluder."""
     true = _occluders(sequence.folder / "gt" / "occluders.csv")
     given = sequence.detections[source]
-    session = TrafficSession(TrafficTracker(), frame_rate=sequence.frame_rate)
+    session = TrafficSession(MultiVehicleTracker(), frame_rate=sequence.frame_rate)
     names: dict[int, int] = {}
     counts: Counter[str] = Counter()
     for number, frame in enumerate(sequence.frames(), start=1):

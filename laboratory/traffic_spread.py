@@ -29,7 +29,7 @@ from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def follow(sequence: TrafficSequence, source: str, number: int) -> Array:
     """Return the tracks (frame, identity, left, top, width, height) of run `number`."""
     parameters = TrafficParameters(seed=number)
     session = TrafficSession(
-        TrafficTracker(parameters),
+        MultiVehicleTracker(parameters),
         (lambda: MotionDetector(number)) if source == MOTION else None,
         frame_rate=sequence.frame_rate,
     )

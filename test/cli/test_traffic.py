@@ -81,7 +81,7 @@ class Follower:
 @pytest.fixture(autouse=True)
 def _tracker(monkeypatch, request):
     if "real" not in request.fixturenames:
-        monkeypatch.setattr(counted_vehicles, "TrafficTracker", Follower)
+        monkeypatch.setattr(counted_vehicles, "MultiVehicleTracker", Follower)
 
 
 @pytest.fixture
@@ -354,7 +354,7 @@ def test_a_page_shows_picture_and_counts_meanwhile(run, monkeypatch, tmp_path, c
             get = build_opener(ProxyHandler({})).open
             answers.extend(get(url + name).read() for name in ("picture.jpg", "counts.json"))
 
-    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Watched)
+    monkeypatch.setattr(counted_vehicles, "MultiVehicleTracker", Watched)
     run("--serve", "--lines", tmp_path / "lines.yaml")
     wait_until = time.monotonic() + 30
     while len(answers) < 2 and time.monotonic() < wait_until:
@@ -391,7 +391,7 @@ def test_an_interrupt_keeps_what_was_written(run, monkeypatch, capsys):
                 os.kill(os.getpid(), signal.SIGINT)
             return super().step(frame, detections, elapsed)
 
-    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Interrupted)
+    monkeypatch.setattr(counted_vehicles, "MultiVehicleTracker", Interrupted)
     out = run(status=130)
     assert {row["frame"] for row in table(out / "tracks.csv")} == set("123456789")
     assert (out / "summary.png").exists()
@@ -409,7 +409,7 @@ def test_an_unexpected_error_costs_its_frame_alone(run, monkeypatch):
                 raise ZeroDivisionError("by zero")
             return super().step(frame, detections, elapsed)
 
-    monkeypatch.setattr(counted_vehicles, "TrafficTracker", Failing)
+    monkeypatch.setattr(counted_vehicles, "MultiVehicleTracker", Failing)
     out = run()
     frames = {int(row["frame"]) for row in table(out / "tracks.csv")}
     assert frames == {*range(1, 21)} - {9}

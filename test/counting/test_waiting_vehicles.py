@@ -25,7 +25,7 @@ from vehicle_pf_tracker.parameters.counting_plan import (
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker as Tracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 WIDTH, HEIGHT = 40.0, 24.0  # of the vehicle, px
 ALONG = 300.0  # row of its lower edge
@@ -242,7 +242,7 @@ def test_through_the_python_tracker(drive, tmp_path):
 @pytest.mark.parametrize("drive", DETECTED[:2])
 def test_through_a_session(drive, tmp_path):
     (tmp_path / "lines.yaml").write_text(PLAN)
-    session = TrafficSession(Tracker(TrafficParameters()), frame_rate=drive.rate)
+    session = TrafficSession(MultiVehicleTracker(TrafficParameters()), frame_rate=drive.rate)
     counter = Counter(read_counting_plan(tmp_path / "lines.yaml"))
     for index, (image, boxes) in enumerate(images(drive)):
         stamp_ns = 10**18 + round(index * 1e9 / drive.rate)

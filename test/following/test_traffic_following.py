@@ -20,7 +20,7 @@ from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.results.traffic_results import TrackFiles
 from vehicle_pf_tracker.trackers.attempts import TrackerError
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 PERIOD_NS = 40_000_000
 FRAME = np.random.default_rng(0).integers(90, 120, (240, 320, 3), np.uint8)
@@ -43,7 +43,7 @@ DRIVING = SimpleNamespace(of=driving, notices=[], misfit=lambda size: "")
 def follow():
     def call(stamps, *, unreadable=(), counter=None, targets=None, **options):
         counter = counter or Counter(CountingPlan())
-        run = TrafficRun(TrafficSession(TrafficTracker()), counter, **options)
+        run = TrafficRun(TrafficSession(MultiVehicleTracker()), counter, **options)
         table, mot = io.StringIO(), io.StringIO()
         files = TrackFiles(table, mot, None)
         run.follow_all(stamped(stamps, unreadable), files, targets=targets or {})
@@ -92,7 +92,7 @@ def test_a_recording_that_begins_again_counts_its_vehicles_again(follow):
 
 def test_a_name_stays_with_its_vehicle_when_the_tracker_starts_anew(follow, monkeypatch):
     targets = {"van": {2: Box(50, 50, 30, 20), 8: Box(60, 60, 30, 20)}}
-    monkeypatch.setattr(TrafficTracker, "step", failing(TrafficTracker.step, {3, 4}))
+    monkeypatch.setattr(MultiVehicleTracker, "step", failing(MultiVehicleTracker.step, {3, 4}))
     run, rows = follow([k * PERIOD_NS for k in range(10)], targets=targets)
     by_frame = {int(row.split(",")[0]): int(row.split(",")[2]) for row in rows}
     assert by_frame == {3: 1, 5: 2, 6: 2, 7: 2, 8: 2, 9: 3, 10: 3}
@@ -101,7 +101,7 @@ def test_a_name_stays_with_its_vehicle_when_the_tracker_starts_anew(follow, monk
 
 
 def test_a_broken_tracker_ends_the_run(follow, monkeypatch):
-    monkeypatch.setattr(TrafficTracker, "step", lambda *_: 1 / 0)
+    monkeypatch.setattr(MultiVehicleTracker, "step", lambda *_: 1 / 0)
     with pytest.raises(TrackerError, match="division by zero"):
         follow([0, PERIOD_NS])
 

@@ -15,7 +15,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.attempts import TrackerError
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 ANEW = f"the tracker failed twice in a row and has started anew: {ERROR}"
 
@@ -54,7 +54,7 @@ def tracking(street):
 @pytest.fixture
 def traffic():
     """Return a session of an image with a vehicle that was given by hand, and one that was not."""
-    of = TrafficSession(TrafficTracker())
+    of = TrafficSession(MultiVehicleTracker())
     of.feed(SCENE, PERIOD_NS)
     of.tracker.add(Box(8, 8, 20, 12))
     of.add(Box(60, 40, 30, 20), "van")
@@ -157,7 +157,7 @@ def test_a_detector_that_fails_is_made_anew():
                 raise ZeroDivisionError
             self.is_blind = True
 
-    of = TrafficSession(TrafficTracker(), Eye)
+    of = TrafficSession(MultiVehicleTracker(), Eye)
     failed, anew = outcomes(of, [SCENE] * 2, 0)
     assert isinstance(failed, TrackerError)
     assert (anew, Eye.made) == ((), 2)

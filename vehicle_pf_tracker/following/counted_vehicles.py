@@ -28,7 +28,7 @@ from vehicle_pf_tracker.showing.traffic_drawing import Trails, annotated
 from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 _LEARNING = "learning the background"
 """Said in motion's first second, in which there are no vehicles yet, however many drive."""
@@ -150,7 +150,7 @@ class _PacedMaker:
     """Makes detectors that look as often as the tracker's parameters say."""
 
     make: Callable[[], Detector]
-    tracker: TrafficTracker
+    tracker: MultiVehicleTracker
     run: Run
 
     def every(self) -> int:
@@ -187,7 +187,7 @@ def session_and_counter(
     plane = configuration.session.road.fixed_plane()
     plan = read_counting_plan(Path(parameters.lines)) if parameters.lines else CountingPlan()
     make = detector_maker(parameters.detector, progress)
-    tracker = TrafficTracker(parameters, plane)
+    tracker = MultiVehicleTracker(parameters, plane)
     session = TrafficSession(
         tracker,
         _PacedMaker(make, tracker, run) if make else None,

@@ -16,7 +16,7 @@ from tracker_rig import diagnostics_of, ended_by_failures, overrides, values_of
 from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, lanes
 
 from vehicle_pf_tracker.showing.live_page import LivePage
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 pytestmark = pytest.mark.ros
 
@@ -29,7 +29,7 @@ def test_two_errors_in_a_row_start_anew_with_the_target_given_by_hand(bench, mon
     rig = TrafficRig(bench, [*target, *overrides(detector__kind="none")])
     frames = lanes(FIRST + COUNT)[FIRST:]
     rig.play(frames[:8])
-    monkeypatch.setattr(TrafficTracker, "step", failing(TrafficTracker.step, {0, 1}))
+    monkeypatch.setattr(MultiVehicleTracker, "step", failing(MultiVehicleTracker.step, {0, 1}))
     answers = rig.play(frames[8:], 8)
     assert [one.status[0].message for one in answers] == ["REJECTED"] + ["TRACKING"] * 7
     failed, anew, *after = map(values_of, answers)
@@ -46,8 +46,8 @@ def test_two_errors_in_a_row_start_anew_with_the_target_given_by_hand(bench, mon
 
 def test_a_broken_tracker_ends_its_node(bench, start_process):
     code = (
-        "from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker\n"
-        "TrafficTracker.step = lambda *_: 1 / 0\n"
+        "from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker\n"
+        "MultiVehicleTracker.step = lambda *_: 1 / 0\n"
         "from vehicle_pf_tracker.ros.executables import main\n"
         "raise SystemExit(main('traffic', []))"
     )

@@ -39,7 +39,7 @@ from vehicle_pf_tracker.ros.traffic.messages import CODES
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 pytestmark = pytest.mark.ros
 
@@ -55,7 +55,7 @@ def rig(bench):
 def offline(frames):
     """What the session says of the same frames without ROS."""
     parameters = TRAFFIC.parameters()
-    session = TrafficSession(TrafficTracker(parameters), detector_maker(parameters.detector))
+    session = TrafficSession(MultiVehicleTracker(parameters), detector_maker(parameters.detector))
     return [session.feed(frame, i * PERIOD_NS + 10**9) for i, frame in enumerate(frames)]
 
 

@@ -23,7 +23,7 @@ from vehicle_pf_tracker.trackers.traffic.existence import (
 from vehicle_pf_tracker.trackers.traffic.identity import resumed
 from vehicle_pf_tracker.trackers.traffic.prediction import driven
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 SIZE = (320, 240)
 SCORE = 1.0
@@ -74,7 +74,7 @@ def reported_from(*, are_shapes, rate=30.0, shake=0.0, beside=()):
 
     Another box drives with it, of the offset and size `beside`.
     """
-    tracker = TrafficTracker()
+    tracker = MultiVehicleTracker()
     tracker.frame_period = 1 / rate
     frame = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
     for index in range(30):

@@ -10,7 +10,7 @@ import pytest
 
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.parameters import IGNORE, TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 GROUND = np.random.default_rng(0).integers(90, 130, (240, 640, 3)).astype(np.uint8)
 IGNORED = TrafficParameters()
@@ -19,7 +19,7 @@ IGNORED = replace(IGNORED, birth=replace(IGNORED.birth, standing=IGNORE))
 
 def reported(score, *, stands=0, drives=0.0, parameters=None, shape=False, images=240, seed=None):
     """Images until a vehicle that stands for so many, then drives so many px each, is reported."""
-    tracker, rng = TrafficTracker(parameters), np.random.default_rng(seed)
+    tracker, rng = MultiVehicleTracker(parameters), np.random.default_rng(seed)
     for index in range(images):
         left = 60 + drives * max(index - stands, 0)
         if left > 590:
@@ -62,7 +62,7 @@ def test_who_counts_only_what_moves_may_ignore_what_stands():
 
 def test_what_a_detector_is_sure_of_where_nothing_ever_drove_is_not_reported_for_long():
     """A stall of a fair, say: its score is high, but so were those of all that ended there."""
-    tracker, rng = TrafficTracker(), np.random.default_rng(0)
+    tracker, rng = MultiVehicleTracker(), np.random.default_rng(0)
     for _ in range(600):
         boxes = [(*rng.uniform((0, 0), (600, 60)), 40, 30)]  # anywhere above the road
         tracker.step(GROUND, Detections.make(boxes, [rng.uniform(0.6, 0.85)]))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 WIDTH, HEIGHT, FRAMES = 400, 240, 90
 SIGN = (180, 70, 34, 100)
@@ -69,7 +69,7 @@ def images():
 
 
 def said():
-    tracker, every = TrafficTracker(), {}
+    tracker, every = MultiVehicleTracker(), {}
     for index, (frame, detections) in enumerate(images()):
         estimates = tracker.step(frame, detections)
         if index in (30, 55, 85):

@@ -17,7 +17,7 @@ from vehicle_pf_tracker.road.poses import Pose
 from vehicle_pf_tracker.trackers.traffic.horizon import calibrated_row
 from vehicle_pf_tracker.trackers.traffic.occlusion import nearest_first
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 SIZE = (640, 480)
 LENS = Lens((800.0, 800.0), (319.5, 239.5))
@@ -59,7 +59,9 @@ def test_the_order_in_depth_is_that_on_the_road():
 def predicted_error(is_calibrated, identity=2, seen=30, hidden=20):
     """Distance from the truth, in widths, of a box that was predicted through hidden frames."""
     scene = make_traffic_scene("traffic-overtaking")
-    tracker = TrafficTracker(TrafficParameters(pixels=False), scene.road if is_calibrated else None)
+    tracker = MultiVehicleTracker(
+        TrafficParameters(pixels=False), scene.road if is_calibrated else None
+    )
     frame = np.zeros((scene.height, scene.width, 3), np.uint8)
     truth = Box(0, 0, 1, 1)
     for index in range(100, 100 + seen + hidden):

@@ -15,7 +15,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Gaussians
 
 GROUND = np.random.default_rng(0).integers(90, 130, (240, 320, 3)).astype(np.uint8)
@@ -42,7 +42,7 @@ def drive(tracker, frames, seen=lambda index: True, right=lambda index: 20 + 4 *
 
 
 def test_a_vehicle_is_tentative_without_a_number_then_followed_under_one():
-    every = drive(TrafficTracker(FLAT), 40)
+    every = drive(MultiVehicleTracker(FLAT), 40)
     every = [estimates for estimates in every if estimates]
     for (one,) in every:
         assert one.identity == (one.mode is not TrackMode.TENTATIVE)
@@ -55,16 +55,18 @@ def test_a_vehicle_is_tentative_without_a_number_then_followed_under_one():
 
 
 def test_pixels_hold_a_vehicle_that_the_detector_misses():
-    every = drive(TrafficTracker(FLAT), 55, seen=lambda index: index < 30 or index > 45)
+    every = drive(MultiVehicleTracker(FLAT), 55, seen=lambda index: index < 30 or index > 45)
     held = [estimates[0] for estimates in every[31:45]]
     assert {one.mode for one in held} == {TrackMode.TRACKING}
     assert held[-1].box.centre[0] == pytest.approx(20 + 4 * 44 + 20, abs=3)
-    alone = drive(TrafficTracker(replace(FLAT, pixels=False)), 40, seen=lambda index: index < 30)
+    alone = drive(
+        MultiVehicleTracker(replace(FLAT, pixels=False)), 40, seen=lambda index: index < 30
+    )
     assert alone[-1][0].mode is TrackMode.OCCLUDED
 
 
 def test_a_vehicle_behind_something_is_occluded_and_comes_back_under_its_number():
-    tracker = TrafficTracker(FLAT)
+    tracker = MultiVehicleTracker(FLAT)
     wall = slice(130, 190)
     numbers, modes = [], []
     for index in range(60):
@@ -85,7 +87,7 @@ def test_a_vehicle_behind_something_is_occluded_and_comes_back_under_its_number(
 
 @pytest.mark.parametrize("shift", [(10, 8), (0, 28)])
 def test_a_vehicle_with_two_boxes_has_one_number_and_two_vehicles_have_two(shift):
-    tracker = TrafficTracker(FLAT)
+    tracker = MultiVehicleTracker(FLAT)
     for index in range(40):
         boxes = [(20 + 4 * index + dx, 100 + dy, 40, 30) for dx, dy in ((0, 0), shift)]
         estimates = tracker.step(scene(*boxes), Detections.make(boxes))
@@ -94,7 +96,7 @@ def test_a_vehicle_with_two_boxes_has_one_number_and_two_vehicles_have_two(shift
 
 
 def test_two_boxes_that_drive_as_one_and_part_later_have_two_numbers():
-    tracker = TrafficTracker(FLAT)
+    tracker = MultiVehicleTracker(FLAT)
     for index in range(60):
         behind = max(0, index - 30)  # the second one brakes
         boxes = [(20 + 4 * index, 100, 40, 30), (30 + 4 * index - 2 * behind, 108, 40, 30)]
@@ -106,7 +108,7 @@ def test_two_boxes_that_drive_as_one_and_part_later_have_two_numbers():
 
 
 def test_a_vehicle_that_leaves_is_lost_and_the_border_hides_it():
-    tracker = TrafficTracker(replace(FLAT, pixels=False))
+    tracker = MultiVehicleTracker(replace(FLAT, pixels=False))
     left, modes = -20, []
     for index in range(65):
         place = 200 - 4 * index
@@ -119,7 +121,7 @@ def test_a_vehicle_that_leaves_is_lost_and_the_border_hides_it():
 
 
 def test_a_hidden_vehicle_is_lost_and_forgotten_by_seconds():
-    tracker = TrafficTracker(replace(FLAT, lost_after=0.2, forgotten_after=0.2))
+    tracker = MultiVehicleTracker(replace(FLAT, lost_after=0.2, forgotten_after=0.2))
     drive(tracker, 30)
     modes = [
         [one.mode for one in tracker.step(np.full_like(GROUND, 60), Detections.none())]
@@ -133,7 +135,7 @@ def test_a_hidden_vehicle_is_lost_and_forgotten_by_seconds():
 def test_a_detection_that_stays_where_it_is_and_flickers_is_seldom_a_vehicle():
     confirmed = []
     for seed in range(20):
-        tracker, rng = TrafficTracker(FLAT), np.random.default_rng(seed)
+        tracker, rng = MultiVehicleTracker(FLAT), np.random.default_rng(seed)
         for index in range(100):
             where = np.append(60 + rng.normal(0, 2, 2), (12, 9))
             detections = Detections.make([where]) if index % 3 else Detections.none()
@@ -143,19 +145,19 @@ def test_a_detection_that_stays_where_it_is_and_flickers_is_seldom_a_vehicle():
 
 
 def test_runs_repeat_bit_by_bit():
-    first, second = (drive(TrafficTracker(), 40, seen=lambda i: i % 7 != 0) for _ in range(2))
+    first, second = (drive(MultiVehicleTracker(), 40, seen=lambda i: i % 7 != 0) for _ in range(2))
     assert repr(first) == repr(second)
 
 
 def test_estimates_of_two_runs_are_equal_without_a_score_too():
-    first = drive(TrafficTracker(FLAT), 40, seen=lambda index: index < 35)
-    second = drive(TrafficTracker(FLAT), 40, seen=lambda index: index < 35)
+    first = drive(MultiVehicleTracker(FLAT), 40, seen=lambda index: index < 35)
+    second = drive(MultiVehicleTracker(FLAT), 40, seen=lambda index: index < 35)
     assert first[-1][0].score != first[-1][0].score  # NaN: nobody has seen it
     assert first == second
 
 
 def test_a_vehicle_given_by_hand_that_a_detector_sees_ends_like_others():
-    tracker = TrafficTracker(FLAT)
+    tracker = MultiVehicleTracker(FLAT)
     tracker.step(scene((20, 100, 40, 30)))
     tracker.add(Box(20, 100, 40, 30))
     every = drive(tracker, 75, right=lambda index: min(20 + 4 * index, 280))  # part of it has left
@@ -167,7 +169,7 @@ def test_a_vehicle_given_by_hand_that_a_detector_sees_ends_like_others():
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -1.0])
 def test_a_vehicle_of_a_bad_state_is_dropped_counted_and_the_others_go_on(monkeypatch, value):
-    tracker = TrafficTracker(FLAT)
+    tracker = MultiVehicleTracker(FLAT)
     boxes = [(40, 60, 40, 30), (200, 160, 40, 30)]
     tracker.step(scene(*boxes))
     for box in boxes:
@@ -187,7 +189,7 @@ def test_a_vehicle_of_a_bad_state_is_dropped_counted_and_the_others_go_on(monkey
 
 
 def test_vehicles_given_by_hand_need_no_detector():
-    tracker = TrafficTracker(FLAT)
+    tracker = MultiVehicleTracker(FLAT)
     with pytest.raises(RuntimeError, match="frame"):
         tracker.add(Box(20, 100, 40, 30))
     tracker.step(scene((20, 100, 40, 30)))
@@ -203,7 +205,7 @@ def test_vehicles_given_by_hand_need_no_detector():
 
 
 def test_numbers_go_on_after_a_reset_and_parameters_change_without_a_loss():
-    tracker = TrafficTracker(FLAT)
+    tracker = MultiVehicleTracker(FLAT)
     drive(tracker, 20)
     tracker.reconfigure(replace(FLAT, seed=7, num_particles=20))
     assert tracker.seed == 7
@@ -213,7 +215,7 @@ def test_numbers_go_on_after_a_reset_and_parameters_change_without_a_loss():
 
 
 def test_another_size_of_image_and_none_of_its_boxes_end_nothing():
-    tracker = TrafficTracker(FLAT)
+    tracker = MultiVehicleTracker(FLAT)
     drive(tracker, 20)
     tracker.step(np.zeros((120, 160, 3), np.uint8), Detections.none())
     with pytest.raises(InputError):
@@ -227,7 +229,7 @@ def test_another_size_of_image_and_none_of_its_boxes_end_nothing():
     )
 )
 def test_no_detection_breaks_it(rows):
-    tracker = TrafficTracker()
+    tracker = MultiVehicleTracker()
     array = np.array(rows, dtype=float).reshape(-1, 5)
     for _ in range(3):
         for one in tracker.step(GROUND, Detections.make(array[:, :4], array[:, 4])):
@@ -247,7 +249,7 @@ def test_usable_detections_are_few_finite_distinct_and_in_the_image():
 
 
 def test_a_vehicle_given_by_hand_is_not_refuted_by_a_detector_that_does_not_see_it():
-    tracker = TrafficTracker(FLAT)
+    tracker = MultiVehicleTracker(FLAT)
     parked = (200, 100, 40, 30)
     tracker.step(scene(parked), Detections.none())
     number = tracker.add(Box(*parked))
@@ -258,7 +260,7 @@ def test_a_vehicle_given_by_hand_is_not_refuted_by_a_detector_that_does_not_see_
 
 def test_a_reset_leaves_nothing_of_what_was_learnt():
     """Else a restart after a bad state could fail at once."""
-    worn, new = TrafficTracker(FLAT), TrafficTracker(FLAT)
+    worn, new = MultiVehicleTracker(FLAT), MultiVehicleTracker(FLAT)
     drive(worn, 40, seen=lambda index: index % 5 > 0)
     worn.reset()
     first = drive(new, 30, seen=lambda index: index % 3 > 0)
@@ -272,7 +274,7 @@ def test_a_reset_leaves_nothing_of_what_was_learnt():
 
 
 def test_vehicles_can_be_added_as_soon_as_all_was_reset():
-    tracker = TrafficTracker(FLAT)
+    tracker = MultiVehicleTracker(FLAT)
     drive(tracker, 20)
     tracker.reset()
     number = tracker.add(Box(96, 100, 40, 30))

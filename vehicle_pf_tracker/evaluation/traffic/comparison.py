@@ -37,14 +37,14 @@ from vehicle_pf_tracker.results.run_folder import versions
 from vehicle_pf_tracker.results.traffic_results import IN_TRACKS
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 OURS = "traffic"
 """Name of our system among the others."""
 MOTION = "motion"
 """Source of detections: the embedded detector, whose boxes the baselines get too."""
 
-Maker = Callable[[TrafficParameters], TrafficTracker]
+Maker = Callable[[TrafficParameters], MultiVehicleTracker]
 Case = tuple[TrafficSequence, str]
 """A scene with truth, and a key of its detections or `MOTION`."""
 
@@ -100,7 +100,7 @@ def compare(
     seeds: Sequence[int],
     *,
     baselines: Sequence[str] = tuple(TRAFFIC_BASELINES),
-    make: Maker = TrafficTracker,
+    make: Maker = MultiVehicleTracker,
     on_progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Iterator[TrafficResult]:
     """Run all systems on all cases, one after the other.
@@ -178,7 +178,7 @@ class _Recorder(MotionDetector):
 def follow(
     case: Case,
     parameters: TrafficParameters,
-    make: Maker = TrafficTracker,
+    make: Maker = MultiVehicleTracker,
     lines: LineCounts | None = None,
 ) -> tuple[Array, Array, float]:
     """Follow all vehicles of a case with the tracker, and count them at `lines` on the way.

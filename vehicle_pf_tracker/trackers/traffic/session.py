@@ -24,7 +24,7 @@ from vehicle_pf_tracker.parameters.counting_plan import Region
 from vehicle_pf_tracker.trackers.attempts import Attempts
 from vehicle_pf_tracker.trackers.image_stream import ImageStream, Turn
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
-from vehicle_pf_tracker.trackers.traffic.tracker import TrafficTracker
+from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 _DISTURBED = (
     "most of the image changed at once: the camera moves, or the light was switched; nothing is "
@@ -69,7 +69,7 @@ class TrafficSession:
 
     Parameters
     ----------
-    tracker : TrafficTracker
+    tracker : MultiVehicleTracker
         Follows the vehicles.
     make_detector : callable or None
         Makes a detector, at the beginning and whenever the stream begins anew; None where
@@ -89,7 +89,7 @@ class TrafficSession:
         The detector in use.
     found : DetectionTotals
         Totals of what was detected.
-    tracker : TrafficTracker
+    tracker : MultiVehicleTracker
         As given.
     restarts : int
         Times that all vehicles were discarded, so that whoever counts knows.
@@ -99,7 +99,7 @@ class TrafficSession:
 
     def __init__(
         self,
-        tracker: TrafficTracker,
+        tracker: MultiVehicleTracker,
         make_detector: Callable[[], Detector] | None = None,
         *,
         frame_rate: float = 0.0,
@@ -140,7 +140,7 @@ class TrafficSession:
         return self.found.latest
 
     def add(self, box: Box, label: str = "") -> int:
-        """Follow the vehicle in `box` of the last image; see `TrafficTracker.add`."""
+        """Follow the vehicle in `box` of the last image; see `MultiVehicleTracker.add`."""
         identity = self.tracker.add(box, label)
         self._given[identity] = box, label
         return identity

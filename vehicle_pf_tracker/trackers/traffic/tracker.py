@@ -32,7 +32,7 @@ from vehicle_pf_tracker.trackers.traffic.state import Experience, State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import no_tracks
 
 
-class TrafficTracker:
+class MultiVehicleTracker:
     """Follow all vehicles of a stream of images.
 
     The same images, detections, parameters and seed give bit-identical estimates.
