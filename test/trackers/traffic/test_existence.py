@@ -13,11 +13,11 @@ from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import birth_odds
 from vehicle_pf_tracker.trackers.traffic.candidates import weighed
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, PLACES
+from vehicle_pf_tracker.trackers.traffic.ending import end
 from vehicle_pf_tracker.trackers.traffic.existence import (
     CERTAIN,
     believed,
     doubt,
-    end,
     fits_of_known,
 )
 from vehicle_pf_tracker.trackers.traffic.identity import resumed

@@ -12,12 +12,11 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
-from vehicle_pf_tracker.core.overlaps import areas, inside_image
+from vehicle_pf_tracker.core.overlaps import areas
 from vehicle_pf_tracker.trackers.traffic.box_edges import INWARD
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, places_of
 from vehicle_pf_tracker.trackers.traffic.parameters import IGNORE
-from vehicle_pf_tracker.trackers.traffic.returns import Returns
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
@@ -27,7 +26,7 @@ CERTAIN = 7.0
 missed detections in plain sight speak against it."""
 _MOST = 3.0
 """Log odds, one in twenty, that one detection adds at most by its score, and by where it is: no
-single one proves a vehicle. As much against it refutes one."""
+single one proves a vehicle."""
 _SCORE_DOUBT = 0.5
 """Log odds that one score takes off at most, so that a detector which knows little about a vehicle
 does not hide it for ever; and that are taken off each, in confirming by scores alone."""
@@ -70,16 +69,6 @@ _BLIND_FOR = 150.0
 """Nominal periods after which an undetected vehicle is doubted even so: 5 s at 30 Hz. A choice."""
 _SEEN_WITHIN = 2.0
 """Nominal periods within which a vehicle counts as seen: one frame may fail."""
-_LEAVES = 0.5
-"""Share in the image below which an unseen vehicle has left it: most of it is outside."""
-_LEFT = 0.1
-"""Share in the image below which a vehicle is forgotten: none of it will be seen."""
-_RETURNS = 0.5
-"""Share of what vanished in a place that was seen again, below which it is gone: even odds."""
-_DRIVE_MATCHES = 4
-"""Detections of a track below which its way tells no drive: fewer lie on a line by chance."""
-_PATIENCE = 4
-"""Detections that a tentative track may expect to have missed in a row before it is given up."""
 
 
 def fits_of_known(tracks: Tracks, fits: Array) -> Array:
@@ -285,68 +274,3 @@ def doubt(state: State, step: Step) -> State:
     beliefs = replace(tracks.beliefs, log_odds=tracks.beliefs.log_odds - taken)
     sights = replace(sights, absences=replace(absences, missed=count, vanished=vanished))
     return state._replace(tracks=replace(tracks, beliefs=beliefs, sights=sights))
-
-
-def end(state: State, step: Step) -> State:
-    """End tracks that are no vehicles, or have left; the horizon is learnt from the others."""
-    tracks = state.tracks
-    experience = state.experience
-    inside = inside_image(tracks.edges, step.size)  # now: corrections and holds moved the boxes
-    goes_on = _goes_on(tracks, inside, experience, step)
-    gone = _gone(tracks, inside, goes_on, experience)
-    tracks = _with_lost(tracks, gone, step)
-    if goes_on.all():
-        return state._replace(tracks=tracks)
-    # What drove may have been a vehicle, and tells nothing about its detections.
-    never_drove = tracks.beliefs.ways.matches < _DRIVE_MATCHES
-    never_drove |= ~drives(tracks, step.parameters.birth.displacement)
-    for row in np.flatnonzero(~goes_on & ~tracks.confirmed & never_drove).tolist():
-        experience.detections.learn(tracks.beliefs.samples[row], False)
-    ended = tracks.drives.growths.take(tracks.confirmed & ~goes_on)
-    horizon = state.horizon.learnt(ended, step.size[1])
-    return state._replace(tracks=tracks.take(goes_on), horizon=horizon)
-
-
-def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) -> Bools:
-    """Find tracks that go on, by the shares (N,) of their boxes in the image."""
-    absences = tracks.sights.absences
-    log_odds = tracks.beliefs.log_odds
-    parameters = step.parameters
-    waits = absences.undetected <= _PATIENCE / experience.rate.share
-    tentative = waits & (log_odds >= -CERTAIN) & (inside > 0)  # no memory of one that left
-    longest = parameters.lost_after + parameters.forgotten_after  # predicted, then kept in mind
-    known = (inside >= _LEFT) & (log_odds >= -_MOST)
-    known &= absences.unseen * step.period <= longest
-    return np.where(tracks.confirmed, known, tentative)
-
-
-def _gone(tracks: Tracks, inside: Array, goes_on: Bools, experience: Experience) -> Bools:
-    """Find vehicles that vanished where most do not come back; learn from those that end."""
-    vanished = tracks.sights.absences.vanished
-    shortened = tracks.drives.extents.shortened
-    ends = tracks.confirmed & ~goes_on & (inside > _LEFT)
-    gone = np.zeros(len(tracks), np.bool_)
-    for row in np.flatnonzero((vanished != NOWHERE) | ends).tolist():
-        place = int(vanished[row])
-        if place != NOWHERE:
-            gone[row] = experience.reappearances.share(place) < _RETURNS
-        if ends[row]:
-            _note_end(experience.reappearances, place)
-            _note_end(experience.uncoverings, int(shortened[row]))
-    return gone
-
-
-def _note_end(returns: Returns, place: int) -> None:
-    if place != NOWHERE:
-        returns.learn(place, found=False)
-
-
-def _with_lost(tracks: Tracks, gone: Bools, step: Step) -> Tracks:
-    """Say of which vehicles nothing is predicted any more."""
-    sights = tracks.sights
-    absences = tracks.sights.absences
-    is_old = absences.unseen * step.period > step.parameters.lost_after
-    has_left = (sights.inside < _LEAVES) & (absences.unseen >= _SEEN_WITHIN)
-    lost = is_old | has_left | gone | (tracks.beliefs.log_odds < 0)
-    sights = replace(sights, absences=replace(absences, lost=lost))
-    return replace(tracks, sights=sights)

@@ -18,8 +18,8 @@ from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.base import drawn_seed
 from vehicle_pf_tracker.trackers.traffic.births import begun_in
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
+from vehicle_pf_tracker.trackers.traffic.ending import end
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
-from vehicle_pf_tracker.trackers.traffic.existence import end
 from vehicle_pf_tracker.trackers.traffic.identity import given
 from vehicle_pf_tracker.trackers.traffic.looking import look
 from vehicle_pf_tracker.trackers.traffic.occlusion import hide

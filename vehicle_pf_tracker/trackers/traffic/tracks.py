@@ -175,7 +175,7 @@ class Absences(Rows):
         count = len(self)
         none = np.full(count, NOWHERE)
         zero = np.zeros(count)
-        # `lost` stays: `existence.end` judges it anew in every frame.
+        # `lost` stays: `ending.end` judges it anew in every frame.
         return Absences(zero, zero, np.zeros(count, np.intp), none, self.lost)
 
 

@@ -1,0 +1,104 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""End of tracks that are no vehicles, or have left, and loss of those that nothing predicts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.overlaps import inside_image
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE
+from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN, drives
+from vehicle_pf_tracker.trackers.traffic.returns import Returns
+from vehicle_pf_tracker.trackers.traffic.rows import Bools
+from vehicle_pf_tracker.trackers.traffic.state import Experience, State, Step
+from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
+
+_REFUTED = -3.0
+"""Log odds, one in twenty, below which a vehicle ends: as much against it as the surest detection
+tells for it."""
+_UNSEEN_FROM = 2.0
+"""Nominal periods without a sight from which a vehicle has left: one frame may fail."""
+_LEAVES = 0.5
+"""Share in the image below which an unseen vehicle has left it: most of it is outside."""
+_LEFT = 0.1
+"""Share in the image below which a vehicle is forgotten: none of it will be seen."""
+_RETURNS = 0.5
+"""Share of what vanished in a place that was seen again, below which it is gone: even odds."""
+_DRIVE_MATCHES = 4
+"""Detections of a track below which its way tells no drive: fewer lie on a line by chance."""
+_PATIENCE = 4
+"""Detections that a tentative track may expect to have missed in a row before it is given up."""
+
+
+def end(state: State, step: Step) -> State:
+    """End tracks that are no vehicles, or have left; the horizon is learnt from the others."""
+    tracks = state.tracks
+    experience = state.experience
+    # 1. Shares in the image are taken anew: corrections and holds have moved the boxes.
+    inside = inside_image(tracks.edges, step.size)
+    goes_on = _goes_on(tracks, inside, experience, step)
+    # 2. What came back where a vehicle vanished tells whether it is gone; those that end teach it.
+    gone = _gone(tracks, inside, goes_on, experience)
+    tracks = _with_lost(tracks, gone, step)
+    if goes_on.all():
+        return state._replace(tracks=tracks)
+    # 3. Tentative tracks that end were false alarms, and teach how such look. What drove may have
+    # been a vehicle, and tells nothing about its detections.
+    never_drove = tracks.beliefs.ways.matches < _DRIVE_MATCHES
+    never_drove |= ~drives(tracks, step.parameters.birth.displacement)
+    for row in np.flatnonzero(~goes_on & ~tracks.confirmed & never_drove).tolist():
+        experience.detections.learn(tracks.beliefs.samples[row], False)
+    # 4. Vehicles teach the horizon once each, when all of their growth is known.
+    ended = tracks.drives.growths.take(tracks.confirmed & ~goes_on)
+    horizon = state.horizon.learnt(ended, step.size[1])
+    return state._replace(tracks=tracks.take(goes_on), horizon=horizon)
+
+
+def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) -> Bools:
+    """Find tracks that go on, by the shares (N,) of their boxes in the image."""
+    absences = tracks.sights.absences
+    log_odds = tracks.beliefs.log_odds
+    parameters = step.parameters
+    waits = absences.undetected <= _PATIENCE / experience.rate.share
+    tentative = waits & (log_odds >= -CERTAIN) & (inside > 0)  # no memory of one that left
+    longest = parameters.lost_after + parameters.forgotten_after  # predicted, then kept in mind
+    known = (inside >= _LEFT) & (log_odds >= _REFUTED)
+    known &= absences.unseen * step.period <= longest
+    return np.where(tracks.confirmed, known, tentative)
+
+
+def _gone(tracks: Tracks, inside: Array, goes_on: Bools, experience: Experience) -> Bools:
+    """Find vehicles that vanished where most do not come back; learn from those that end."""
+    vanished = tracks.sights.absences.vanished
+    shortened = tracks.drives.extents.shortened
+    ends = tracks.confirmed & ~goes_on & (inside > _LEFT)
+    gone = np.zeros(len(tracks), np.bool_)
+    for row in np.flatnonzero((vanished != NOWHERE) | ends).tolist():
+        place = int(vanished[row])
+        if place != NOWHERE:
+            gone[row] = experience.reappearances.share(place) < _RETURNS
+        if ends[row]:
+            _note_end(experience.reappearances, place)
+            _note_end(experience.uncoverings, int(shortened[row]))
+    return gone
+
+
+def _note_end(returns: Returns, place: int) -> None:
+    if place != NOWHERE:
+        returns.learn(place, found=False)
+
+
+def _with_lost(tracks: Tracks, gone: Bools, step: Step) -> Tracks:
+    """Say of which vehicles nothing is predicted any more."""
+    sights = tracks.sights
+    absences = tracks.sights.absences
+    is_old = absences.unseen * step.period > step.parameters.lost_after
+    has_left = (sights.inside < _LEAVES) & (absences.unseen >= _UNSEEN_FROM)
+    lost = is_old | has_left | gone | (tracks.beliefs.log_odds < 0)
+    sights = replace(sights, absences=replace(absences, lost=lost))
+    return replace(tracks, sights=sights)
