@@ -30,7 +30,7 @@ from laboratory.scenes.traffic_scene import TrafficScene
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.motion_detector import MotionDetector
-from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.lane_traffic import any_car

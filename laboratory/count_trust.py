@@ -32,7 +32,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.counting.count_signs import Sign
 from vehicle_pf_tracker.counting.trust import Trust
 from vehicle_pf_tracker.evaluation.tables import markdown
-from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION, follow
+from vehicle_pf_tracker.evaluation.traffic.case_run import MOTION_SOURCE, follow
 from vehicle_pf_tracker.evaluation.traffic.line_counts import LineCount, LineCounts
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.results.output_files import write_text
@@ -72,8 +72,8 @@ def main() -> int:
     clips = [clip for text in args.clips for clip in followed(text, store)]
     fits = []
     judged = []
-    for kind in ("boxes", MOTION):
-        own = [clip for clip in clips if (clip.boxes == MOTION) == (kind == MOTION)]
+    for kind in ("boxes", MOTION_SOURCE):
+        own = [clip for clip in clips if (clip.boxes == MOTION_SOURCE) == (kind == MOTION_SOURCE)]
         if own:
             fits.append([kind, *cells(fitted(own))])
             judged += judge(own)
@@ -114,7 +114,7 @@ def lines_of(sequence: TrafficSequence, boxes: str, store: ResultStore) -> list[
 def cut(sequence: TrafficSequence, boxes: str) -> tuple[TrafficSequence, str]:
     """Return a scene whose detections have scores from what the name says."""
     name, _, least = boxes.partition("@")
-    if name != MOTION and name not in sequence.detections:
+    if name != MOTION_SOURCE and name not in sequence.detections:
         raise InputError(f"{sequence.folder} has no det/{name}.txt")
     if not least:
         return sequence, name
@@ -258,8 +258,8 @@ def judged_rows(clips: Sequence[Clip]) -> Iterable[list[str]]:
         if any(one.is_judged for one in clip.lines):
             yield [clip.camera, clip.name, clip.boxes, *means(clip.lines)]
     for name, own in (
-        ("boxes", [clip for clip in clips if clip.boxes != MOTION]),
-        ("motion", [clip for clip in clips if clip.boxes == MOTION]),
+        ("boxes", [clip for clip in clips if clip.boxes != MOTION_SOURCE]),
+        ("motion", [clip for clip in clips if clip.boxes == MOTION_SOURCE]),
         ("all", clips),
     ):
         lines = [one for clip in own for one in clip.lines]

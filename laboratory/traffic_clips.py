@@ -24,7 +24,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.detection.motion_detector import MotionDetector
-from vehicle_pf_tracker.evaluation.traffic.scoring import overlaps
+from vehicle_pf_tracker.evaluation.traffic.box_matches import overlaps
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters

@@ -29,8 +29,8 @@ from laboratory.result_store import ResultStore
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.tables import NO_SCORE, markdown
-from vehicle_pf_tracker.evaluation.traffic.comparison import follow
-from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.case_run import follow
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.results.output_files import write_text
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters

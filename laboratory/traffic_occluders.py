@@ -19,7 +19,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.evaluation.traffic.scoring import matches
+from vehicle_pf_tracker.evaluation.traffic.box_matches import matches
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession

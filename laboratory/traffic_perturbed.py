@@ -19,8 +19,9 @@ from types import MappingProxyType
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.evaluation.traffic.comparison import compare, write_traffic_report
-from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.comparison import compare
+from vehicle_pf_tracker.evaluation.traffic.comparison_report import write_traffic_report
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from vehicle_pf_tracker.evaluation.traffic.scoring import TRAFFIC_BASELINES, TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.baselines import TRAFFIC_BASELINES, TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence, read_table
 
 COLUMNS = ("HOTA", "DetA", "AssA", "IDF1", "MOTA", "IDSW", "Frag", "FP", "FN")

@@ -23,8 +23,10 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.motion_detector import MotionDetector
-from vehicle_pf_tracker.evaluation.traffic.comparison import MOTION
-from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker, counts, kept_identities
+from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.case_run import MOTION_SOURCE
+from vehicle_pf_tracker.evaluation.traffic.identities import kept_identities
+from vehicle_pf_tracker.evaluation.traffic.middle_line import middle_crossings
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
@@ -59,7 +61,7 @@ def follow(sequence: TrafficSequence, source: str, number: int) -> Array:
     parameters = TrafficParameters(seed=number)
     session = TrafficSession(
         MultiVehicleTracker(parameters),
-        (lambda: MotionDetector(number)) if source == MOTION else None,
+        (lambda: MotionDetector(number)) if source == MOTION_SOURCE else None,
         frame_rate=sequence.frame_rate,
     )
     rows = []
@@ -67,7 +69,7 @@ def follow(sequence: TrafficSequence, source: str, number: int) -> Array:
         if frame <= number:
             continue
         given = None
-        if source != MOTION:
+        if source != MOTION_SOURCE:
             boxes = sequence.detections[source]
             now = boxes[boxes[:, 0] == frame]
             given = Detections.make(now[:, 1:5], now[:, 5])
@@ -86,7 +88,7 @@ def judged(worker: TrafficWorker, sequence: TrafficSequence, source: str, number
     seen = shortened(sequence, number + 1, sequence.frame_count)
     scores = worker.score(seen, tracks)
     kept, occlusions = kept_identities(seen, tracks)
-    counted, true = counts(seen, tracks)
+    counted, true = middle_crossings(seen, tracks)
     return Run(
         hota=scores["HOTA"],
         idf1=scores["IDF1"],
@@ -123,7 +125,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folders", nargs="+", type=Path, help="scenes in MOTChallenge's layout")
     parser.add_argument("--runs", type=int, default=6)
-    parser.add_argument("--source", default=MOTION, help="motion, or a file of det/ by name")
+    parser.add_argument("--source", default=MOTION_SOURCE, help="motion, or a file of det/ by name")
     parser.add_argument("--frames", type=int, help="only the first frames")
     args = parser.parse_args()
     print(HEAD)

@@ -21,7 +21,7 @@ from laboratory.scenes.traffic_perspective import road_file
 from laboratory.scenes.traffic_scene import TrafficScene, VehicleTruth, traffic
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.traffic.scoring import matches
+from vehicle_pf_tracker.evaluation.traffic.box_matches import matches
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 from vehicle_pf_tracker.parameters.road import parse_pairs
 from vehicle_pf_tracker.road.plane import RoadPlane

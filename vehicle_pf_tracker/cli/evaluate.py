@@ -95,14 +95,15 @@ def check(request: Request) -> None:
 
 def run_traffic(request: Request) -> int:
     """Run the comparison, write its report, and print its tables."""
-    from vehicle_pf_tracker.evaluation.traffic import comparison
-    from vehicle_pf_tracker.evaluation.traffic.scoring import TrafficWorker
+    from vehicle_pf_tracker.evaluation.traffic import comparison, comparison_report
+    from vehicle_pf_tracker.evaluation.traffic.baselines import TrafficWorker
+    from vehicle_pf_tracker.evaluation.traffic.case_run import MOTION_SOURCE
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
     from vehicle_pf_tracker.parameters.configuration import Configuration
     from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
     sequences = [read_sequence(Path(source)) for source in request.sources]
-    known = {comparison.MOTION, *(name for sequence in sequences for name in sequence.detections)}
+    known = {MOTION_SOURCE, *(name for sequence in sequences for name in sequence.detections)}
     only = request.detections
     sources = None if only is None else names_in(only, known, "a file of det/")
     cases = comparison.cases_of(sequences, sources)
@@ -120,10 +121,10 @@ def run_traffic(request: Request) -> int:
             "set": request.assignments,
             **worker.versions,
         }
-    tables = comparison.write_traffic_report(results, request.output, options)
+    tables = comparison_report.write_traffic_report(results, request.output, options)
     for title, table in tables.items():
         console.print_rows(*table, title)
-    print(f"the report is {request.output / comparison.NAME}.md")
+    print(f"the report is {request.output / comparison_report.NAME}.md")
     return 0
 
 

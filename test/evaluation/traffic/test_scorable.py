@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scored_scenes import scene
 
-from vehicle_pf_tracker.evaluation.traffic.scoring import matches, overlaps, scorable
+from vehicle_pf_tracker.evaluation.traffic.box_matches import matches, overlaps
+from vehicle_pf_tracker.evaluation.traffic.scorable import scorable
 
 
 def sequence(truth, hidden, ignored=()):

@@ -15,7 +15,7 @@ from scored_scenes import scene
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation import baseline_process as client
 from vehicle_pf_tracker.evaluation.baseline_process import DEFAULT, VARIABLE
-from vehicle_pf_tracker.evaluation.traffic.scoring import TRAFFIC_BASELINES, TrafficWorker
+from vehicle_pf_tracker.evaluation.traffic.baselines import TRAFFIC_BASELINES, TrafficWorker
 
 PYTHON = Path(sys.executable)
 FRAMES, SIZE = 30, (200, 120)

@@ -11,13 +11,9 @@ import pytest
 from laboratory.scenes import make_traffic_scene
 from laboratory.scenes.mot_folder import write_mot_folder
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.evaluation.traffic.comparison import (
-    MOTION,
-    cases_of,
-    compare,
-    follow,
-    write_traffic_report,
-)
+from vehicle_pf_tracker.evaluation.traffic.case_run import MOTION_SOURCE, follow
+from vehicle_pf_tracker.evaluation.traffic.comparison import cases_of, compare
+from vehicle_pf_tracker.evaluation.traffic.comparison_report import write_traffic_report
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
@@ -75,7 +71,7 @@ class Worker:
 
 
 def test_cases_are_all_sources_or_those_asked_for(sequence):
-    assert [source for _, source in cases_of([sequence])] == ["good", "misses", MOTION]
+    assert [source for _, source in cases_of([sequence])] == ["good", "misses", MOTION_SOURCE]
     assert cases_of([sequence], ["misses"]) == [(sequence, "misses")]
 
 
@@ -90,7 +86,7 @@ def test_tracked_and_occluded_vehicles_are_the_tracks(sequence):
 
 
 def test_the_tracker_runs_on_what_moves_and_passes_it_on(sequence):
-    (case,) = cases_of([sequence], [MOTION])
+    (case,) = cases_of([sequence], [MOTION_SOURCE])
     tracks, detections, _ = follow(case, TrafficParameters())
     assert tracks.shape[1:] == detections.shape[1:] == (6,)
     assert set(detections[:, 0]) <= set(range(1, 13))

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scored_scenes import scene
 
-from vehicle_pf_tracker.evaluation.traffic.scoring import counts, kept_identities
+from vehicle_pf_tracker.evaluation.traffic.identities import kept_identities
+from vehicle_pf_tracker.evaluation.traffic.middle_line import middle_crossings
 
 FRAMES = 100
 
@@ -62,18 +63,18 @@ def test_who_is_seen_for_too_short_before_is_not_judged():
 
 
 def test_crossings_of_the_middle_are_counted_once_per_identity():
-    assert counts(drive(), tracks((1, 100, 1))) == (1, 1)
-    assert counts(drive(), tracks((1, 40, 1))) == (0, 1)
+    assert middle_crossings(drive(), tracks((1, 100, 1))) == (1, 1)
+    assert middle_crossings(drive(), tracks((1, 40, 1))) == (0, 1)
     both = np.vstack([tracks((1, 100, 1)), tracks((1, 100, 2))])
-    assert counts(drive(), both) == (2, 1)
+    assert middle_crossings(drive(), both) == (2, 1)
 
 
 def test_who_crosses_in_the_first_two_seconds_is_not_counted():
-    assert counts(drive(size=(400, 100)), tracks((1, 100, 1))) == (0, 0)
+    assert middle_crossings(drive(size=(400, 100)), tracks((1, 100, 1))) == (0, 0)
 
 
 def test_traffic_that_goes_down_is_counted_at_a_level_line():
     turned = drive().truth[:, [0, 1, 3, 2, 5, 4]]
     down = scene(turned, (100, 600))
-    assert counts(down, turned) == (1, 1)
-    assert counts(down, tracks((1, 100, 1))) == (0, 1)
+    assert middle_crossings(down, turned) == (1, 1)
+    assert middle_crossings(down, tracks((1, 100, 1))) == (0, 1)

@@ -13,7 +13,7 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.counting.count_signs import Sign
 from vehicle_pf_tracker.counting.counter import Counter
-from vehicle_pf_tracker.evaluation.traffic.scoring import as_estimate
+from vehicle_pf_tracker.evaluation.traffic.middle_line import as_estimate
 from vehicle_pf_tracker.evaluation.traffic.sequence import EVERY_FRAME, TrafficSequence
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
