@@ -56,6 +56,21 @@ def test_a_folder_of_recordings_is_evaluated(bags, tmp_path, capsys):
     }
 
 
+def test_restarts_have_columns_of_their_own(bags, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert evaluate(out, bags, *QUICK) == 0
+    assert "With restarts" not in capsys.readouterr().out
+    assert "restarts" not in (out / "summary.md").read_text()
+    assert evaluate(out, bags, *QUICK, "--restart", "5") == 0
+    shown = capsys.readouterr().out
+    assert "With restarts after failure" in shown and "robustness" in shown
+    assert "With restarts after failure</th>" in (out / "report.html").read_text()
+    metrics = {line.split(",")[2] for line in (out / "summary.csv").read_text().splitlines()}
+    assert {"failures", "restart_accuracy", "restart_failures", "restart_robustness"} <= metrics
+    assert main(["evaluate", str(bags), "-o", str(out), "--traffic", "--restart", "5"]) == 2
+    assert evaluate(out, bags, "--restart", "0") == 2
+
+
 def test_an_rmse_beyond_the_limit_fails(bags, tmp_path, capsys):
     assert evaluate(tmp_path / "out", bags, *QUICK, "--max-rmse", "50") == 0
     assert evaluate(tmp_path / "out", bags, *QUICK, "--max-rmse", "0.01") == 1

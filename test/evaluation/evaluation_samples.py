@@ -90,7 +90,7 @@ def results(folder):
     found = {}
     for path in sorted(folder.rglob("*")):
         name = str(path.relative_to(folder))
-        if path.name == "estimates.csv":
+        if path.name in {"estimates.csv", "restarted.csv"}:
             rows = list(csv.DictReader(path.open()))
             found[name] = [{k: v for k, v in row.items() if k != "step_ms"} for row in rows]
         elif path.suffix == ".json":

@@ -22,6 +22,7 @@ from vehicle_pf_tracker.cli.requests import (
     TopicOption,
     names_in,
     option,
+    positive,
     switch,
 )
 from vehicle_pf_tracker.cli.system_options import (
@@ -49,6 +50,7 @@ _GRID_ONLY = (
     "figures",
     "part",
     "scheduler",
+    "restart",
 )
 """Options of the grid that do not apply."""
 
@@ -62,6 +64,11 @@ class Request(
     max_rmse: float | None = option(
         metavar="PX",
         help="end with status 1 if a system's RMSE, mean over seeds and then recordings, is larger",
+    )  # fmt: skip
+    restart: int | None = option(
+        type=positive, metavar="N",
+        help="run everything a second time with restarts from the truth N frames after a failure, "
+        "as the VOT challenge does (5); docs/scoring.md",
     )  # fmt: skip
     part: Part | None = option(
         type=Part.parse, metavar="K/N",
@@ -130,6 +137,14 @@ def run_traffic(request: Request) -> int:
 
 _SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "failures")
 """Metrics of the table on the terminal, few enough for its width."""
+_WITH_RESTARTS = (
+    "success_auc",
+    "failures",
+    "restart_accuracy",
+    "restart_failures",
+    "restart_robustness",
+)
+"""Metrics of a second table there, where there were restarts."""
 
 
 def run(request: Request) -> int:
@@ -153,7 +168,7 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
     seeds = request.some_seeds(SEEDS)
     command = list(request.command)
     part = request.part or ALL_CELLS
-    plan = Plan(dict(recordings), systems, seeds, command, request.max_diff, part)
+    plan = Plan(dict(recordings), systems, seeds, command, request.max_diff, part, request.restart)
     with console.counting("evaluated", "runs") as on_progress:
         complete(plan, request.output, runner_of(request), on_progress)
     if request.part is not None:
@@ -175,6 +190,9 @@ def _judge(written: Report, limit: float | None) -> int:
         console.tell_error("no system could run; the report says why")
         return 1
     console.print_rows(*overall_table(aggregates, _SHOWN).texts())
+    if any(found["restart_failures"] for found in aggregates.overall.values()):
+        title = "With restarts after failure, beside the two metrics without"
+        console.print_rows(*overall_table(aggregates, _WITH_RESTARTS).texts(), title)
     if failed:
         console.tell_error("not every run succeeded; the report says why")
     means = {label: found["rmse_px"] for label, found in aggregates.overall.items()}

@@ -138,9 +138,12 @@ def _checked_models(name: str, models: Mapping[str, Path]) -> dict[str, Path]:
 
 
 def baseline_rows(
-    baseline: Baseline, frames: Iterable[tuple[int, Frame | None]], first_truth: Truth
+    baseline: Baseline,
+    frames: Iterable[tuple[int, Frame | None]],
+    first_truth: Truth,
+    first: int = 1,
 ) -> Iterator[EstimateRow]:
-    """Track through (stamp in ns, frame) pairs, and give one row for each.
+    """Track through (stamp in ns, frame) pairs, numbered from `first`; give a row for each.
 
     The baseline starts on the first truth's box, in the first image that belongs to it by its
     stamp. Where it gives a frame up, the row is ``LOST`` at its last box. ``step_ms`` is the
@@ -153,7 +156,7 @@ def baseline_rows(
     """
     limit = max_diff_ns(PAIRED_WITHIN_S)
     started = False
-    for number, (stamp, frame) in enumerate(frames, start=1):
+    for number, (stamp, frame) in enumerate(frames, start=first):
         # An image that cannot be read goes to no tracker, as in a node.
         if frame is None:
             yield EstimateRow.without(number, stamp, REJECTED)

@@ -64,6 +64,7 @@ ERRORS = "Error of the centre"
 HIDDEN = "Total occlusions"
 CLAIMS = "Claims"
 RUN = "Run"
+RESTARTS = "With restarts after failure"
 
 # The fields of a row are those of `Column`, in its order.
 COLUMNS = (
@@ -105,6 +106,13 @@ COLUMNS = (
            "Times per run that the estimate came to have no overlap with a visible vehicle."),
     Column("step_ms_p50", RUN, "step", "ms", 2, False,
            "Median time of a step, measured while other cells of the grid may have run beside it."),
+    Column("restart_accuracy", RESTARTS, "accuracy", "", 3, True,
+           "Mean overlap of a second run, which starts anew from the truth after each failure; the "
+           "first 10 frames of each start are left out."),
+    Column("restart_failures", RESTARTS, "failures with restarts", "", 1, False,
+           "Failures of that run: frames without overlap with a visible vehicle."),
+    Column("restart_robustness", RESTARTS, "robustness", "", 3, True,
+           "Chance of no failure in 100 visible frames of that run."),
 )  # fmt: skip
 _BY_KEY = {column.key: column for column in COLUMNS}
 SUCCESS, PRECISION, RMSE, RECOVERED, STEP = (

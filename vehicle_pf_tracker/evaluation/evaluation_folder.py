@@ -8,6 +8,7 @@
     evaluation.json                                      the plan
     recordings/<recording>/truth.csv
     cells/<recording>/<system>/seed-<n>/estimates.csv    metrics.json and run.json; or
+    cells/<recording>/<system>/seed-<n>/restarted.csv    with --restart, beside them
     cells/<recording>/<system>/seed-<n>/failed.json      {"reason": a sentence}
 """
 
@@ -63,12 +64,17 @@ class Source:
     identity: int | None = None
 
 
+RESTART = "restart"
+"""Key, in the options of the plan and in a cell's `run.json`, of the frames from a failure to the
+next start."""
 PLAN = "evaluation.json"
 """File of what is evaluated, which is there before the first result."""
 CELLS_FOLDER = "cells"
 """Folder of the results, with a folder of a run for each recording, system and seed."""
 FAILED = "failed.json"
 """File in the folder of a run that failed, with the reason."""
+RESTARTED = "restarted.csv"
+"""File of the estimates with restarts after failure, in the columns of `estimates.csv`."""
 RECORDINGS_FOLDER = "recordings"
 """Folder of what the report needs of each recording, so that it can be written again without
 it."""
@@ -177,6 +183,21 @@ class EvaluationFolder:
         if not (folder / ESTIMATES).is_file():
             raise InputError("it was not run")
         return read_estimates(folder / ESTIMATES), read_document(folder / RUN)
+
+    def restarted(self, recording: str, system: str, seed: int) -> list[EstimateRow]:
+        """Read the rows of a cell with restarts; empty where the evaluation has none.
+
+        Raises
+        ------
+        InputError
+            If they cannot be read.
+        """
+        path = cell_folder(self.path, recording, system, seed) / RESTARTED
+        wait = self.plan.get("options", {}).get(RESTART)
+        # What an earlier evaluation left there, with another wait, is none of this one.
+        if wait is None or read_document(path.parent / RUN).get(RESTART) != wait:
+            return []
+        return read_estimates(path)
 
 
 def cell_folder(folder: Path, recording: str, system: str, seed: int) -> Path:

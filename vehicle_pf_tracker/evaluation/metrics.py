@@ -20,6 +20,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.truth import Occlusion
+from vehicle_pf_tracker.evaluation.restarts import RestartScores
 from vehicle_pf_tracker.evaluation.scores import (
     CLOSE_PX,
     FrameScore,
@@ -146,6 +147,9 @@ class Metrics:
         Median and 95 % quantile of the time of a step, ms.
     occlusions : tuple of OcclusionScore
         Scores of the total occlusions in order.
+    restarts : RestartScores or None
+        Scores of a second run, with restarts after failure; None where there was none. No other
+        metric is of that run.
     """
 
     frames: int
@@ -178,6 +182,22 @@ class Metrics:
     step_ms_p50: float | None
     step_ms_p95: float | None
     occlusions: tuple[OcclusionScore, ...]
+    restarts: RestartScores | None = None
+
+    @property
+    def restart_accuracy(self) -> float | None:
+        """Mean overlap with restarts."""
+        return None if self.restarts is None else self.restarts.accuracy
+
+    @property
+    def restart_robustness(self) -> float | None:
+        """Chance of no failure in 100 visible frames, with restarts."""
+        return None if self.restarts is None else self.restarts.robustness
+
+    @property
+    def restart_failures(self) -> int | None:
+        """Number of failures with restarts."""
+        return None if self.restarts is None else self.restarts.failures
 
     @property
     def recovered(self) -> tuple[bool | None, ...]:
@@ -186,8 +206,11 @@ class Metrics:
 
     def to_json(self) -> dict[str, Any]:
         """Return plain values for JSON, with `recovered` and the number not judged."""
+        found = asdict(self)
+        if self.restarts is None:
+            del found["restarts"]
         return {
-            **asdict(self),
+            **found,
             "recovered": list(self.recovered),
             "occlusions_not_judged": self.recovered.count(None),
         }

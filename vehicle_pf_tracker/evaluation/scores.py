@@ -285,12 +285,18 @@ def _mean_error(frames: Sequence[FrameScore]) -> float | None:
     return statistics.fmean(errors) if errors else None
 
 
+def is_failure(frame: FrameScore) -> bool:
+    """Return whether the estimate has no overlap with a visible vehicle."""
+    # No overlap is known before the first estimate, or without a size: a miss, too.
+    return frame.counts and not frame.hidden and not frame.overlap
+
+
 def count_failures(frames: Sequence[FrameScore]) -> int:
     """Count the stretches of frames in which the estimate misses a visible vehicle.
 
     Frames in which the vehicle is hidden or the truth is unknown do not end a stretch.
     """
-    # No overlap is known before the first estimate, or without a size: a miss, too.
-    missed = (not frame.overlap for frame in frames if frame.counts and not frame.hidden)
-    # A stretch is one failure however long it is, as no system is started again here.
+    missed = (is_failure(frame) for frame in frames if frame.counts and not frame.hidden)
+    # A stretch is one failure however long it is, as no system is started again here; with
+    # `restarts` it is.
     return sum(failed for failed, _ in itertools.groupby(missed))

@@ -5,6 +5,7 @@
 
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -26,7 +27,7 @@ def address(tmp_path):
 @pytest.fixture
 def plan(tmp_path):
     paths = [f"file://{path}" for path in write_recordings(tmp_path / "recordings")]
-    return make_plan(paths, seeds=range(4))
+    return replace(make_plan(paths, seeds=range(4)), restart=5)
 
 
 def test_a_worker_killed_halfway_costs_nothing_and_gives_nothing_twice(address, plan, tmp_path):

@@ -1,10 +1,13 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
+import itertools
 import json
 from dataclasses import replace
+from types import MappingProxyType
 
 import pytest
+from drive import box_of, frame_of, stamp_of
 from evaluation_samples import (
     FRAMES,
     HIDDEN,
@@ -18,11 +21,15 @@ from evaluation_samples import (
 )
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.evaluation.baselines import BaselineAnswer
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.grid import sources
+from vehicle_pf_tracker.evaluation.grid import running, sources
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
+from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
 from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 
 @pytest.fixture(scope="module")
@@ -120,12 +127,13 @@ def test_whatever_decides_a_run_is_in_its_key(recordings):
     others = [
         replace(cell, max_diff=0.02),
         replace(cell, seed=5),
+        replace(cell, restart=5),
         replace(cell, source=replace(cell.source, topic="/rear")),
         replace(cell, source=replace(cell.source, digest="0")),
         replace(cell, system=system("pf", sigma=3.0)),
         replace(cell, system=system("ms")),
     ]
-    assert len({one.key() for one in (cell, *others)}) == 7
+    assert len({one.key() for one in (cell, *others)}) == 8
     renamed = replace(cell, source=replace(cell.source, name="other", path="/elsewhere"))
     assert renamed.key() == cell.key()
 
@@ -193,3 +201,85 @@ def test_a_recording_is_decoded_once_for_all_its_cells_if_it_fits_into_memory(
     complete(plan, tmp_path / "out", here, silent)
     assert results(tmp_path / "out") == results(tmp_path / "kept")
     assert read == ["bridge"] * times + ["free"] * times
+
+
+@pytest.fixture
+def lost(tmp_path):
+    """A recording that is cut in the middle: `ms` does not follow the vehicle across it."""
+    path = tmp_path / "lost"
+    with RecordingWriter(path) as writer:
+        for index in range(FRAMES):
+            shown = index if index < FRAMES // 3 else FRAMES - index
+            writer.write_image(stamp_of(index), frame_of(shown))
+            writer.write_truth(Truth(stamp_of(index), box_of(shown), Occlusion.NONE))
+    return path
+
+
+def test_restarts_are_a_second_run_beside_the_first(lost, tmp_path):
+    systems = [system("ms"), system("pf")]
+    once = make_plan([lost], systems)
+    again = replace(once, restart=5)
+    complete(once, tmp_path / "once", here, silent)
+    complete(again, tmp_path / "again", on_this_machine(2), silent)
+    folder = EvaluationFolder(tmp_path / "again")
+    rows, run = folder.cell("lost", "ms", 0)
+    assert run["restart"] == 5
+    without, _ = EvaluationFolder(tmp_path / "once").cell("lost", "ms", 0)
+    assert [row.position for row in rows] == [row.position for row in without]
+    restarted = folder.restarted("lost", "ms", 0)
+    failed = FRAMES // 3 + 1
+    assert [row.frame for row in restarted] == list(range(1, FRAMES + 1))
+    assert [row.frame for row in restarted if row.mode == "WAITING"] == list(
+        range(failed + 1, failed + 5)
+    )
+    assert restarted[failed + 4].box == box_of(FRAMES - failed - 4)
+    assert EvaluationFolder(tmp_path / "once").restarted("lost", "ms", 0) == []
+    cell = tmp_path / "again" / "cells" / "lost" / "ms" / "seed-0"
+    metrics = json.loads((cell / "metrics.json").read_text())
+    assert metrics["restarts"]["failures"] == 1
+    assert metrics["restarts"]["accuracy"] > 0.7
+    scored = {(run.system, run.seed): run.metrics for run in score_folder(folder).runs}
+    assert scored["ms", 0].restart_failures == 1
+    assert scored["ms", 0].to_json()["restarts"] == metrics["restarts"]
+
+
+def test_a_run_with_other_restarts_is_run_again_and_not_shown(lost, tmp_path):
+    out = tmp_path / "out"
+    plans = [replace(make_plan([lost], [system("ms")]), restart=wait) for wait in (None, 5, 8)]
+    assert len({plan.cells()[0].key() for plan in plans}) == 3
+    complete(plans[1], out, here, silent)
+    plans[2].write(out)
+    assert EvaluationFolder(out).restarted("lost", "ms", 0) == []
+    assert [complete(plan, out, here, silent) for plan in plans] == [1, 1, 1]
+
+
+def test_a_baseline_is_started_anew_in_a_process_of_its_own(lost, tmp_path, monkeypatch):
+    made = []
+
+    class Standing:
+        name = "csrt"
+        versions = MappingProxyType({"opencv": "4"})
+
+        def __enter__(self):
+            made.append(self)
+            return self
+
+        def __exit__(self, *failure):
+            pass
+
+        def start(self, frame, box):
+            self.box = box
+            return BaselineAnswer(box, True, 0.0)
+
+        def step(self, frame):
+            return BaselineAnswer(self.box, True, 0.0)
+
+    monkeypatch.setattr(running, "Baseline", lambda *_: Standing())
+    plan = replace(make_plan([lost], [System.of_baseline("csrt")]), restart=1)
+    complete(plan, tmp_path / "out", here, silent)
+    restarted = EvaluationFolder(tmp_path / "out").restarted("lost", "baseline:csrt", 0)
+    assert [row.frame for row in restarted] == list(range(1, FRAMES + 1))
+    # A box of 16 px that stands is left behind after eight frames of 2 px.
+    assert restarted[8].box == box_of(0)
+    assert restarted[9].box == box_of(9)
+    assert len(made) == 1 + sum(a.box != b.box for a, b in itertools.pairwise(restarted))

@@ -19,7 +19,7 @@ from vehicle_pf_tracker.evaluation.grid.running import complete
 
 @pytest.fixture
 def plan(tmp_path):
-    return make_plan(write_recordings(tmp_path / "recordings"))
+    return replace(make_plan(write_recordings(tmp_path / "recordings")), restart=5)
 
 
 @pytest.fixture
@@ -56,6 +56,7 @@ def test_joined_parts_are_the_whole(plan, parts, tmp_path):
     complete(plan, tmp_path / "whole", here, silent)
     assert merge(parts, tmp_path / "joined") == len(plan.cells()) == 6
     assert results(tmp_path / "joined") == results(tmp_path / "whole")
+    assert list((tmp_path / "joined").glob("cells/*/*/*/restarted.csv"))
     assert complete(plan, tmp_path / "joined", here, silent) == 0
 
 
@@ -81,6 +82,9 @@ def test_parts_of_two_evaluations_are_refused_by_what_differs(plan, parts, tmp_p
     other = replace(plan, systems=[system("ms")], seeds=(0,))
     complete(other, tmp_path / "other", here, silent)
     with pytest.raises(InputError, match=r"other is no part .* differ in systems, seeds"):
+        merge([parts[0], tmp_path / "other"], tmp_path / "joined")
+    replace(plan, restart=None).write(tmp_path / "other")
+    with pytest.raises(InputError, match=r"differ in options;"):
         merge([parts[0], tmp_path / "other"], tmp_path / "joined")
     text = (parts[1] / "evaluation.json").read_text()
     digest = json.loads(text)["recordings"][0]["digest"]

@@ -19,6 +19,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import (
     FORMAT,
     PLAN,
     RECORDINGS_FOLDER,
+    RESTART,
     TRUTH,
     Source,
     cell_folder,
@@ -45,12 +46,15 @@ class GridCell:
         Seed of the random numbers.
     max_diff : float
         Largest difference of stamps that belong together, in s.
+    restart : int or None
+        Run a second time, with restarts so many frames after a failure; None: once.
     """
 
     source: Source
     system: System
     seed: int
     max_diff: float
+    restart: int | None = None
 
     def key(self) -> str:
         """Return its cache key: recording, parameters, seed, code and versions."""
@@ -58,6 +62,7 @@ class GridCell:
             "recording": self.source.digest,
             "topic": self.source.topic,
             "max_diff": self.max_diff,
+            RESTART: self.restart,
             **self.system.facts(self.seed),
         }
         # A baseline runs none of our trackers: their changes leave its results valid.
@@ -113,6 +118,8 @@ class Plan:
         Largest difference of stamps that belong together, in s.
     part : Part
         Share of the cells that is run.
+    restart : int or None
+        Frames from a failure to the next start, in a second run of each cell; None: no such run.
 
     Raises
     ------
@@ -126,6 +133,7 @@ class Plan:
     command: list[str]
     max_diff: float = PAIRED_WITHIN_S
     part: Part = ALL_CELLS
+    restart: int | None = None
 
     def __post_init__(self) -> None:
         taken: set[str] = set()
@@ -141,7 +149,7 @@ class Plan:
         # Baselines are slow: begun last, they would be waited for.
         ordered = sorted(self.systems, key=lambda system: not system.is_baseline)
         whole = [
-            GridCell(source, system, seed, self.max_diff)
+            GridCell(source, system, seed, self.max_diff, self.restart)
             for source, system in itertools.product(self.recordings, ordered)
             for seed in system.seeds(self.seeds)
         ]
@@ -154,6 +162,7 @@ class Plan:
             write_truth(make_folder(folder / RECORDINGS_FOLDER / source.name) / TRUTH, truths)
         # The seeds of each system, too: a reader of the folder need not know which are
         # deterministic.
+        restart = {} if self.restart is None else {RESTART: self.restart}
         plan = {
             "format": FORMAT,
             "command": self.command,
@@ -164,6 +173,6 @@ class Plan:
             ],
             "seeds": list(self.seeds),
             "versions": versions(),
-            "options": {"max_diff": self.max_diff},
+            "options": {"max_diff": self.max_diff, **restart},
         }
         write_json(folder / PLAN, plan)

@@ -6,26 +6,35 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import shutil
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import astuple, dataclass, field
+from collections.abc import Callable, Generator, Iterable, Sequence
+from dataclasses import astuple, dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
+from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
-from vehicle_pf_tracker.evaluation.evaluation_folder import FAILED, read_document
+from vehicle_pf_tracker.evaluation.evaluation_folder import (
+    FAILED,
+    RESTART,
+    RESTARTED,
+    read_document,
+)
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell, Plan
 from vehicle_pf_tracker.evaluation.grid.sources import SourceFootage, footage
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
+from vehicle_pf_tracker.evaluation.restarts import measure_restarts, with_restarts
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.evaluation.systems import BASELINE
+from vehicle_pf_tracker.evaluation.systems import BASELINE, System
 from vehicle_pf_tracker.following.cluster import run_on_cluster
 from vehicle_pf_tracker.following.driver import OfflineTracker
 from vehicle_pf_tracker.following.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.results import run_folder
-from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow, write_estimates
 from vehicle_pf_tracker.results.output_files import flush, make_folder, write_json
 from vehicle_pf_tracker.trackers.registry import find_variant
 
@@ -44,12 +53,15 @@ class CellResult:
         Metrics of the run; None where it could not run.
     reason : str
         Reason why it could not run, a sentence; empty if it did.
+    restarted : list of EstimateRow
+        Estimates with restarts after failure, one per frame; empty if there were to be none.
     """
 
     rows: list[EstimateRow] = field(default_factory=list)
     run: dict[str, Any] = field(default_factory=dict)
     metrics: Metrics | None = None
     reason: str = ""
+    restarted: list[EstimateRow] = field(default_factory=list)
 
 
 def run_cell(cell: GridCell) -> CellResult:
@@ -60,7 +72,12 @@ def run_cell(cell: GridCell) -> CellResult:
         run_it = _run_baseline if cell.system.is_baseline else _run_variant
         rows, run = run_it(cell, seen)
         metrics = measure(score_frames(rows, seen.truth, cell.max_diff))
-        return CellResult(rows, run, metrics)
+        if cell.restart is None:
+            return CellResult(rows, run, metrics)
+        restarted = _restarted(cell, seen, rows, cell.restart)
+        scores = measure_restarts(score_frames(restarted, seen.truth, cell.max_diff))
+        run = {**run, RESTART: cell.restart}
+        return CellResult(rows, run, replace(metrics, restarts=scores), restarted=restarted)
     except InputError as error:
         return CellResult(reason=str(error))
     except Exception as error:  # a fault of ours must not cost the rest of a long evaluation
@@ -69,26 +86,28 @@ def run_cell(cell: GridCell) -> CellResult:
 
 def _run_variant(cell: GridCell, seen: SourceFootage) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a variant and its `run.json`."""
-    system = cell.system
-    tracker = OfflineTracker(
-        find_variant(system.kind),
-        system.tracker_parameters(cell.seed),
-        system.session_parameters(),
-        first_truth=seen.truth[0],
-        max_diff=cell.max_diff,
-    )
+    tracker = _tracker(cell, first_truth=seen.truth[0])
     rows = list(tracker.rows(seen.frames()))
     notices = [*seen.recording.notices, *tracker.notices]
     source = cell.source.path, cell.source.topic, notices
     return rows, run_folder.describe_run(tracker.session, tracker.start_frame, [], *source)
 
 
+def _tracker(cell: GridCell, **target: Any) -> OfflineTracker:
+    system = cell.system
+    return OfflineTracker(
+        find_variant(system.kind),
+        system.tracker_parameters(cell.seed),
+        system.session_parameters(),
+        max_diff=cell.max_diff,
+        **target,
+    )
+
+
 def _run_baseline(cell: GridCell, seen: SourceFootage) -> tuple[list[EstimateRow], dict[str, Any]]:
     """Return the rows of a baseline and its `run.json`."""
     system = cell.system
-    name = cell.system.kind.removeprefix(BASELINE)
-    python = Path(system.python) if system.python else None
-    with Baseline(name, python, system.model_files()) as baseline:
+    with _baseline(system) as baseline:
         rows = list(baseline_rows(baseline, seen.frames(), seen.truth[0]))
         opencv = baseline.versions["opencv"]
     started = (row.frame for row in rows if row.mode not in {WAITING, REJECTED})
@@ -97,7 +116,7 @@ def _run_baseline(cell: GridCell, seen: SourceFootage) -> tuple[list[EstimateRow
         cell.source.path,
         cell.source.topic,
         seen.recording.notices,
-        baseline=name,
+        baseline=baseline.name,
         seed=cell.seed,
         target=list(astuple(seen.truth[0].box)),
         start_frame=next(started, None),
@@ -105,6 +124,31 @@ def _run_baseline(cell: GridCell, seen: SourceFootage) -> tuple[list[EstimateRow
     )
     description["versions"]["opencv"] = opencv
     return rows, description
+
+
+def _baseline(system: System) -> Baseline:
+    python = Path(system.python) if system.python else None
+    return Baseline(system.kind.removeprefix(BASELINE), python, system.model_files())
+
+
+def _restarted(
+    cell: GridCell, seen: SourceFootage, rows: Sequence[EstimateRow], wait: int
+) -> list[EstimateRow]:
+    """Return the rows of a cell with restarts `wait` frames after a failure."""
+
+    def start(index: int, box: Box) -> Generator[EstimateRow, None, None]:
+        # A system of its own for each start, which has seen nothing of what was before.
+        frames = itertools.islice(seen.frames(), index, None)
+        number = index + 1
+        if not cell.system.is_baseline:
+            yield from _tracker(cell, targets={number: box}).rows(frames, number)
+            return
+        truth = Truth(rows[index].stamp_ns, box, Occlusion.NONE)
+        with _baseline(cell.system) as baseline:
+            yield from baseline_rows(baseline, frames, truth, number)
+
+    size = cell.source.width, cell.source.height
+    return with_restarts(rows, seen.truth, cell.max_diff, wait, size, start)
 
 
 Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[tuple[GridCell, CellResult]]]
@@ -180,5 +224,7 @@ def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]
             keys = {"command": command, "key": cell.key()}
             run_folder.write_run(partial, outcome.rows, {**outcome.run, **keys})
             write_json(partial / run_folder.METRICS, outcome.metrics.to_json())
+            if outcome.restarted:
+                write_estimates(partial / RESTARTED, outcome.restarted)
     # The rename, too, has to reach the disk.
     flush(folder.parent)

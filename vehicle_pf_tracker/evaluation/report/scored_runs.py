@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
+from vehicle_pf_tracker.evaluation.restarts import measure_restarts
 from vehicle_pf_tracker.evaluation.scores import score_frames
 
 _DECIDING = ("vehicle_pf_tracker", "opencv", "numpy")
@@ -137,13 +138,16 @@ def _result(
     max_diff = float(folder.plan.get("options", {}).get("max_diff", PAIRED_WITHIN_S))
     try:
         rows, run = folder.cell(*key)
-        scores = score_frames(rows, list(truth.values()), max_diff)
+        known = list(truth.values())
+        scores = score_frames(rows, known, max_diff)
+        restarted = folder.restarted(*key)
+        with_restarts = restarted and measure_restarts(score_frames(restarted, known, max_diff))
     except InputError as error:
         return FailedCell(*key, str(error))
     errors = [frame.error if frame.counts else None for frame in scores.frames]
     return ScoredRun(
         *key,
-        metrics=measure(scores),
+        metrics=replace(measure(scores), restarts=with_restarts or None),
         errors=np.array(errors, dtype=np.float64),  # None is NaN
         curves=curves(scores.counted),
         versions=run.get("versions", {}),
