@@ -12,7 +12,7 @@ from traffic_samples import MODES, vehicle
 
 from vehicle_pf_tracker.counting.count_signs import Sign
 from vehicle_pf_tracker.counting.counter import Counter
-from vehicle_pf_tracker.counting.trust import OF_BOXES, Trust
+from vehicle_pf_tracker.counting.trust import OF_BLOBS, OF_BOXES, Trust
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 
 NOTHING = 1e-12
@@ -61,9 +61,9 @@ def test_where_nothing_was_seen_nothing_crossed():
     assert OF_BOXES.interval({}) == (0, 0)
 
 
-def counted(*drives, ambiguous=None):
+def counted(*drives, ambiguous=None, counter=None):
     """Counter after drives, (first image, lower edges, modes) of vehicles 1, 2, …"""
-    counter = Counter(CountingPlan(lines=(ACROSS,)))
+    counter = counter or Counter(CountingPlan(lines=(ACROSS,)))
     for index in range(max(first + len(bottoms) for first, bottoms, _ in drives) + 2):
         estimates = [
             replace(
@@ -128,3 +128,13 @@ def test_a_recording_that_begins_again_keeps_its_signs_and_a_reset_does_not():
     assert counter.signs("across", "in") == before == {Sign.SEEN: 1, Sign.BROKEN: 1}
     counter.reset()
     assert counter.signs("across", "in") == Tally()
+
+
+def test_a_reset_discards_that_detections_were_blobs():
+    likely = {Sign.BROKEN: 3}
+    assert OF_BLOBS.interval(likely) != OF_BOXES.interval(likely)
+    drives = [(0, BEFORE, "T" * len(BEFORE))] * 3
+    counter = counted(*drives, ambiguous=0)
+    assert counter.interval("across", "in") == OF_BLOBS.interval(likely)
+    counter.reset()
+    assert counted(*drives, counter=counter).interval("across", "in") == OF_BOXES.interval(likely)

@@ -33,6 +33,7 @@ def numba_fails(monkeypatch):
 
 ABSENT = ModuleNotFoundError("No module named 'numba'", name="numba")
 BROKEN = ImportError("Numba needs NumPy 2.2 or less")
+TORN = OSError("Could not find/load shared object file 'libllvmlite.so'")
 
 
 def make(name, **values):
@@ -53,15 +54,16 @@ def test_auto_takes_opencv_where_numba_is_not_installed(numba_fails):
     assert list(kernels.notices) == []
 
 
-def test_auto_tells_why_an_installed_numba_does_not_serve(numba_fails):
-    numba_fails(BROKEN)
+@pytest.mark.parametrize("error", [BROKEN, TORN], ids=["broken", "torn"])
+def test_auto_tells_why_an_installed_numba_does_not_serve(numba_fails, error):
+    numba_fails(error)
     kernels = make("pf").kernels
     assert kernels.name == "opencv"
     assert len(kernels.notices) == 1
-    assert "Numba needs NumPy 2.2 or less" in kernels.notices[0]
+    assert str(error) in kernels.notices[0]
 
 
-@pytest.mark.parametrize("error", [ABSENT, BROKEN], ids=["absent", "broken"])
+@pytest.mark.parametrize("error", [ABSENT, BROKEN, TORN], ids=["absent", "broken", "torn"])
 def test_asking_for_numba_without_it_is_a_clear_error(numba_fails, error):
     numba_fails(error)
     with pytest.raises(InputError, match=r"kernels: numba .* cannot be imported .*; install it"):

@@ -48,7 +48,8 @@ class SignTally:
         self._ended.pop(serial, None)
 
     def clear(self) -> None:
-        """Discard all signs."""
+        """Discard all signs, and of what detections they were."""
+        self.has_blobs = False
         self._total.clear()
         self._ended.clear()
 

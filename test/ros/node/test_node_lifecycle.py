@@ -109,6 +109,7 @@ def test_a_transition_that_does_not_exist_here_is_refused(bench, manager, transi
 def test_a_failing_transition_says_why_and_the_node_lives(bench, manager, monkeypatch):
     rig = Rig(bench)
     assert manager.change("deactivate")
+    assert rig.node.failure == ""
     with monkeypatch.context() as patch:
         patch.setattr(rig.node, "warn_of_overrides", lambda **_: 1 / 0)
         assert not manager.change("activate")
@@ -116,6 +117,7 @@ def test_a_failing_transition_says_why_and_the_node_lives(bench, manager, monkey
     assert manager.state == "unconfigured"
     assert manager.change("configure")
     assert manager.change("activate")
+    assert rig.node.failure == "unexpected ZeroDivisionError: division by zero"  # the last one
     rig.wait_until_heard()
     assert rig.show_frame(road(1)[0], 0).status[0].message == "WAITING"
 

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+import importlib
+
 import pytest
 import yaml
 
@@ -16,6 +18,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from tracker_rig import FIRST_NS, PERIOD_NS, SOME_FAST, Rig, on_target, overrides, road, values_of
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.image.kernels import interface
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import ParameterSpec
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
@@ -130,6 +133,28 @@ def test_every_parameter_set_at_run_time_reaches_the_next_estimate(bench, varian
             assert rig.node.get_parameter(name).value == value
             assert rig.node.table.configuration == twin.configuration
             show()
+
+
+def test_kernels_that_cannot_be_had_are_refused_and_later_changes_are_taken(bench, monkeypatch):
+    rig = Rig(bench, [*on_target(), Parameter("kernels", value="opencv")])
+    rig.play(road(2))
+
+    def import_module(name):
+        raise OSError("Could not find/load shared object file 'libllvmlite.so'")
+
+    monkeypatch.setattr(importlib, "import_module", import_module)
+    interface.load_numba.cache_clear()
+    results = []
+    for name, value in (("kernels", "numba"), ("num_particles", 99)):
+        request = SetParameters.Request(
+            parameters=[Parameter(name, value=value).to_parameter_msg()]
+        )
+        results += bench.call(SetParameters, f"{rig.name}/set_parameters", request).results
+    interface.load_numba.cache_clear()
+    assert [result.successful for result in results] == [False, True]
+    assert "numba" in results[0].reason
+    assert rig.node.table.configuration.tracker.num_particles == 99
+    assert values_of(rig.show_frame(road(3)[2], 2))["num_particles"] == "99"
 
 
 @pytest.mark.parametrize("switch", ["box", "velocity", "particles", "overlay"])

@@ -112,7 +112,9 @@ def load_kernels(choice: str) -> Kernels:
     try:
         # Also for auto: only the attempt tells whether numba can be had.
         return load_numba()
-    except ImportError as error:
+    except (
+        Exception
+    ) as error:  # a broken installation raises more than ImportError: llvmlite OSError
         if choice == "numba":
             raise InputError(
                 f"kernels: numba needs numba, which cannot be imported ({error}); "

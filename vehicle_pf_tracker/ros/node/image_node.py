@@ -278,6 +278,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         label = rclpy_internals.state_label(self)
         state_id = request.transition.id
         wanted = request.transition.label or str(state_id)
+        before = self.failure
         # rclpy raises before it calls one of ours where there is none: this stands until one says
         # more.
         self.failure = "there is no such transition"
@@ -287,4 +288,6 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
             response.success = False
         if not response.success:
             self.get_logger().error(f"transition {wanted} from {label} failed: {self.failure}")
+        else:
+            self.failure = before
         return response
