@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.results.run_folder import versions
-from vehicle_pf_tracker.trackers.registry import Variant
+from vehicle_pf_tracker.trackers.registry import TRAFFIC, Variant
 
 
 def result_key(facts: Mapping[str, Any], modules: Iterable[str]) -> str:
@@ -30,7 +30,9 @@ def result_key(facts: Mapping[str, Any], modules: Iterable[str]) -> str:
 
 def variant_modules(variant: Variant) -> set[str]:
     """Name the modules that a variant begins in."""
-    return {variant.tracker.__module__, variant.parameters.__module__}
+    # The tracker of many vehicles is none of the contract; its parameters lie beside it.
+    classes = [variant.parameters] if variant == TRAFFIC else [variant.tracker, variant.parameters]
+    return {kind.__module__ for kind in classes}
 
 
 _PACKAGE = Path(__file__).parents[1]
