@@ -21,6 +21,7 @@ if TYPE_CHECKING:  # `as` makes them names of this package for type checkers
     from vehicle_pf_tracker.recordings.source import open_source as open_source
     from vehicle_pf_tracker.results.traffic_tables import read_counts as read_counts
     from vehicle_pf_tracker.results.traffic_tables import read_tracks as read_tracks
+    from vehicle_pf_tracker.results.traffic_tables import read_zones as read_zones
     from vehicle_pf_tracker.trackers.estimate import Estimate as Estimate
     from vehicle_pf_tracker.trackers.estimate import Mode as Mode
     from vehicle_pf_tracker.trackers.registry import make_tracker as make_tracker
@@ -37,6 +38,7 @@ _HOMES = {
     "open_source": "recordings.source",
     "read_counts": "results.traffic_tables",
     "read_tracks": "results.traffic_tables",
+    "read_zones": "results.traffic_tables",
     "track": "following.library",
 }
 """Module of each public name."""

@@ -21,6 +21,7 @@ import numpy as np
 import pytest
 from small_recordings import write_video
 
+from vehicle_pf_tracker import read_zones
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.following import counted_vehicles
@@ -161,7 +162,26 @@ def test_counts_at_lines_and_in_zones(run, tmp_path, capsys):
     assert all(one["low"] <= 2 <= one["high"] for one in downs)
     text = capsys.readouterr().out
     assert "line exit: 2 down (2 car), 0 up; 90 % intervals " in text
-    assert "zone yard: 0 entered, 2 left" in text
+    assert "zone yard: 0 entered, 2 left; " in text
+    (yard,) = info["zones"]
+    assert (yard["zone"], yard["seconds"], yard["max"]) == ("yard", 0.8, 2)
+    (row,) = table(out / "zones.csv")
+    assert (row["mean"], row["occupied"]) == (f"{yard['mean']:.4f}", f"{yard['occupied']:.4f}")
+    # Lower edges are above y = 40 in the first seven and nine of twenty images.
+    assert yard["mean"] == pytest.approx((7 + 9) / COUNT, abs=2 / COUNT)
+    assert f"{yard['mean']:.1f} inside on average, at most 2, occupied" in text
+
+
+def test_the_occupancy_of_zones_is_a_table_of_intervals(run, tmp_path):
+    rows = table(run("--lines", tmp_path / "lines.yaml", "--interval", 0.2) / "zones.csv")
+    assert [row["zone"] for row in rows] == ["yard"] * 4
+    assert [row["seconds"] for row in rows] == ["0.200"] * 4
+    assert [row["max"] for row in rows] == ["2", "2", "0", "0"]
+    assert rows[0]["mean"] == "2.0000" and rows[0]["occupied"] == "1.0000"
+    assert 0 < float(rows[1]["mean"]) < 2
+    assert read_zones(tmp_path / "out")["max"].tolist() == [2, 2, 0, 0]
+    run("--overwrite")
+    assert not (tmp_path / "out" / "zones.csv").exists()
 
 
 def test_the_summary_is_for_people(run, capsys):

@@ -15,7 +15,7 @@ from typing import Any
 from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.many_sources import follow_each
 from vehicle_pf_tracker.cli.network_advice import network_advice
-from vehicle_pf_tracker.cli.requests import option
+from vehicle_pf_tracker.cli.requests import option, positive_number
 from vehicle_pf_tracker.cli.serving import served
 from vehicle_pf_tracker.cli.source_lists import SeveralSources
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
@@ -25,6 +25,7 @@ from vehicle_pf_tracker.cli.tracking_options import ServeAddress, chosen
 from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
+from vehicle_pf_tracker.counting.zone_occupancy import USUAL_INTERVAL_S
 from vehicle_pf_tracker.detection.parameters import MODEL, MOTION, NONE, TOPIC
 from vehicle_pf_tracker.following.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.following.detection_file import DetectionFile
@@ -37,12 +38,18 @@ from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.recordings.source import ImageSource
 from vehicle_pf_tracker.results.output_files import make_folder, write_json
 from vehicle_pf_tracker.results.run_folder import RUN, describe
-from vehicle_pf_tracker.results.traffic_results import COUNTS, MOT_TRACKS, TRACKS, track_files
+from vehicle_pf_tracker.results.traffic_results import (
+    COUNTS,
+    MOT_TRACKS,
+    TRACKS,
+    ZONES,
+    track_files,
+)
 from vehicle_pf_tracker.showing.pictures import Pictures
 from vehicle_pf_tracker.showing.traffic_pictures import HEAT, PATHS, TrafficPictures
 from vehicle_pf_tracker.trackers.registry import TRAFFIC
 
-PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, RUN, PATHS, HEAT)
+PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, ZONES, RUN, PATHS, HEAT)
 """Files of a run, which `--overwrite` replaces: no others in the folder are touched."""
 
 
@@ -52,7 +59,8 @@ class Request(SeveralSources):
 
     output: Path | None = option(
         "-o", metavar="DIR",
-        help="folder for tracks.csv, tracks.txt, counts.csv, run.json, summary.png and heat.png "
+        help="folder for tracks.csv, tracks.txt, counts.csv, zones.csv, run.json, summary.png and "
+        "heat.png "
         "(default: results/ and the source's name with _traffic)",
     )  # fmt: skip
     detections: Path | None = option(
@@ -77,6 +85,11 @@ class Request(SeveralSources):
         help="least score of a detection of the network (detector.min_score)",
     )  # fmt: skip
     lines: Path | None = option(help="lines, zones and regions of interest, lines.yaml")
+    interval: float = option(
+        type=positive_number, default=USUAL_INTERVAL_S, metavar="S",
+        help="length of the intervals of zones.csv in seconds "
+        f"(default: {USUAL_INTERVAL_S:g})",
+    )  # fmt: skip
 
 
 def run(request: Request) -> int:
@@ -127,7 +140,8 @@ def _tracking(request: Request, configuration: Configuration, stop: Stop) -> Tra
     # A network that does not end after a signal is left, with what was tracked.
     run_it = stop.leaving if parameters.detector.kind == MODEL else call
     with shown_progress() as show:
-        return TrafficRun(*session_and_counter(configuration, run_it, show), detections)
+        both = session_and_counter(configuration, run_it, show)
+    return TrafficRun(*both, detections, request.interval)
 
 
 def _follow(
@@ -140,19 +154,20 @@ def _follow(
     overview: TrafficPictures,
 ) -> list[str]:
     """Follow all vehicles to the end or to a signal; return what cut it short."""
-    counts = tracking.counter.plan.is_counting
+    plan = tracking.counter.plan
     port = tracking.session.tracker.parameters.page_port
     address = request.serve or (ServeAddress(port) if port >= 0 else None)
     with (
         stopping(stop),
         counting("tracked") as progress,
         served(address, request.token, pictures.side) as page,
-        track_files(folder, counting=counts) as files,
+        track_files(folder, counting=plan.is_counting, zones=bool(plan.zones)) as files,
     ):
         first, frames = numbered_part(source, request.start, request.end, stop, progress)
         targets = by_name(request.given_targets(), first[0])
         with suppress(StillAtWork):
             tracking.follow_all(frames, files, pictures, overview, page, targets)
+        files.write_zones(tracking.summary.zones.rest())
     return cut_short(stop, source, tracking.summary.frames)
 
 

@@ -14,6 +14,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.counting.counter import Counter
 from vehicle_pf_tracker.counting.crossing import Crossing
+from vehicle_pf_tracker.counting.zone_occupancy import USUAL_INTERVAL_S
 from vehicle_pf_tracker.detection.parameters import MODEL, MOTION
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles
 from vehicle_pf_tracker.following.detection_file import DetectionFile
@@ -43,6 +44,8 @@ class TrafficRun(CountedVehicles):
         Counts at lines and in zones, if there are any.
     detections : DetectionFile or None
         The detections of each frame; None leaves them to the session.
+    zone_interval_s : float
+        Length of the intervals of the zones' occupancy, s.
 
     Attributes
     ----------
@@ -51,10 +54,14 @@ class TrafficRun(CountedVehicles):
     """
 
     def __init__(
-        self, session: TrafficSession, counter: Counter, detections: DetectionFile | None = None
+        self,
+        session: TrafficSession,
+        counter: Counter,
+        detections: DetectionFile | None = None,
+        zone_interval_s: float = USUAL_INTERVAL_S,
     ) -> None:
         super().__init__(session, counter)
-        self.summary = TrafficSummary(counter)
+        self.summary = TrafficSummary(counter, zone_interval_s)
         self._notices = list(detections.notices) if detections is not None else []
         self._more_notices = 0
         self._last_events: list[str] = []
@@ -124,6 +131,7 @@ class TrafficRun(CountedVehicles):
                 undecided = self.classes.undecided
                 files.write(number, found.stamp_ns, estimates, crossings, undecided)
                 self.summary.add(estimates)
+                files.write_zones(self.summary.zones.add(found.stamp_ns, self.counter.occupancy))
                 if overview is not None:
                     period = self.session.tracker.frame_period
                     overview.add(found.frame, estimates, found.stamp_ns, period)

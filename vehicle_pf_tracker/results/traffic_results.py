@@ -15,6 +15,7 @@ from typing import Any, TextIO
 
 from vehicle_pf_tracker.counting.counter import CONFIRMED
 from vehicle_pf_tracker.counting.crossing import Crossing
+from vehicle_pf_tracker.counting.zone_occupancy import ZoneInterval
 from vehicle_pf_tracker.results.backdating import Backdating, Frames
 from vehicle_pf_tracker.results.output_files import replacing
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -25,6 +26,8 @@ MOT_TRACKS = "tracks.txt"
 """The same in the format of MOTChallenge, which tools for scoring read."""
 COUNTS = "counts.csv"
 """File of the crossings, a row for each."""
+ZONES = "zones.csv"
+"""File of the occupancy of zones, a row for each zone and interval."""
 
 TRACK_COLUMNS = (
     "frame",
@@ -58,6 +61,9 @@ COUNT_COLUMNS = (
     "doubt",
 )
 """Columns of `counts.csv`: the stamp is that of the crossing, the frame the one it counted in."""
+ZONE_COLUMNS = ("zone", "stamp_ns", "seconds", "mean", "max", "occupied")
+"""Columns of `zones.csv`: the stamp at which the interval begins, the time that was observed in it,
+mean and largest number of vehicles inside, and the share of the time with any."""
 
 _HIDDEN_CONFIDENCE = 0.5
 """Share of its confidence that an occluded vehicle is written to `tracks.txt` with, so that a
@@ -77,18 +83,27 @@ class TrackFiles:
         Files to write to.
     counts_file : text stream or None
         File for crossings; None where nothing is counted.
+    zones_file : text stream or None
+        File for the occupancy of zones; None without zones.
     """
 
     def __init__(
-        self, csv_file: TextIO, mot_file: TextIO, counts_file: TextIO | None = None
+        self,
+        csv_file: TextIO,
+        mot_file: TextIO,
+        counts_file: TextIO | None = None,
+        zones_file: TextIO | None = None,
     ) -> None:
         self._tracks = csv.writer(csv_file, lineterminator="\n")
         self._mot = mot_file
         self._counts = csv.writer(counts_file, lineterminator="\n") if counts_file else None
+        self._zones = csv.writer(zones_file, lineterminator="\n") if zones_file else None
         self._backdating = Backdating()
         self._tracks.writerow(TRACK_COLUMNS)
         if self._counts:
             self._counts.writerow(COUNT_COLUMNS)
+        if self._zones:
+            self._zones.writerow(ZONE_COLUMNS)
 
     def write(
         self,
@@ -103,6 +118,11 @@ class TrackFiles:
         if self._counts:
             self._counts.writerows(_count_row(frame, one) for one in crossings)
 
+    def write_zones(self, intervals: Iterable[ZoneInterval]) -> None:
+        """Write the occupancy of zones in intervals that have ended."""
+        if self._zones:
+            self._zones.writerows(map(_zone_row, intervals))
+
     def finish(self) -> None:
         """Write what was held back."""
         self._write(self._backdating.rest())
@@ -115,7 +135,9 @@ class TrackFiles:
 
 
 @contextmanager
-def track_files(folder: Path, *, counting: bool = False) -> Iterator[TrackFiles]:
+def track_files(
+    folder: Path, *, counting: bool = False, zones: bool = False
+) -> Iterator[TrackFiles]:
     """Open the files of a run in `folder`; they appear under their names when all is written.
 
     Until then, and if anything goes wrong, those of an earlier run stay as they are.
@@ -125,7 +147,8 @@ def track_files(folder: Path, *, counting: bool = False) -> Iterator[TrackFiles]
     InputError
         If they cannot be written.
     """
-    names = [TRACKS, MOT_TRACKS, COUNTS] if counting else [TRACKS, MOT_TRACKS]
+    asked = {TRACKS: True, MOT_TRACKS: True, COUNTS: counting or zones, ZONES: zones}
+    names = [name for name, is_asked in asked.items() if is_asked]
     with ExitStack() as stack:
         partials = [stack.enter_context(replacing(folder / name)) for name in names]
         files = [
@@ -135,8 +158,8 @@ def track_files(folder: Path, *, counting: bool = False) -> Iterator[TrackFiles]
         tracks = TrackFiles(*files)
         yield tracks
         tracks.finish()
-    if not counting:  # none of an earlier run beside the tracks of this one
-        (folder / COUNTS).unlink(missing_ok=True)
+    for name in asked.keys() - names:  # none of an earlier run beside the tracks of this one
+        (folder / name).unlink(missing_ok=True)
 
 
 def _track_row(frame: int, stamp_ns: int, one: TrackEstimate) -> list[Any]:
@@ -177,6 +200,13 @@ def _count_row(frame: int, crossing: Crossing) -> list[Any]:
         *("" if speed is None else f"{speed:.2f}" for speed in speeds),
         crossing.doubt,
     ]
+
+
+def _zone_row(one: ZoneInterval) -> list[Any]:
+    """Return the row of a zone in an interval, in the order of `ZONE_COLUMNS`."""
+    found = one.occupancy
+    numbers = f"{found.seconds:.3f}", f"{found.mean:.4f}", found.largest, f"{found.share:.4f}"
+    return [one.zone, one.start_ns, *numbers]
 
 
 def _exact(value: float) -> str:

@@ -14,6 +14,11 @@ from typing import Any
 from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
 from vehicle_pf_tracker.counting.trust import HELD
+from vehicle_pf_tracker.counting.zone_occupancy import (
+    USUAL_INTERVAL_S,
+    Occupancy,
+    ZoneOccupancy,
+)
 from vehicle_pf_tracker.counting.zone_watch import ZONE_ENTRY, ZONE_EXIT
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine
@@ -31,9 +36,13 @@ class TrafficSummary:
     ----------
     counter : Counter
         Counts, of a plan with regions of interest: a vehicle that drives out of them leaves.
+    zone_interval_s : float
+        Length of the intervals of the zones' occupancy, s.
 
     Attributes
     ----------
+    zones : ZoneOccupancy
+        Occupancy of the zones over time, which takes images by itself.
     frames : int
         Frames so far.
     most_at_once : int
@@ -43,8 +52,9 @@ class TrafficSummary:
         counted apart included.
     """
 
-    def __init__(self, counter: Counter) -> None:
+    def __init__(self, counter: Counter, zone_interval_s: float = USUAL_INTERVAL_S) -> None:
         self.counter = counter
+        self.zones = ZoneOccupancy((one.name for one in counter.plan.zones), zone_interval_s)
         self.frames = 0
         self.most_at_once = 0
         self.vehicles: dict[int, VehicleLog] = {}
@@ -132,7 +142,7 @@ class TrafficSummary:
         ]
         zones = [
             f"zone {zone.name}: {counter.count(zone.name, ZONE_ENTRY)} entered, "
-            f"{counter.count(zone.name, ZONE_EXIT)} left"
+            f"{counter.count(zone.name, ZONE_EXIT)} left; {_inside(self.zones.overall[zone.name])}"
             for zone in counter.plan.zones
         ]
         return [*found, *lines, *zones]
@@ -159,6 +169,16 @@ class TrafficSummary:
                 for to in line.directions
                 for each in _intervals(self.counter, line.name, to)
             ],
+            "zones": [
+                {
+                    "zone": zone,
+                    "seconds": round(found.seconds, 3),
+                    "mean": round(found.mean, 4),
+                    "max": found.largest,
+                    "occupied": round(found.share, 4),
+                }
+                for zone, found in self.zones.overall.items()
+            ],
         }
 
 
@@ -167,6 +187,13 @@ def _direction(counter: Counter, place: str, direction: str) -> str:
     apart = Tally({name: n for name, n in known.items() if not counter.is_vehicle(name)})
     count = counter.count(place, direction)
     return f"{count} {direction}{_listed(known - apart)}{_besides(apart)}"
+
+
+def _inside(found: Occupancy) -> str:
+    return (
+        f"{found.mean:.1f} inside on average, at most {found.largest}, occupied "
+        f"{100 * found.share:.0f} % of the time"
+    )
 
 
 def _intervals_of(counter: Counter, line: CountingLine) -> str:

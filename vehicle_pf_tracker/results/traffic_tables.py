@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from vehicle_pf_tracker.core.errors import InputError, read_text
-from vehicle_pf_tracker.results.traffic_results import COUNTS, TRACKS
+from vehicle_pf_tracker.results.traffic_results import COUNTS, TRACKS, ZONES
 
-_INTEGERS = {"frame", "stamp_ns", "id"}
+_INTEGERS = {"frame", "stamp_ns", "id", "max"}
 """Columns that are read as integers: a stamp in ns has more digits than a float."""
-_TEXTS = {"mode", "label", "hidden_by", "place", "direction", "doubt"}
+_TEXTS = {"mode", "label", "hidden_by", "place", "zone", "direction", "doubt"}
 """Columns that are read as text; all others are floats."""
 
 
@@ -46,6 +46,11 @@ def read_tracks(folder: str | Path, *, pandas: bool = False) -> Any:
 def read_counts(folder: str | Path, *, pandas: bool = False) -> Any:
     """Read ``counts.csv``, a row for each crossing; see `read_tracks`."""
     return _read(Path(folder) / COUNTS, pandas)
+
+
+def read_zones(folder: str | Path, *, pandas: bool = False) -> Any:
+    """Read ``zones.csv``, a row for each zone and interval; see `read_tracks`."""
+    return _read(Path(folder) / ZONES, pandas)
 
 
 def _read(path: Path, as_frame: bool) -> Any:
