@@ -86,7 +86,7 @@ class Decision:
 _MOTION = "detection.motion_thresholds:SHIPPED"
 DECISIONS: tuple[Decision, ...] = (
     Decision(f"{_MOTION}.colour_threshold", (24.0, 42.0)),
-    Decision(f"{_MOTION}.patience", (50.0, 200.0), 0.0),
+    Decision(f"{_MOTION}.patience", (2.0, 8.0), 0.0),
     Decision(f"{_MOTION}.shadow", (0.5, 0.7), 1.0),
     Decision(f"{_MOTION}.apart", (0.5, 2.0), 1e9),
     Decision("detection.blobs:_LEAST_PART", (0.1, 0.2)),

@@ -87,7 +87,7 @@ from vehicle_pf_tracker.detection.detections import Detections
 class Stuck:
     disturbed = is_blind = False
     calls = itertools.count(1)
-    def detect(self, frame, tracks=()):
+    def detect(self, frame, tracks=(), period=0.0):
         call = next(self.calls)
         if call == 41:
             open("stuck", "w").close()

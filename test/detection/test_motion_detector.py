@@ -125,6 +125,26 @@ def test_what_a_parked_car_leaves_is_learnt():
     assert counts[-1] == 0
 
 
+def seconds_until_learnt(rate):
+    """Time in s after which what came into the scene, and stays, is background."""
+    detector = MotionDetector()
+    rng = np.random.default_rng(0)
+    for index in range(30 + 20 * rate):
+        image = GROUND + rng.integers(0, 5, GROUND.shape)
+        if index >= 30:
+            image[60:84, 40:76] = PAINT
+        found = detector.detect(image.astype(np.uint8), (), 1 / rate)
+        if index > 30 and not len(found):
+            return (index - 30) / rate
+    return np.inf
+
+
+@pytest.mark.parametrize("rate", [5, 15, 60])
+def test_what_stays_is_learnt_after_seconds_at_any_rate(rate):
+    # Then some images more, until its colours are in two of ten samples.
+    assert 4 < seconds_until_learnt(rate) < 4.2 + 30 / rate
+
+
 def test_blobs_that_hold_several_vehicles_are_reported():
     both = np.array([[20.0, 40, 40, 60], [42, 40, 62, 60]])
     reader, motion = BlobReader(), np.empty((0, 2))

@@ -15,7 +15,7 @@ FRAME = np.zeros((9, 9, 3), np.uint8)
 class Blind:
     disturbed, is_blind = True, True
 
-    def detect(self, frame, tracks=()):
+    def detect(self, frame, tracks=(), period=0.0):
         return Detections.make([[1, 2, 30, 40]])
 
 
@@ -26,6 +26,16 @@ def test_a_detector_looks_at_every_third_image_and_says_whether_it_looked():
     assert seen == [looked, passed, passed, looked, passed, passed, looked]
     assert paced.found == 1
     assert paced.seconds > 0
+
+
+def test_a_detector_is_told_the_time_since_it_looked():
+    told = []
+    blind = Blind()
+    blind.detect = lambda *given: told.append(given[2]) or Detections.make([[1, 2, 30, 40]])
+    paced = PacedDetector(blind, lambda: 3)
+    for _ in range(7):
+        paced.detect(FRAME, (), 0.1)
+    assert told == pytest.approx([0.1, 0.3, 0.3])
 
 
 @pytest.mark.parametrize(

@@ -152,7 +152,7 @@ def test_a_detector_that_fails_is_made_anew():
             Eye.made += 1
             self.disturbed = self.is_blind = False
 
-        def detect(self, frame, tracks=()):
+        def detect(self, frame, tracks=(), period=0.0):
             if Eye.made == 1:
                 raise ZeroDivisionError
             self.is_blind = True

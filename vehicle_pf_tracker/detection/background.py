@@ -121,10 +121,21 @@ class Background:
         agreeing.ravel()[index] = few
         return np.asarray(agreeing < _AGREEING)
 
-    def learn(self, image: Colours, changed: Pixels, held: Pixels) -> None:
-        """Renew samples, but where something has changed lately or is held."""
-        patience = self._thresholds.patience
-        # 1. How long each pixel has lately been covered, by images.
+    def learn(self, image: Colours, changed: Pixels, held: Pixels, period: float) -> None:
+        """Renew samples, but where something has changed lately or is held.
+
+        Parameters
+        ----------
+        image : (H, W, 3) array
+            The image.
+        changed, held : (H, W) arrays
+            Pixels that differ from the background, and those of followed vehicles.
+        period : float
+            Time that the image stands for, s.
+        """
+        # 1. How long each pixel has lately been covered, by images: their sums are whole, and the
+        # bound is met in the same one on any machine.
+        patience = self._thresholds.patience / period
         self._exposure += np.where(changed, np.float32(1), np.float32(-_FORGIVEN))
         # Bounded: where a queue stood for long, what drives by would else be learnt for hours.
         np.clip(self._exposure, 0, 2 * patience, out=self._exposure)

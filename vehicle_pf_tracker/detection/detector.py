@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.detection.detections import Detections
 
@@ -51,6 +52,21 @@ class Detector(Protocol):
     disturbed: bool
     is_blind: bool
 
-    def detect(self, frame: Frame, tracks: Sequence[FollowedVehicle] = ()) -> Detections:
-        """Find them; `tracks` are the estimates of the frame before."""
+    def detect(
+        self,
+        frame: Frame,
+        tracks: Sequence[FollowedVehicle] = (),
+        period: float = DEFAULT_PERIOD,
+    ) -> Detections:
+        """Find them.
+
+        Parameters
+        ----------
+        frame : Frame
+            RGB image.
+        tracks : sequence of FollowedVehicle
+            Estimates of the frame before.
+        period : float
+            Nominal time since the image that it looked at before, s.
+        """
         ...

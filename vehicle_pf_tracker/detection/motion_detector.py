@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.detection.background import Background, Colours, Pixels
 from vehicle_pf_tracker.detection.blobs import WIDEST, BlobReader
@@ -58,7 +59,12 @@ class MotionDetector:
         self._shape: tuple[int, ...] = (0, 0)
         self._restart()
 
-    def detect(self, frame: Frame, tracks: Sequence[FollowedVehicle] = ()) -> Detections:
+    def detect(
+        self,
+        frame: Frame,
+        tracks: Sequence[FollowedVehicle] = (),
+        period: float = DEFAULT_PERIOD,
+    ) -> Detections:
         """Find what moves.
 
         Parameters
@@ -67,6 +73,9 @@ class MotionDetector:
             RGB image.
         tracks : sequence of FollowedVehicle
             Estimates of the frame before; the background is not learnt where they stand.
+        period : float
+            Nominal time since the image that it looked at before, s: what has changed for long is
+            learnt. Not the measured one, as a gap does not show what stood there meanwhile.
 
         Returns
         -------
@@ -103,7 +112,7 @@ class MotionDetector:
         moving = np.asarray(cv2.medianBlur(changed.astype(np.uint8), 3), np.uint8)
         moving = np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _CLOSED), np.uint8)
         # 5. Learn with the clean mask: the specks that it leaves out are background.
-        self._background.learn(small, moving > 0, _covered(covered, small))
+        self._background.learn(small, moving > 0, _covered(covered, small), period)
         # 6. Read blobs. All tracks tell how vehicles drive here, also tentative ones.
         velocities = np.array([one.velocity for one in tracks]).reshape(-1, 2)
         blobs = self._blobs.read(moving, predicted, velocities)

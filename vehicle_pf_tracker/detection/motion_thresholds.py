@@ -18,8 +18,7 @@ class MotionThresholds:
         Least sum of the absolute differences of the three channels, 0 to 765, of a pixel that has
         changed. A choice: noise of a few levels a channel stays below it.
     patience : float
-        Images for which what has changed is not learnt as background: four seconds of 25 Hz, in
-        which a slow lorry passes.
+        Time in s for which what has changed is not learnt as background: a slow lorry passes in it.
     shadow : float
         Least brightness of a shadow, fraction of the background's. HOTA / IDF1 of seventeen clips
         are 36.7 / 47.1; at .5 36.4 / 47.3, at .7 35.8 / 46.0, without shadows 31.8 / 39.7.
@@ -29,7 +28,7 @@ class MotionThresholds:
     """
 
     colour_threshold: float = 32.0
-    patience: float = 100.0
+    patience: float = 4.0
     shadow: float = 0.6
     apart: float = 1.0
 

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.detection import network_classes
@@ -90,8 +91,13 @@ class NetworkDetector:
         except InputError as error:
             raise InputError(f"the network {self._name}: {error}") from None
 
-    def detect(self, frame: Frame, tracks: Sequence[FollowedVehicle] = ()) -> Detections:
-        """Find vehicles; `tracks` are not used."""
+    def detect(
+        self,
+        frame: Frame,
+        tracks: Sequence[FollowedVehicle] = (),
+        period: float = DEFAULT_PERIOD,
+    ) -> Detections:
+        """Find vehicles; `tracks` and `period` are not used."""
         picture, fit = self._fitted(frame)
         decoded = decode(self.form, self._run(picture), *frame_size(picture))
         # Filter before suppression: a box of a person is not to suppress a car's.

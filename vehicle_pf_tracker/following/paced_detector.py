@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TypeAlias
 
+from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import Detector, FollowedVehicle
@@ -77,7 +78,12 @@ class PacedDetector:
         # Mean time in s that an image costs without the detector, kept from image to image.
         self._others = 0.0
 
-    def detect(self, frame: Frame, tracks: Sequence[FollowedVehicle] = ()) -> Detections:
+    def detect(
+        self,
+        frame: Frame,
+        tracks: Sequence[FollowedVehicle] = (),
+        period: float = DEFAULT_PERIOD,
+    ) -> Detections:
         """Find vehicles, if it is this image's turn; see `Detector`."""
         self._images += 1
         # 0 leaves the choice to `pace`, after the last image.
@@ -87,9 +93,10 @@ class PacedDetector:
         self.is_blind = self._images > 1 and self._images <= self.every
         if self.is_blind:
             return Detections.make([], [])
+        passed = max(self._images - 1, 1)
         self._images = 1
         began = time.perf_counter()
-        found = self._run(partial(self._detector.detect, frame, tracks))
+        found = self._run(partial(self._detector.detect, frame, tracks, passed * period))
         self.found = len(found)
         self.seconds = time.perf_counter() - began
         self.disturbed = self._detector.disturbed

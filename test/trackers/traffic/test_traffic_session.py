@@ -45,7 +45,7 @@ class Eye:
         self.disturbed = self.is_blind = False
         self.tracks = []
 
-    def detect(self, frame, tracks=()):
+    def detect(self, frame, tracks=(), period=0.0):
         self.tracks.append([one.identity for one in tracks])
         return Detections.make([[1, 2, 3, 4]])
 

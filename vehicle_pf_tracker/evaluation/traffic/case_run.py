@@ -12,6 +12,7 @@ from dataclasses import astuple
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import FollowedVehicle
@@ -94,9 +95,14 @@ class _Recorder(MotionDetector):
         super().__init__()
         self.rows: list[Array] = []
 
-    def detect(self, frame: Frame, tracks: Sequence[FollowedVehicle] = ()) -> Detections:
+    def detect(
+        self,
+        frame: Frame,
+        tracks: Sequence[FollowedVehicle] = (),
+        period: float = DEFAULT_PERIOD,
+    ) -> Detections:
         """Find what moves."""
-        detections = super().detect(frame, tracks)
+        detections = super().detect(frame, tracks, period)
         numbers = np.full(len(detections.scores), len(self.rows) + 1)
         self.rows.append(np.column_stack([numbers, detections.boxes, detections.scores]))
         return detections

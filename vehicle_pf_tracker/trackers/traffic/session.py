@@ -205,7 +205,7 @@ class TrafficSession:
         """Detect, leave out what is outside the regions, and follow the vehicles."""
         # 1. Detections from outside have precedence; else the detector looks.
         if detections is None and self.detector is not None:
-            detections = self._detected(self.detector, turn.frame)
+            detections = self._detected(self.detector, turn)
         # 2. Count before regions apply, so that a user sees what they took. Reset first: without
         # detections the number of the image before would stay.
         self.found.latest = None
@@ -227,9 +227,9 @@ class TrafficSession:
             followed = {one.identity: (one.box, one.label) for one in self.estimates}
             self._given = {number: followed[number] for number in self._given if number in followed}
 
-    def _detected(self, detector: Detector, frame: Frame) -> Detections | None:
+    def _detected(self, detector: Detector, turn: Turn) -> Detections | None:
         """Return the detections; None where it did not look, so that no vehicle is missed."""
-        found = detector.detect(frame, self.estimates)
+        found = detector.detect(turn.frame, self.estimates, turn.period)
         if detector.disturbed:
             self.found.disturbed += 1
             self.events.append(_DISTURBED)
