@@ -22,6 +22,7 @@ from vehicle_pf_tracker.trackers.traffic.existence import (
 )
 from vehicle_pf_tracker.trackers.traffic.identity import resumed
 from vehicle_pf_tracker.trackers.traffic.prediction import driven
+from vehicle_pf_tracker.trackers.traffic.returns import DetectionRate
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
@@ -139,6 +140,18 @@ def test_a_detector_that_finds_one_vehicle_in_three_is_known_to():
         missed = changed(one, undetected=float(frame % 3 > 0))
         doubt(State(together(missed, other), experience), STEP)
     assert experience.rate.share == pytest.approx(1 / 3, abs=0.05)
+
+
+@pytest.mark.parametrize("found", [True, False])
+def test_a_detector_that_became_worse_or_better_is_known_to_after_minutes(found):
+    rate = DetectionRate()
+    asked = np.ones(5, np.bool_)
+    for _ in range(4000):
+        rate.learn(asked, np.full(5, found))
+    for _ in range(1000):
+        shares = rate.learn(asked, np.full(5, not found))
+    assert abs(rate.share - found) > 0.8
+    assert 0 < shares[-1] < 1
 
 
 def missed(undetected, *, seen=()):

@@ -3,6 +3,8 @@
 
 """Boxes of parts of a vehicle, and of several vehicles."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from test_correction import BOX, Vehicle, exactly
@@ -48,6 +50,32 @@ def missed(left=100.0, *, matches=6):
     """A confirmed vehicle that no detection was given to."""
     box = BOX + np.array([left - 100, 0, left - 100, 0])
     return track_of(exactly(box), confirmed=True, matches=matches, undetected=1.0)
+
+
+def test_boxes_around_a_vehicle_do_not_count_for_one_that_is_several():
+    _, tracks = looks(missed(), 3)
+    own = np.array([[100.0, 114, 118, 130]])
+    every = np.vstack([own, [118.0, 98, 142, 114]])
+    assert divided(tracks.drives, own, every).gaussians.edges[0] == pytest.approx(BOX)
+
+
+def test_detections_beside_its_own_do_not_count_for_one_that_was_a_part():
+    tracks = missed()
+    own = np.array([[100.0, 114, 118, 130]])
+    every = np.vstack([own, [118.0, 98, 142, 114]])
+    drives = tracks.drives
+    for _ in range(3):
+        drives = divided(drives, own, every)
+    found, _ = looks(replace(tracks, drives=drives), 1)
+    assert found == [[]]
+
+
+def test_two_boxes_around_a_vehicle_in_one_image_are_one_look():
+    tracks = missed()
+    for expected in ([], [], [], [0]):
+        tracks, rows = outgrown(tracks, np.vstack([WHOLE, WHOLE + 1]))
+        assert rows.tolist() == expected
+    assert tracks.edges == pytest.approx(WHOLE)
 
 
 def looks(tracks, count):

@@ -21,8 +21,6 @@ from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 _REFUTED = -3.0
 """Log odds, one in twenty, below which a vehicle ends: as much against it as the surest detection
 tells for it."""
-_UNSEEN_FROM = 2.0
-"""Nominal periods without a sight from which a vehicle has left: one frame may fail."""
 _LEAVES = 0.5
 """Share in the image below which an unseen vehicle has left it: most of it is outside."""
 _LEFT = 0.1
@@ -98,7 +96,7 @@ def _with_lost(tracks: Tracks, gone: Bools, step: Step) -> Tracks:
     sights = tracks.sights
     absences = tracks.sights.absences
     is_old = absences.unseen * step.period > step.parameters.lost_after
-    has_left = (sights.inside < _LEAVES) & (absences.unseen >= _UNSEEN_FROM)
+    has_left = (sights.inside < _LEAVES) & ~absences.seen
     lost = is_old | has_left | gone | (tracks.beliefs.log_odds < 0)
     sights = replace(sights, absences=replace(absences, lost=lost))
     return replace(tracks, sights=sights)

@@ -67,8 +67,6 @@ _BLIND_FROM = 2
 """Vehicles in sight, all missed in one image, by which the detector failed: all do not vanish."""
 _BLIND_FOR = 150.0
 """Nominal periods after which an undetected vehicle is doubted even so: 5 s at 30 Hz. A choice."""
-_SEEN_WITHIN = 2.0
-"""Nominal periods within which a vehicle counts as seen: one frame may fail."""
 
 
 def fits_of_known(tracks: Tracks, fits: Array) -> Array:
@@ -254,7 +252,7 @@ def doubt(state: State, step: Step) -> State:
     confirmed = tracks.confirmed
     detected = tracks.detected
     in_sight = tracks.in_sight
-    is_seen = absences.unseen < _SEEN_WITHIN
+    is_seen = absences.seen
     watched = confirmed & is_seen & (absences.undetected <= _BLIND_FOR) & in_sight
     if not (confirmed & detected).any() and watched.sum() >= _BLIND_FROM:
         return state

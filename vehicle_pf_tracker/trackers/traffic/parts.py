@@ -72,7 +72,10 @@ def divided(drives: Drives, edges: Array, others: Array) -> Drives:
     known = intersections(predicted, edges) > _INSIDE * areas(edges)
     # In a row: one box of a neighbour that touches does not count for ever.
     crowded = np.where(known & beside, drives.extents.crowded + 1, 0)
-    drives = replace(drives, extents=replace(drives.extents, crowded=crowded))
+    # It has a detection of its own: no box around it was meant for it so far.
+    enclosed = np.zeros(len(crowded), np.intp)
+    extents = replace(drives.extents, crowded=crowded, enclosed=enclosed)
+    drives = replace(drives, extents=extents)
     several = np.flatnonzero(crowded >= _CROWDED_FOR)
     return _filled(drives, several, edges[several]) if len(several) else drives
 
@@ -81,15 +84,16 @@ def _filled(drives: Drives, rows: Integers, edges: Array) -> Drives:
     """Set the boxes of the vehicles at `rows` (K,) to `edges` (K, 4) in px."""
     extents = drives.extents
     crowded = extents.crowded.copy()
+    enclosed = extents.enclosed.copy()
     shown = extents.shown.copy()
     # The size is now all that is seen, so that no edge is taken for covered by what was a
     # neighbour.
-    crowded[rows], shown[rows] = 0, 1.0
+    crowded[rows], enclosed[rows], shown[rows] = 0, 0, 1.0
     resized = drives.gaussians.take(rows).resized(edges)
     return replace(
         drives,
         gaussians=drives.gaussians.put(rows, resized),
-        extents=replace(extents, crowded=crowded, shown=shown),
+        extents=replace(extents, crowded=crowded, enclosed=enclosed, shown=shown),
     )
 
 
@@ -126,14 +130,16 @@ def outgrown(tracks: Tracks, edges: Array) -> tuple[Tracks, Integers]:
     matches = tracks.beliefs.ways.matches
     # 3. Not at the first look, nor if it was usually detected as it is: two vehicles that drive
     # side by side are one box for a while.
-    rows: list[int] = []
-    for index, column in np.argwhere(around & waits).tolist():
-        row = int(confirmed[column])
-        crowded = drives.extents.crowded.copy()
-        crowded[row] += 1
-        drives = replace(drives, extents=replace(drives.extents, crowded=crowded))
-        if crowded[row] >= max(_CROWDED_FOR, _OFTEN_ALONE * matches[row]):
-            drives = _filled(drives, np.array([row]), edges[index : index + 1])
-            rows.append(row)
-    # Several boxes may be around one vehicle, which is one row.
-    return replace(tracks, drives=drives), np.array(list(dict.fromkeys(rows)), np.intp)
+    # Several boxes may be around one vehicle: that is one look, and the first of them counts.
+    vehicles, columns = np.nonzero((around & waits).T)
+    if not len(vehicles):
+        return tracks, none
+    vehicles, first = np.unique(vehicles, return_index=True)
+    rows = confirmed[vehicles]
+    enclosed = drives.extents.enclosed.copy()
+    enclosed[rows] += 1
+    due = enclosed[rows] >= np.maximum(_CROWDED_FOR, _OFTEN_ALONE * matches[rows])
+    drives = replace(drives, extents=replace(drives.extents, enclosed=enclosed))
+    if due.any():
+        drives = _filled(drives, rows[due], edges[columns[first][due]])
+    return replace(tracks, drives=drives), rows[due]

@@ -13,8 +13,6 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 
-_SEEN_WITHIN = 2.0
-"""Nominal periods within which a vehicle counts as seen: one frame may fail."""
 _MOSTLY_INSIDE = 0.5
 """Share in the image above which no border hides a vehicle: most of it is inside."""
 _PLACED = {
@@ -95,7 +93,7 @@ def _modes(tracks: Tracks) -> list[TrackMode]:
     facts = zip(
         tracks.confirmed.tolist(),
         absences.lost.tolist(),
-        (absences.unseen < _SEEN_WITHIN).tolist(),
+        absences.seen.tolist(),
         strict=True,
     )
     return [_mode(*each) for each in facts]

@@ -25,6 +25,8 @@ from vehicle_pf_tracker.trackers.traffic.way import Ways
 IN_SIGHT = 0.5
 """Share of a box, not covered and inside the image, above which a detector should see it: most of
 it. One bound for misses, matches and parts, so that what is excused in one is in the others."""
+_SEEN_WITHIN = 2.0
+"""Nominal periods within which a vehicle counts as seen: one frame may fail."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,6 +85,8 @@ class Extents(Rows):
         Place where several in a row were smaller, until it is known whether the rest comes back.
     crowded : (N,) array
         Number of its latest detections in a row that had another one beside them in its box.
+    enclosed : (N,) array
+        Number of looks since its latest detection that showed a box around it.
     """
 
     shown: Array
@@ -90,6 +94,7 @@ class Extents(Rows):
     short: Integers
     shortened: Integers
     crowded: Integers
+    enclosed: Integers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -170,6 +175,11 @@ class Absences(Rows):
     vanished: Integers
     lost: Bools
 
+    @property
+    def seen(self) -> Bools:
+        """True (N,) where it counts as seen, by a detector or by its pixels."""
+        return np.asarray(self.unseen < _SEEN_WITHIN)
+
     def ended(self) -> Absences:
         """End all absences, as of tracks that were just detected."""
         count = len(self)
@@ -246,7 +256,7 @@ class Tracks(Rows):
         zero = np.zeros(count)
         no = np.zeros(count, np.bool_)
         edges = np.zeros((count, 4))
-        extents = Extents(np.zeros((count, 2)), numbers, numbers, none, numbers)
+        extents = Extents(np.zeros((count, 2)), numbers, numbers, none, numbers, numbers)
         # Similar and in sight until something shows the opposite: ones, not zeros.
         looks = Looks(np.zeros((count, BINS)), np.ones(count), detections, np.full(count, np.nan))
         absences = Absences(zero, zero, numbers, none, no)
