@@ -33,13 +33,13 @@ STEP = step_of(SIZE)
 ONLY = np.array([0])
 
 
-def seen(evidence, *boxes):
+def seen(evidence, *boxes, are_shapes=False):
     """Detections of one frame, as the tracker has them."""
-    evidence.look()
+    evidence.look(are_shapes=are_shapes)
     return weighed(Detections.make(boxes, np.full(len(boxes), SCORE)), evidence, SIZE)
 
 
-def ended_unconfirmed(places):
+def ended_unconfirmed(places, *, are_shapes=False):
     """Return the log odds of a detection after ten tracks that were detected at these places."""
     experience = Experience()
     evidence = experience.detections
@@ -47,7 +47,7 @@ def ended_unconfirmed(places):
         one = track(1, *places[0])
         for frame, place in enumerate(places):
             one = driven(one, -1000.0, step_of(SIZE, elapsed=1.0 if frame else 0.0))
-            candidates = seen(evidence, (*place, 40, 30))
+            candidates = seen(evidence, (*place, 40, 30), are_shapes=are_shapes)
             gaussians = one.drives.gaussians.measured(candidates.edges, np.ones((1, 4)))
             one = replace(one, drives=replace(one.drives, gaussians=gaussians))
             one, proven = believed(one, candidates, ONLY, np.zeros(1), experience, STEP)
@@ -64,6 +64,16 @@ def test_what_flickered_in_one_place_speaks_against_its_scores():
 
 def test_what_drove_and_ended_unconfirmed_tells_nothing_about_its_scores():
     assert ended_unconfirmed([(20 + 4 * frame, 100) for frame in range(8)]) == pytest.approx(0)
+
+
+@pytest.mark.parametrize(("are_shapes", "teaches"), [(False, False), (True, True)])
+def test_a_shape_that_ends_is_a_false_alarm_unless_it_is_as_straight_as_one_with_a_number(
+    are_shapes, teaches
+):
+    # Straight enough for a box, not for a shape: the evidence is 14.
+    places = [(20 + 4 * frame, 100 + (3 if frame % 2 else -3)) for frame in range(8)]
+    odds = ended_unconfirmed(places, are_shapes=are_shapes)
+    assert odds < -1 if teaches else odds == pytest.approx(0)
 
 
 def test_what_was_seen_a_few_times_speaks_against_its_scores():

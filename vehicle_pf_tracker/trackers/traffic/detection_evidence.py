@@ -79,9 +79,16 @@ def claims_of(scores: Array) -> Array:
 
 
 class DetectionEvidence:
-    """Outcomes of detections by score, and false alarms by place."""
+    """Outcomes of detections by score, and false alarms by place.
+
+    Attributes
+    ----------
+    are_shapes : bool
+        True where the latest detections were shapes, which may be of pieces of vehicles.
+    """
 
     def __init__(self) -> None:
+        self.are_shapes = False
         self._outcomes = np.zeros((_MEMORY, 2))  # score, and 1 of a vehicle's, 0 of a false alarm
         self._learnt = self._fresh = 0
         # Sorted scores, and running sums of their outcomes: counts between any two scores are then
@@ -93,8 +100,9 @@ class DetectionEvidence:
         self._false = np.zeros(PLACES)
         self._places = np.full((2, PLACES), _PRIOR)
 
-    def look(self) -> None:
-        """Note that the detector has looked at another image."""
+    def look(self, *, are_shapes: bool = False) -> None:
+        """Note that the detector has looked at another image, and whether it reports shapes."""
+        self.are_shapes = are_shapes
         self._images += 1
         if self._images > _MEMORY:
             self._images /= 2

@@ -46,9 +46,12 @@ def end(state: State, step: Step) -> State:
     if goes_on.all():
         return state._replace(tracks=tracks)
     # 3. Tentative tracks that end were false alarms, and teach how such look. What drove may have
-    # been a vehicle, and tells nothing about its detections.
+    # been a vehicle, and tells nothing about its detections: by the same bounds as for a number,
+    # as of shapes that are less straight seven in eight are leaves or light.
+    displacement = step.parameters.birth.displacement
+    are_shapes = experience.detections.are_shapes
     never_drove = tracks.beliefs.ways.matches < _DRIVE_MATCHES
-    never_drove |= ~drives(tracks, step.parameters.birth.displacement)
+    never_drove |= ~drives(tracks, displacement, are_shapes=are_shapes)
     for row in np.flatnonzero(~goes_on & ~tracks.confirmed & never_drove).tolist():
         experience.detections.learn(tracks.beliefs.samples[row], False)
     # 4. Vehicles teach the horizon once each, when all of their growth is known.

@@ -58,7 +58,7 @@ def look(state: State, step: Step, detections: Detections) -> State:
     """
     # 1. Every detection is as likely a vehicle as earlier ones of its score and place have been.
     # The image is counted before: false alarms are a rate per image.
-    state.experience.detections.look()
+    state.experience.detections.look(are_shapes=detections.are_shapes)
     candidates = weighed(detections.usable(*step.size), state.experience.detections, step.size)
     seen = Look(state, np.ones(len(candidates), np.bool_), candidates, step)
     # 2. Vehicles that are known choose first, and among likely detections first: else a false
