@@ -108,15 +108,13 @@ class MotionDetector:
             self.disturbed = self.is_blind = True
             self._restart()
             return Detections.none()
-        # 4. Clean the mask: single pixels go first, else closing would join them to vehicles.
-        moving = np.asarray(cv2.medianBlur(changed.astype(np.uint8), 3), np.uint8)
-        moving = np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _CLOSED), np.uint8)
-        # 5. Learn with the clean mask: the specks that it leaves out are background.
+        # 4. Learn with the clean mask: the specks that it leaves out are background.
+        moving = _cleaned(changed)
         self._background.learn(small, moving > 0, _covered(covered, small), period)
-        # 6. Read blobs. All tracks tell how vehicles drive here, also tentative ones.
+        # 5. Read blobs. All tracks tell how vehicles drive here, also tentative ones.
         velocities = np.array([one.velocity for one in tracks]).reshape(-1, 2)
         blobs = self._blobs.read(moving, predicted, velocities)
-        # 7. Boxes are of the image as it came.
+        # 6. Boxes are of the image as it came.
         edges = self._stabiliser.from_reference(blobs.edges)
         boxes = np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
         made = Detections.make(boxes, blobs.fullness)
@@ -125,6 +123,13 @@ class MotionDetector:
     def _restart(self) -> None:
         self._background = Background(self._shape, self._seed, self._thresholds)
         self._stabiliser = Stabiliser()
+
+
+def _cleaned(changed: Pixels) -> npt.NDArray[np.uint8]:
+    """Drop single pixels from a mask, and close its gaps."""
+    # Single pixels go first, else closing would join them to vehicles.
+    moving = np.asarray(cv2.medianBlur(changed.astype(np.uint8), 3), np.uint8)
+    return np.asarray(cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _CLOSED), np.uint8)
 
 
 def _covered(boxes: Array, image: Colours) -> Pixels:
