@@ -8,6 +8,7 @@ Nothing is computed before it is asked for; frames are kept as they are.
 
 from __future__ import annotations
 
+import itertools
 from collections import deque
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -74,27 +75,39 @@ class Outline(NamedTuple):
         return np.asarray(self.high - self.low)
 
 
+class _Kept(NamedTuple):
+    """A frame, and the frame periods from the first one to it."""
+
+    small: SmallGrey
+    time: float
+
+
 class Foreground:
     """Keeps frames of a standing camera."""
 
     def __init__(self) -> None:
-        self._background: deque[SmallGrey] = deque(maxlen=_KEPT)
-        self._latest: deque[SmallGrey] = deque(maxlen=_LATEST)
+        self._background: deque[_Kept] = deque(maxlen=_KEPT)
+        self._latest: deque[_Kept] = deque(maxlen=_LATEST)
         self._frames = 0
+        self._time = 0.0
         self._whole = np.empty((0, 0), np.uint8)
         self._learnt_at = -1
 
-    def keep(self, small: SmallGrey, *, still: bool) -> None:
-        """Keep a frame; discard earlier ones of another size, or if the camera has moved."""
+    def keep(self, small: SmallGrey, *, still: bool, elapsed: float = 1.0) -> None:
+        """Keep a frame, `elapsed` periods after the last one.
+
+        Earlier ones are discarded if they are of another size, or if the camera has moved.
+        """
+        self._time += elapsed
         # A background of another view is worse than none.
-        if not still or (self._latest and self._latest[-1].image.shape != small.image.shape):
+        if not still or (self._latest and self._latest[-1].small.image.shape != small.image.shape):
             self._background.clear()
             self._latest.clear()
             self._frames = 0
         # Frames in a row show the same vehicles: those farther apart tell road from traffic.
         if self._frames % _KEPT_EVERY == 0:
-            self._background.append(small)
-        self._latest.append(small)
+            self._background.append(_Kept(small, self._time))
+        self._latest.append(_Kept(small, self._time))
         self._frames += 1
 
     @property
@@ -105,25 +118,34 @@ class Foreground:
     @property
     def extent(self) -> Array:
         """Width and height of the frames, px."""
-        return np.array(self._latest[-1].image.shape[::-1]) / self._latest[-1].zoom
+        small = self._latest[-1].small
+        return np.array(small.image.shape[::-1]) / small.zoom
 
     def learn_background(self) -> None:
         """Learn the whole background from the frames that are kept now."""
-        self._whole = median([each.image for each in self._background])
+        self._whole = median([each.small.image for each in self._background])
         self._learnt_at = self._frames
 
     def history(self) -> Iterator[tuple[float, Array]]:
-        """Give the ages of kept frames, and the boxes of what moves in them.
+        """Give the ages in periods of kept frames, and the boxes of what moves in them.
 
         The background has to be learnt.
         """
         kept = list(self._background)[::-1]
-        # Ages count from the latest frame, and kept frames may be older by up to three.
-        since = (self._frames - 1) % _KEPT_EVERY
-        return (
-            (float(since + _KEPT_EVERY * back), self._boxes(kept[back]))
-            for back in range(0, len(kept), _LOOKED_AT)
-        )
+        return ((self._time - each.time, self._boxes(each.small)) for each in kept[::_LOOKED_AT])
+
+    def periods_since(self, age: float) -> list[float] | None:
+        """Periods from each of the latest frames to the next, from the one of this age on.
+
+        Oldest first; None where that one is no longer kept.
+        """
+        # Where frames were dropped there are fewer of them than periods have passed.
+        times = [each.time for each in self._latest]
+        wanted = self._time - age
+        if wanted < times[0] - 0.5:
+            return None
+        first = min(range(len(times)), key=lambda number: abs(times[number] - wanted))
+        return [after - before for before, after in itertools.pairwise(times[first:])]
 
     def boxes(self) -> Array:
         """Find all that moves now, against the background that was learnt.
@@ -133,11 +155,11 @@ class Foreground:
         (N, 2, 2) array
             Left and upper, right and lower side of each connected piece, px.
         """
-        return self._boxes(self._latest[-1])
+        return self._boxes(self._latest[-1].small)
 
     def boxes_near(self, centre: Array, size: Array) -> Array:
         """Find what moves now within three of its longer sides of a box (px), as `boxes`."""
-        small = self._latest[-1]
+        small = self._latest[-1].small
         rows, columns, corner = _neighbourhood(small, centre, _WIDER * size)
         piece = small.image[rows, columns]
         if min(piece.shape) < 3:
@@ -154,7 +176,7 @@ class Foreground:
         """
         if not self.is_known or ago >= len(self._latest):
             return None
-        small = self._latest[-1 - ago]
+        small = self._latest[-1 - ago].small
         rows, columns, corner = _neighbourhood(small, centre, size)
         piece = small.image[rows, columns]
         if min(piece.shape) < 3:
@@ -163,7 +185,7 @@ class Foreground:
         if self._learnt_at == self._frames:
             background = self._whole[rows, columns]
         else:
-            background = median([each.image[rows, columns] for each in self._background])
+            background = median([each.small.image[rows, columns] for each in self._background])
         moving = _moving(piece, background)
         # From here on in px of the piece; the outline goes back to px of the frame.
         inner = centre * small.zoom - corner

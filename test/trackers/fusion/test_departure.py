@@ -8,6 +8,7 @@ import pytest
 from fusion_samples import fusion
 from street import HEIGHT, SIZE, START, WIDTH, Street, error, follow, vehicle
 
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import cut_patch
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import View
@@ -81,9 +82,34 @@ def peaked(x, height):
     return view
 
 
+def far_away():
+    """One that drove to the right until it was too far to see."""
+    return Departure.far_away(PLACE, np.full(2, 7.0), np.array([0.5, 0.0]), Strangers())
+
+
+def test_the_velocity_of_a_return_is_per_period_though_frames_were_dropped():
+    departure = far_away()
+    for time in range(0, 18, 2):
+        departure = departure.observed(peaked(100 + time, 0.9), 2.0)
+    assert departure.returned[1] == pytest.approx([1.0, 0.0], abs=0.1)
+
+
+def test_what_stands_does_not_return_though_the_camera_pans():
+    """The background moves to the right by 2 px a frame, and with it the place of departure."""
+    pan = CameraMotion(np.eye(2), np.array([2.0, 0.0]))
+    for standing in (True, False):
+        departure = far_away()
+        for time in range(12):
+            departure = departure.moved(pan)
+            assert departure.position[0] == pytest.approx(PLACE[0] + 2 * (time + 1))
+            x = 100 + (2 if standing else 4) * time
+            departure = departure.observed(peaked(x, 0.9))
+        assert (departure.returned is None) is standing
+
+
 def returns(views, elapsed=1.0):
     """Frame by frame, whether one too far to see has come back."""
-    departure = Departure.far_away(PLACE, np.full(2, 7.0), np.array([0.5, 0.0]), Strangers())
+    departure = far_away()
     for view in views:
         departure = departure.observed(view, elapsed)
         yield departure.returned is not None

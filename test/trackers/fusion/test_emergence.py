@@ -37,15 +37,17 @@ def coming_out(time, speed=3.0, size=(12, 14)):
     return [] if time < 20 else [(OUT[0], (top + low) / 2, size[0], low - top)]
 
 
-def run(others=lambda time: [], earlier=(), out=coming_out):
+def run(others=lambda time: [], earlier=(), out=coming_out, dropped=()):
     """Frame in which the vehicle is proven, and what was given; None if it never is."""
     before = [(ago, sides(*boxes)) for ago, boxes in earlier]
     emergence = Emergence(Sighting(0.0, LAST, SIZE), MOTION, IMAGE)
     if not emergence.was_alone(before):
         return None
-    for time in range(1, 60):
-        emergence = emergence and emergence.observed(sides(*out(time), *others(time)), 1.0)
-        found = emergence and emergence.proven(1.0)
+    times = [time for time in range(60) if time not in dropped]
+    for last, time in itertools.pairwise(times):
+        boxes = sides(*out(time), *others(time))
+        emergence = emergence and emergence.observed(boxes, float(time - last))
+        found = emergence and emergence.proven()
         if found is not None:
             return time, found
     return None
@@ -56,6 +58,20 @@ def test_a_single_vehicle_that_comes_out_beside_the_path_is_found():
     assert 27 <= time <= 32
     assert box.mean(axis=0)[0] == pytest.approx(OUT[0], abs=1)
     assert velocity == pytest.approx([0.0, -3.0], abs=0.5)
+
+
+def test_dropped_frames_do_not_make_it_slower_or_faster():
+    # The last interval is twice as long as those before, or all but the last are.
+    for dropped in ({26}, {23, 25, 27}):
+        _, (_, velocity) = run(dropped=dropped)
+        assert velocity == pytest.approx([0.0, -3.0], abs=0.5)
+
+
+def test_its_own_outline_of_before_is_no_other_vehicle():
+    """The last clear sighting is five frames old: ten frames ago it was five before that."""
+    emergence = Emergence(Sighting(5.0, LAST, SIZE), MOTION, IMAGE)
+    assert emergence.was_alone([(10.0, sides((85 - 11, 120, *SIZE)))])
+    assert not emergence.was_alone([(10.0, sides((85 - 45, 120, *SIZE)))])
 
 
 @pytest.mark.parametrize(

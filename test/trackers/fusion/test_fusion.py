@@ -3,6 +3,7 @@
 
 """The flagship on streets and synthetic scenes: in view, hidden, recovered, and at the limits."""
 
+import itertools
 import math
 
 import cv2
@@ -25,6 +26,7 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import HIDDEN_SCALES
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
+from vehicle_pf_tracker.trackers.fusion.verdict import Hidden, Turning
 
 
 def run(name, seed, **values):
@@ -80,6 +82,48 @@ def test_what_comes_out_in_another_paint_is_another_vehicle():
     assert {e.mode for e in same} == {Mode.TRACKING}
     assert {e.mode for e in blue} == {Mode.OCCLUDED}
     assert max(e.confidence for e in blue) < 0.1
+    # Nothing was observed of the vehicle, though the stranger has its pattern.
+    assert max(e.similarities["response"] for e in blue) < 0.5
+
+
+def test_with_the_cameras_motion_off_the_camera_is_taken_to_stand():
+    street, tracker = Street(speed=2.0), fusion(**{"motion.camera": False})
+    follow(tracker, street, range(30))
+    assert tracker._memory.foreground.is_known
+    assert tracker._state.sightings.are_steady
+
+
+def test_a_vehicle_that_left_waits_in_the_background_not_in_the_image():
+    """The camera pans after it has left by the border."""
+    road, car = texture(5, 700, 300, 2.5, 5.0), texture(6, 60, 40, 2.5, 5.0)
+    tracker = fusion()
+    for time in range(70):
+        picture, left = road.copy(), max(time - 40, 0) * 2
+        x = 200 + 5 * time
+        if x < 640:
+            picture[100:140, x : x + 60] = car
+        frame = np.ascontiguousarray(picture[:, left : left + 320])
+        frame = frame if x > left + 320 or time < 30 else road[:, left : left + 320].copy()
+        estimate = tracker.step(frame) if time else tracker.start(frame, Box(x, 100, 60, 40))
+        if time == 39:
+            before = tracker._state.verdict.departure.position.copy()
+    assert estimate.mode is Mode.LOST
+    moved = tracker._state.verdict.departure.position - before
+    assert moved == pytest.approx([-58.0, 0.0], abs=3.0)
+
+
+def test_a_turn_while_hidden_keeps_no_patch_of_the_occluder():
+    """What was kept of the surface in hidden frames shows something else."""
+    surfaces = []
+    tracker = fusion(seed=0)
+    for number, each in enumerate(make_scene("turn_occluded", seed=0).frames()):
+        tracker.step(each.frame) if number else tracker.start(each.frame, each.truth.box)
+        surfaces.append((type(tracker._state.verdict), len(tracker._state.surface.patches)))
+    after = [
+        now[1] for last, now in itertools.pairwise(surfaces)
+        if (last[0], now[0]) == (Hidden, Turning)
+    ]  # fmt: skip
+    assert after == [1] * len(after) and after
 
 
 def test_reconfigured_while_hidden_it_still_recovers():

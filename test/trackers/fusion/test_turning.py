@@ -13,6 +13,7 @@ from vehicle_pf_tracker.image.canonical_patch import Patch
 from vehicle_pf_tracker.image.foreground import Foreground, Outline
 from vehicle_pf_tracker.image.small_grey import SmallGrey
 from vehicle_pf_tracker.trackers.fusion.appearance import View
+from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion, Sighting
 from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 from vehicle_pf_tracker.trackers.fusion.turning import Branch, Outlines
@@ -124,8 +125,26 @@ def test_what_does_not_leave_its_path_or_cannot_be_told_is_no_turn(options):
 
 def test_the_turn_is_over_when_the_filter_knows_the_vehicle_again():
     given = [turned is not None for turned in drive(turns=0.08, response=0.9)[0]]
-    assert sum(given) == 8
-    assert not any(given[given.index(True) + 8 :])
+    # In the eighth frame in a row in which the filter knows it, the one of the proof included.
+    assert sum(given) == PROOF_FRAMES - 1
+    assert not any(given[given.index(True) + PROOF_FRAMES - 1 :])
+
+
+def test_frames_that_were_dropped_are_not_counted_back():
+    """Before the doubt every second frame is missing: ten periods are five frames."""
+    foreground = Foreground()
+    centres = [START + np.array([SPEED * time, 0.0]) for time in range(0, 60, 2)]
+    for centre in centres:
+        picture = ROAD.copy()
+        left, top = np.rint(centre - SIZE / 2).astype(int)
+        picture[top : top + 16, left : left + 26] = 230
+        foreground.keep(SmallGrey(picture, 1.0), still=True, elapsed=2.0)
+    motion = PerspectiveMotion(centres[-6], np.array([SPEED, 0.0]), 0.0)
+    branch = Branch.begun(foreground, motion, Sighting(10.0, centres[-6], SIZE))
+    assert branch.age == 10.0
+    assert branch.box[0] == pytest.approx(centres[-1], abs=1.5)
+    assert branch.velocity == pytest.approx([SPEED, 0.0], abs=0.2)
+    assert Branch.begun(foreground, motion, Sighting(40.0, centres[-6], SIZE)) is None
 
 
 def test_frames_of_another_size_begin_anew():

@@ -17,6 +17,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, KEPT_FRAMES
@@ -44,11 +45,12 @@ in some 140 frames, a choice between the seconds that a stranger passes in and a
 
 
 class _Candidate(NamedTuple):
-    """A possible return: first and latest position (2,), px, and number of frames in a row."""
+    """A possible return: first and latest position (2,), px, frames in a row, and their periods."""
 
     first: Array
     latest: Array
-    frames: int
+    frames: int = 1
+    elapsed: float = 0.0
 
 
 class Strangers(NamedTuple):
@@ -88,11 +90,11 @@ class Departure(NamedTuple):
     way : (2,) array
         Direction that a return has to move in: into the image, or on along the road.
     position, size : (2,) arrays
-        Centre where it left, and its width and height then, px.
+        Centre where it left, carried along with the background, and its width and height then, px.
     response : float
         Response that a return has to reach, relative to the usual one.
     waited : float
-        Frames since it left.
+        Periods since it left.
     candidate : _Candidate or None
         Peak that may be the vehicle on its way back.
     """
@@ -128,14 +130,25 @@ class Departure(NamedTuple):
         direction = heading / max(float(np.hypot(*heading)), 1e-9)
         return cls(TOO_FAR, direction, position, size, strangers.level)
 
+    def moved(self, camera: CameraMotion) -> Departure:
+        """Move with the background: where the camera pans, all that stands moves in the image."""
+        if camera.still:
+            return self
+        candidate = self.candidate
+        if candidate is not None:
+            first, latest = camera.apply(np.stack([candidate.first, candidate.latest]))
+            candidate = candidate._replace(first=first, latest=latest)
+        return self._replace(position=camera.apply(self.position), candidate=candidate)
+
     def observed(self, view: View, elapsed: float = 1.0) -> Departure:
-        """Look for a return in the next frame.
+        """Look for a return in the next frame, which `view` shows around the place of departure.
 
         The heading of one too far to see is valid for as long as sightings are kept.
         """
         waited = self.waited + elapsed
         is_old = self.reason == TOO_FAR and waited > KEPT_FRAMES
-        return self._replace(waited=waited, candidate=None if is_old else self._found_in(view))
+        candidate = None if is_old else self._found_in(view, elapsed)
+        return self._replace(waited=waited, candidate=candidate)
 
     @property
     def returned(self) -> tuple[Array, Array] | None:
@@ -143,18 +156,18 @@ class Departure(NamedTuple):
         if self.candidate is None:
             return None
         # Motion is asked for beside frames, since scenery answers in every frame but stands still.
-        first, latest, frames = self.candidate
+        first, latest, frames, elapsed = self.candidate
         moved = latest - first
         if frames < PROOF_FRAMES or float(moved @ self.way) < PROOF_DISTANCE * self._extent:
             return None
-        # There is one displacement fewer than there are frames.
-        return latest, moved / (frames - 1)
+        # Over periods, not frames: some may have been dropped. 1e-3: stamps may repeat.
+        return latest, moved / max(elapsed, 1e-3)
 
     @property
     def _extent(self) -> float:
         return float(np.sqrt(self.size.prod()))
 
-    def _found_in(self, view: View) -> _Candidate | None:
+    def _found_in(self, view: View, elapsed: float) -> _Candidate | None:
         """Continue the candidate by the highest peak, or begin another one there."""
         # Only the highest peak: weaker ones are nearer to the strangers, and several candidates at
         # a time would multiply the chances of a false return.
@@ -166,11 +179,12 @@ class Departure(NamedTuple):
             return None
         reach = _FARTHEST_STEP * self._extent
         if before is not None and np.linalg.norm(found - before.latest) <= reach:
-            return _Candidate(before.first, found, before.frames + 1)
-        # Seen for the first time, it is as near to the border as one that enters.
-        depth = float((found - self.position) @ self.way)
+            return _Candidate(before.first, found, before.frames + 1, before.elapsed + elapsed)
+        # Seen for the first time, it is as near to the border as one that enters. From the middle
+        # of the view: with a camera that pans the place of departure itself may leave the image.
+        depth = float((found - view.patch.centre) @ self.way)
         is_near = self.reason == TOO_FAR or depth < _ENTERS_WITHIN * self._extent
-        return _Candidate(found, found, 1) if is_near else None
+        return _Candidate(found, found) if is_near else None
 
 
 def is_too_far(size: Array, first: Array) -> bool:

@@ -43,9 +43,11 @@ class Emergence(NamedTuple):
     image_size : (2,) array
         Width and height of the frame, px.
     age : float
-        Frames since the vehicle was hidden.
+        Periods since the vehicle was hidden.
     sides : tuple of (2, 2) arrays
         Bounding boxes (low, high; px) of the one that moves, in the last frames.
+    since : float
+        Age at the first of these boxes.
     paint : tuple of float
         Differences of its paint from the vehicle's, in the frames in which it was proven.
     """
@@ -55,14 +57,19 @@ class Emergence(NamedTuple):
     image_size: Array
     age: float = 0.0
     sides: tuple[Array, ...] = ()
+    since: float = 0.0
     paint: tuple[float, ...] = ()
 
     def was_alone(self, earlier: Iterable[tuple[float, Array]]) -> bool:
         """Test whether nothing else moved before; `earlier` has ages in frames, and boxes."""
         # A stranger that moved before may be hidden now, too, and come out in the vehicle's stead.
-        last = self.last.position
+        last = self.last
         velocity = self.motion.velocity
-        return not any(len(self._near(boxes, last - velocity * ago)) for ago, boxes in earlier)
+        # Ages count from now, and the last sighting is older than that.
+        return not any(
+            len(self._near(boxes, last.position - velocity * (ago - last.age)))
+            for ago, boxes in earlier
+        )
 
     @property
     def _extent(self) -> float:
@@ -110,9 +117,10 @@ class Emergence(NamedTuple):
         # A jump is another thing, or a merged outline: the proof begins again, the search goes on.
         if before and np.abs(sides - before[-1]).max() > extent:
             before = ()
-        return new._replace(sides=(*before, sides))
+        since = self.since if before else new.age
+        return new._replace(sides=(*before, sides), since=since)
 
-    def proven(self, elapsed: float) -> tuple[Array, Array] | None:
+    def proven(self) -> tuple[Array, Array] | None:
         """Sides (2, 2), px, and velocity (2,), px per frame, if size, way and speed prove it."""
         frames = len(self.sides)
         if frames < PROOF_FRAMES or self._area(sides := self.sides[-1]) <= _LEAST_AREA:
@@ -123,7 +131,7 @@ class Emergence(NamedTuple):
         if np.hypot(*moved) < PROOF_DISTANCE * self._extent:
             return None
         # 1e-3 frames instead of none, where stamps repeat: such a speed is excluded below.
-        velocity = moved / max((frames - 1) * elapsed, 1e-3)
+        velocity = moved / max(self.age - self.since, 1e-3)
         slowest, fastest = np.array(_SPEEDS) * self._speed
         return (sides, velocity) if slowest < np.hypot(*velocity) < fastest else None
 

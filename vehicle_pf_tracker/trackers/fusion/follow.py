@@ -241,6 +241,8 @@ def learn(state: State, seen: Observation, step: Step) -> State:
         case Visible() | PartlyHidden():
             _learn_appearance(state, seen, step)
             state = _learn_usual(state, seen, step)
+    if state.is_visible and seen.was_hidden:  # what was kept shows an occluder
+        state = state._replace(surface=state.surface.restarted())
     # Kept in every frame: `was_hidden` keeps the next step from comparing with a hidden one.
     patch = step.memory.appearance.usual_patch(seen.view.patch)
     return state._replace(
@@ -261,8 +263,6 @@ def _learn_usual(state: State, seen: Observation, step: Step) -> State:
     # Of a part, what is beside it may be the rest of the vehicle itself.
     if state.whole.is_likely:
         strangers = strangers.measured(seen.view, state.position, state.size)
-    if seen.was_hidden:  # what was kept shows an occluder
-        surface = surface.restarted()
     return state._replace(surface=surface, strangers=strangers)
 
 

@@ -78,12 +78,12 @@ def predict(state: State, step: Step) -> tuple[State, Prediction]:
 def _moved_with_camera(state: State, step: Step) -> State:
     """Move everything that is known with the background; its zoom never changes the size."""
     memory = step.memory
-    camera = CameraMotion()
     # One reduced image serves both; the foreground has to know at once when the camera moves.
-    if step.parameters.motion.camera:
-        small = small_grey(step.frame)
+    small = small_grey(step.frame)
+    camera = CameraMotion()
+    if step.parameters.motion.camera:  # else it is taken to stand, and outlines are found
         camera = memory.camera.measure(small, state.box)
-        memory.foreground.keep(small, still=camera.still)
+    memory.foreground.keep(small, still=camera.still, elapsed=step.elapsed)
     state = state._replace(
         sightings=state.sightings.moved_on(step.elapsed, camera),
         surface=state.surface.moved(camera),
@@ -93,6 +93,8 @@ def _moved_with_camera(state: State, step: Step) -> State:
         state = state._replace(verdict=_without_outlines(state))
     if camera.still:
         return state
+    if isinstance(state.verdict, Gone):
+        state = state._replace(verdict=Gone(state.verdict.departure.moved(camera)))
     position = camera.apply(state.position)
     return state._replace(position=position, particles=state.particles.moved(camera))
 
@@ -164,6 +166,7 @@ def observe(state: State, prediction: Prediction, step: Step) -> tuple[State, Ob
         # The hypotheses have gathered at it: those of before go on, and no wiser.
         state = state._replace(particles=before.all_visible(PRIOR_DOUBT), size=size)
         position = before.mean
+        response = 0.0  # of the vehicle nothing was observed, whatever the stranger answers
     tasks = _next_tasks(state, response, step)
     return state, Observation(view, step.inside(position), response, was_hidden, tasks)
 
@@ -244,11 +247,12 @@ def _viewed(patch: Patch, step: Step) -> View:
 def _observe_return(state: State, departure: Departure, step: Step) -> tuple[State, Observation]:
     """Look for a vehicle that has left where it left; it is visible once that is proven."""
     appearance = step.memory.appearance
-    patch = appearance.patch(step.frame, departure.position, departure.size, wide=True)
+    place = step.inside(departure.position)
+    patch = appearance.patch(step.frame, place, departure.size, wide=True)
     view = _viewed(patch, step)
     departure = departure.observed(view, step.elapsed)
     particles = state.particles
-    position = departure.position
+    position = place
     # Nothing is measured on the vehicle until its return is proven, whatever strangers answer.
     response = 0.0
     if departure.returned is not None:

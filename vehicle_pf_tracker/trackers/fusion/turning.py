@@ -94,8 +94,11 @@ class Branch(NamedTuple):
         cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting
     ) -> Branch | None:
         """Begin `last.age` frames ago, at the last clear sighting, and follow to this frame."""
-        ago = round(last.age)
-        first = foreground.outline(last.position, last.size, ago)
+        # Frames, not periods: some may have been dropped.
+        periods = foreground.periods_since(last.age)
+        if periods is None:
+            return None
+        first = foreground.outline(last.position, last.size, len(periods))
         if first is None:
             return None
         # An outline that was not the vehicle's alone would leave the path for another's sake.
@@ -105,8 +108,8 @@ class Branch(NamedTuple):
         margins = first.low - (last.position - half), first.high - (last.position + half)
         # The frames of the doubt are followed, too: a turn began before the response fell.
         branch: Branch | None = cls(motion, last.size, margins, first, motion.velocity)
-        for back in range(ago - 1, -1, -1):
-            branch = branch and branch.moved(foreground, 1.0, back)
+        for passed, elapsed in enumerate(periods, 1):
+            branch = branch and branch.moved(foreground, elapsed, len(periods) - passed)
         return branch
 
     def moved(self, foreground: Foreground, elapsed: float, ago: int = 0) -> Branch | None:
@@ -138,7 +141,7 @@ class Branch(NamedTuple):
     @property
     def is_over(self) -> bool:
         """True once the filter has recognised the vehicle for long, or nothing was proven."""
-        return self.clear > PROOF_FRAMES or (not self.is_proven and self.age > _FURTHEST)
+        return self.clear >= PROOF_FRAMES or (not self.is_proven and self.age > _FURTHEST)
 
     @property
     def box(self) -> tuple[Array, Array]:
@@ -229,7 +232,7 @@ def _emerged(
 ) -> tuple[Emergence | None, Branch | None]:
     """Find a vehicle that has come out beside its path."""
     followed = emergence.observed(boxes, elapsed)
-    found = followed and followed.proven(elapsed)
+    found = followed and followed.proven()
     if followed is None or found is None:
         return followed, None
     emergence = followed
