@@ -11,6 +11,13 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 
+_UPRIGHT = np.eye(2)
+"""Turn of a camera that stands: shared, as most frames have it, and read only."""
+_NOWHERE = np.zeros(2)
+"""Shift of such a camera."""
+_UPRIGHT.flags.writeable = False
+_NOWHERE.flags.writeable = False
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraMotion:
@@ -24,8 +31,8 @@ class CameraMotion:
         px.
     """
 
-    turn: Array = field(default_factory=lambda: np.eye(2))
-    shift: Array = field(default_factory=lambda: np.zeros(2))
+    turn: Array = field(default_factory=lambda: _UPRIGHT)
+    shift: Array = field(default_factory=lambda: _NOWHERE)
 
     def apply(self, positions: Array) -> Array:
         """Move positions (..., 2) with the background."""
@@ -43,6 +50,8 @@ class CameraMotion:
     @property
     def still(self) -> bool:
         """True if the background does not move."""
+        if self.turn is _UPRIGHT and self.shift is _NOWHERE:
+            return True
         (scale, across), (down, same) = self.turn.tolist()
         # Exactly: a camera that stands is reported by exactly this, see `shared_similarity`.
         return scale == same == 1 and across == down == 0 and not self.shift.any()

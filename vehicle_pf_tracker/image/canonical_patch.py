@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import cv2
 import numpy as np
@@ -25,6 +26,9 @@ reads two px an axis, would soon skip some, and the patch shimmer as the target 
 _SPARSE_FROM = 4
 """Frame px per canonical px from which not all px are read: the cost would grow with the target.
 A choice: half of those of a block are left, 8 of 16."""
+
+_Pair: TypeAlias = tuple[float, float]
+"""Two numbers, along x and y."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,20 +91,25 @@ def cut_patch(frame: Frame, centre: Array, zoom: Array, side: int) -> Patch:
 
 def cut_image(frame: Frame, centre: Array, zoom: Array, size: tuple[int, int]) -> Frame:
     """Resample a piece of this width and height; see `cut_patch`."""
-    step = 1 / zoom
-    sides = np.array(size)
-    # Row of the affine map from pixel indices of the patch to those of the frame, x and y.
+    # In scalars, which are quicker than arrays of two.
+    middle_x, middle_y = centre.tolist()
+    across, down = (1 / factor for factor in zoom.tolist())
+    # The affine map from pixel indices of the patch to those of the frame, x and y.
     # Pixel centres of OpenCV are integers, those of this package halves.
-    first = centre - sides / 2 * step + 0.5 * step - 0.5
+    x = middle_x - size[0] / 2 * across + 0.5 * across - 0.5
+    y = middle_y - size[1] / 2 * down + 0.5 * down - 0.5
     # By the lesser zoom: averaging more along the other axis would blur the target.
-    reduction = max(int(min(step.tolist()) + 2 - _REDUCED_FROM), 1)
+    reduction = max(int(min(across, down) + 2 - _REDUCED_FROM), 1)
     # The affine map then starts from the reduced piece: its px are blocks of the frame.
     if reduction > 1:
-        frame, corner, factors = _reduced(frame, centre, sides * step, reduction)
-        first = (first - corner + 0.5) / factors - 0.5
-        step = step / factors
-    across, down = step.tolist()
-    x, y = first.tolist()
+        sides = size[0] * across, size[1] * down
+        frame, (left, top), (columns, rows) = _reduced(
+            frame, (middle_x, middle_y), sides, reduction
+        )
+        x = (x - left + 0.5) / columns - 0.5
+        y = (y - top + 0.5) / rows - 0.5
+        across /= columns
+        down /= rows
     matrix = np.array([[across, 0.0, x], [0.0, down, y]])
     image = cv2.warpAffine(
         frame,
@@ -112,37 +121,40 @@ def cut_image(frame: Frame, centre: Array, zoom: Array, size: tuple[int, int]) -
     return np.asarray(image, np.uint8)
 
 
-def _reduced(frame: Frame, centre: Array, size: Array, factor: int) -> tuple[Frame, Array, Array]:
+def _reduced(frame: Frame, centre: _Pair, size: _Pair, factor: int) -> tuple[Frame, _Pair, _Pair]:
     """Average blocks of `factor` px around `centre`.
 
     Returns
     -------
     small : (h, w, 3) array
         The averages.
-    corner : (2,) array
+    corner : (float, float)
         First px that was averaged.
-    factors : (2,) array
+    factors : (float, float)
         Px of the frame in one of `small`, along x and y.
     """
     width, height = frame_size(frame)
     # Two columns of each block are averaged below, so that it has to be even.
     factor -= factor % 2 if factor >= _SPARSE_FROM else 0
-    low = centre - size / 2 - factor
-    high = centre + size / 2 + factor
-    left = min(max(math.floor(low[0]), 0), max(width - factor, 0))
-    top = min(max(math.floor(low[1]), 0), max(height - factor, 0))
-    columns = max(min(math.ceil(high[0]) - left, width - left) // factor, 1)
-    rows = max(min(math.ceil(high[1]) - top, height - top) // factor, 1)
+    left, right = _ends(centre[0], size[0], width, factor)
+    top, bottom = _ends(centre[1], size[1], height, factor)
+    columns = max((right - left) // factor, 1)
+    rows = max((bottom - top) // factor, 1)
     # One block more on each side, since bilinear sampling reads the neighbour.
     piece = frame[top : top + rows * factor, left : left + columns * factor]
-    corner = np.array([left, top], float)
     if factor >= _SPARSE_FROM and min(piece.shape[:2]) >= factor:
-        return _sparsely_reduced(piece, corner, factor)
+        return _sparsely_reduced(piece, (left, top), factor)
     small = cv2.resize(piece, (columns, rows), interpolation=cv2.INTER_AREA)
-    return np.asarray(small, np.uint8), corner, np.array([factor, factor], float)
+    return np.asarray(small, np.uint8), (left, top), (factor, factor)
 
 
-def _sparsely_reduced(piece: Frame, corner: Array, factor: int) -> tuple[Frame, Array, Array]:
+def _ends(middle: float, side: float, length: int, factor: int) -> tuple[int, int]:
+    """First px, and the one after the last, to average along an axis of `length` px."""
+    first = min(max(math.floor(middle - side / 2 - factor), 0), max(length - factor, 0))
+    return first, min(math.ceil(middle + side / 2 + factor), length)
+
+
+def _sparsely_reduced(piece: Frame, corner: _Pair, factor: int) -> tuple[Frame, _Pair, _Pair]:
     """Average 4 x 2 px of each block of an even `factor`, in two columns."""
     half = factor // 2
     height, width = piece.shape[:2]
@@ -150,5 +162,5 @@ def _sparsely_reduced(piece: Frame, corner: Array, factor: int) -> tuple[Frame, 
     size = 2 * (width // factor), height // factor
     small = cv2.resize(sparse, size, interpolation=cv2.INTER_LINEAR)
     # The middle of the two rows that are read is not always that of the block.
-    corner = corner + np.array([0, half // 2 + 0.5 - half / 2])
-    return np.asarray(small, np.uint8), corner, np.array([half, factor], float)
+    top = corner[1] + (half // 2 + 0.5 - half / 2)
+    return np.asarray(small, np.uint8), (corner[0], top), (half, factor)

@@ -131,20 +131,29 @@ class CorrelationFilter:
         # 2. What the steps need of this image.
         conjugate = spectrum.conj()
         # Energy of all channels at each frequency: the only non-zero eigenvalue of x x^H.
-        power = (spectrum * conjugate).sum(axis=0).real
+        products = spectrum * conjugate
+        power = products.sum(axis=0).real
         # 3. ADMM in its scaled form: the multiplier, with the solution added, is confined.
-        multiplier = confined = np.zeros(1, np.complex64)
+        # Nothing is confined yet, and the multiplier is zero, so that the first right-hand side is
+        # all. Written in place: few spectra fit into the cache of a core.
+        multiplier = confined = right = right_side.copy()
         for step in range(steps):
             penalty = self.penalty * growth**step
-            # The multiplier is scaled by the penalty, which has just grown.
-            multiplier = (multiplier - confined) * np.float32(1 / growth)
-            right = right_side + (confined - multiplier) * np.float32(penalty)
+            if step:
+                # The multiplier is scaled by the penalty, which has just grown.
+                multiplier -= confined
+                multiplier *= np.float32(1 / growth)
+                right = np.subtract(confined, multiplier, out=confined)
+                right *= np.float32(penalty)
+                right += right_side
             # Solve (x x^H / places + total) f = right at each frequency (Sherman and Morrison).
             total = penalty + stiffness
-            share = (conjugate * right).sum(axis=0) / (power + np.float32(self._cells**2 * total))
-            right -= spectrum * share
+            share = np.multiply(conjugate, right, out=products).sum(axis=0)
+            share /= power + np.float32(self._cells**2 * total)
+            right -= np.multiply(spectrum, share, out=products)
             right *= np.float32(1 / total)
-            multiplier = multiplier + right
+            if step:
+                multiplier += right
             # There and back through the cells of the target: what is outside becomes zero.
             cells = self._target.cells_of(multiplier)
             confined = self._target.spectrum_of(cells)

@@ -42,6 +42,12 @@ def climbed(values: Array, places: Places, costs: Array) -> tuple[Places, Array]
     # One `take` reads the neighbourhoods of all places.
     moves = (offsets[:, np.newaxis] * padded.shape[1] + offsets).ravel()
     first = places[:, 1] * padded.shape[1] + places[:, 0]
-    gains = padded.take(first[:, np.newaxis] + moves) - costs.ravel()
+    gains = padded.take(first[:, np.newaxis] + moves)
+    gains -= costs.ravel()
     best = gains.argmax(axis=1)
-    return np.column_stack([best % side, best // side]) - reach, gains.max(axis=1)
+    up, along = np.divmod(best, side)
+    found = np.empty_like(places)
+    np.subtract(along, reach, out=found[:, 0])
+    np.subtract(up, reach, out=found[:, 1])
+    # Picked, as a second search of all neighbourhoods would cost as much as the first.
+    return found, gains[np.arange(len(best)), best]

@@ -69,7 +69,7 @@ class PartialFourier:
         # A real row has cosines and sines; frequencies f and -f are their sum and difference.
         cosines = spectrum[:, 2 : half + 1]
         sines = 1j * spectrum[:, half + 1 :]
-        spectrum[:, half + 1 :] = cosines + sines
+        np.add(cosines, sines, out=spectrum[:, half + 1 :])
         cosines -= sines
         return spectrum
 
@@ -101,11 +101,14 @@ def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
 def _coefficients(spectrum: Spectrum) -> _Matrix:
     """Coefficients of cosines and sines along y, real and imaginary parts by turns along x."""
     half = spectrum.shape[-1] - 1
-    coefficients = spectrum.copy()
+    coefficients = np.empty(spectrum.shape, np.complex64)
     low = spectrum[..., 2 : half + 1, :]
     high = spectrum[..., half + 1 :, :]
-    coefficients[..., 2 : half + 1, :] += high
-    np.multiply(low - high, np.complex64(1j), out=coefficients[..., half + 1 :, :])
+    # Written in place, once each: a copy of all would cost as much as the sums.
+    coefficients[..., :2, :] = spectrum[..., :2, :]
+    np.add(low, high, out=coefficients[..., 2 : half + 1, :])
+    sines = np.subtract(low, high, out=coefficients[..., half + 1 :, :])
+    sines *= np.complex64(1j)
     return np.asarray(coefficients.view(np.float32))
 
 

@@ -28,6 +28,7 @@ from vehicle_pf_tracker.image.gradient_cells import (
 )
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.spectra import Spectrum, shifted
+from vehicle_pf_tracker.trackers.fusion.paint import Paint
 from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
 from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 
@@ -60,21 +61,10 @@ _COLOURS = 3
 _HUE_GAIN = 4.0
 """Weight of Lab's a and b. Paint spans some 20 of their 100 units: unweighted, a grey car answers
 to the filter of a beige one of the same shape (scenes `bus` and `braking`, seeds 100 to 104)."""
-_COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32)[:, np.newaxis, np.newaxis] / 100
+_COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32) / 100
 """Factors of L, a and b, which span 100 units."""
-_COLOUR_MIDDLE = np.array([0.5, 0, 0], np.float32)[:, np.newaxis, np.newaxis]
-"""Subtracted from them: middle grey is 0, as what a patch fades to at its rim."""
-_PAINTED = 0.6
-"""Middle of a box that paint is measured in, of each side: around it are road and shadow. A choice:
-its area is a third of the box's."""
-_PAINT_SIDE = 8
-"""Side in px that it is resampled to: the median of 64 px tolerates 31 of windows and lamps."""
-_OTHER_CHROMA, _OTHER_LIGHTNESS = 9.0, 18.0
-"""Differences of paint, in units of Lab, above which two vehicles are not the same. Over each of 25
-sequences a tenth of the differences is larger; of those between sequences two thirds are."""
-_SHADED = 2.0
-"""Factor of `_OTHER_LIGHTNESS` for single spots: sides of one vehicle differ more than medians. Two
-is a choice; chroma alone has to tell the rest."""
+_MIDDLE_LIGHTNESS = np.float32(0.5)
+"""Subtracted from L: middle grey is 0, as what a patch fades to at its rim."""
 _RIM_REACH = 4
 """Places beyond an outline within which the filter has to answer: a tenth of the target's side, as
 outlines are good to that."""
@@ -122,22 +112,35 @@ class View:
 
     def at(self, position: Array) -> float:
         """Response at the place nearest to a position in px."""
-        column, row = self.places(position).tolist()
+        column, row = self._place(position)
         return float(self.response[row, column])
+
+    def _place(self, position: Array) -> tuple[int, int]:
+        """Nearest place, as x and y, of one position (2,) in px of the frame."""
+        # As `places`, in scalars, which are quicker for one.
+        last = len(self.response) - 1
+        middle = len(self.response) / 2
+        x, y = position.tolist()
+        left, top = self.patch.centre.tolist()
+        along, down = self.steps.tolist()
+        column = round((x - left) * along + middle)
+        row = round((y - top) * down + middle)
+        return min(max(column, 0), last), min(max(row, 0), last)
 
     def peak_near(self, position: Array, reach: int) -> tuple[Array, float]:
         """Find the peak within `reach` places of a position: its position in px, and height."""
         # One place is left free at each border: the parabola needs both neighbours of the peak.
         inner = len(self.response) - 2 - reach
-        places = self.places(position).tolist()
-        column, row = (min(max(place, reach + 1), inner) for place in places)
+        column, row = (min(max(place, reach + 1), inner) for place in self._place(position))
         near = self.response[row - reach : row + reach + 1, column - reach : column + reach + 1]
         dy, dx = divmod(int(near.argmax()), 2 * reach + 1)
         y, x = row - reach + dy, column - reach + dx
-        top = self.response[y - 1 : y + 2, x - 1 : x + 2].astype(np.float64)
+        (_, above, _), (left, top, right), (_, below, _) = self.response[
+            y - 1 : y + 2, x - 1 : x + 2
+        ].tolist()
         # Places are 2 canonical px apart, a twentieth of the target: too coarse for a velocity.
-        exact = x + _vertex(*top[1].tolist()), y + _vertex(*top[:, 1].tolist())
-        return self.position(*exact), float(self.response[y, x])
+        exact = x + _vertex(left, top, right), y + _vertex(above, top, below)
+        return self.position(*exact), top
 
 
 def _vertex(before: float, at: float, after: float) -> float:
@@ -174,7 +177,7 @@ class Appearance:
         # Unknown until the first patch after the start (`has_level`).
         self.usual_response = 0.0
         self._least_usual = 0.0
-        self._paint = np.zeros(3)
+        self._paint = Paint()
 
     def use_kernels(self, kernels: Kernels) -> None:
         """Measure gradients and multiply spectra by another implementation from now on."""
@@ -247,20 +250,15 @@ class Appearance:
 
     def learn_paint(self, frame: Frame, position: Array, size: Array) -> None:
         """Measure the paint of a vehicle that is clearly seen whole: occluders have another."""
-        self._paint = _paint(frame, position, size)
+        self._paint = Paint.of(frame, position, size)
 
     def paint_difference(self, frame: Frame, size: Array, position: Array) -> float:
         """Measure how far the paint in a box is from the one learnt last: above 1 it is another."""
-        # Judged apart: within one vehicle lightness varies twice as much as chroma.
-        lightness, *chroma = (_paint(frame, position, size) - self._paint).tolist()
-        return float(max(abs(lightness) / _OTHER_LIGHTNESS, math.hypot(*chroma) / _OTHER_CHROMA))
+        return self._paint.difference(frame, position, size)
 
     def paint_share(self, frame: Frame, size: Array, position: Array) -> float:
         """Measure the share of a box that has the paint learnt last, lighter or darker."""
-        off = _colours(frame, position, size) - self._paint
-        alike = np.abs(off[:, 0]) < _SHADED * _OTHER_LIGHTNESS
-        alike &= np.hypot(off[:, 1], off[:, 2]) < _OTHER_CHROMA
-        return float(alike.mean())
+        return self._paint.share(frame, position, size)
 
     def found_in(self, frame: Frame, sides: Array, size: Array) -> Candidate:
         """Find the vehicle in an outline (2, 2), with shadows, as the largest box that fits in.
@@ -296,23 +294,11 @@ class Appearance:
         small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
         lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
         # Lightness is 0 to 100, a and b about as much to either side: all within about one.
-        features[GRADIENT_CHANNELS:] = lab.transpose(2, 0, 1) * _COLOUR_GAINS - _COLOUR_MIDDLE
+        # Channel by channel: as one array by pixels, most of its loops would be of three steps.
+        for channel, gain in enumerate(_COLOUR_GAINS):
+            np.multiply(lab[..., channel], gain, out=features[GRADIENT_CHANNELS + channel])
+        features[GRADIENT_CHANNELS] -= _MIDDLE_LIGHTNESS
         return features
-
-
-def _paint(frame: Frame, position: Array, size: Array) -> Array:
-    """Median of the colours in the middle of a box (centre and size, px), as L, a and b (3,)."""
-    # The median of an even number of values is the mean of the two in the middle.
-    middle = _PAINT_SIDE**2 // 2
-    ordered = np.sort(_colours(frame, position, _PAINTED * size), axis=0)
-    return np.asarray(ordered[middle - 1 : middle + 1].mean(axis=0), float)
-
-
-def _colours(frame: Frame, position: Array, size: Array) -> Array:
-    """Colours (64, 3) of spots in a box of this centre and size (px), as L, a and b."""
-    small = cut_image(frame, position, _PAINT_SIDE / size, (_PAINT_SIDE, _PAINT_SIDE))
-    lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
-    return np.asarray(lab.reshape(-1, 3))
 
 
 def searched_size(
