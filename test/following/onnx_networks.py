@@ -117,6 +117,28 @@ def yolov8(path, names=("car", "truck"), channels=(0, 2), size=SIDE):
     )
 
 
+def yolov8_anywhere(path, size, side, step, names=("car", "truck")):
+    """As `yolov8`, of a square of `side` px at any multiple of `step` px.
+
+    The score is the mean of red and of blue in a window, from 0 where half a step is missing.
+    """
+    graph = Graph()
+    picked = graph.add("Gather", "images", graph.constant(np.array([0, 2])), axis=1)
+    means = graph.add("AveragePool", picked, kernel_shape=[side, side], strides=[step, step])
+    steep = np.float32(2 * side / step)
+    scaled = graph.add("Mul", means, graph.constant(np.array(steep)))
+    shifted = graph.add("Sub", scaled, graph.constant(np.array(steep - 1)))
+    flat = graph.constant(np.array([1, 2, -1]))
+    scores = graph.add("Reshape", graph.add("Relu", shifted), flat)
+    middles = np.arange(0, size - side + 1, step, dtype=np.float32) + side / 2
+    across, down = np.meshgrid(middles, middles)
+    sides = np.full(across.size, side, np.float32)
+    boxes = np.stack([across.ravel(), down.ravel(), sides, sides])
+    graph.add("Concat", graph.constant(boxes[None]), scores, output="output0", axis=1)
+    image = ("images", FLOAT, (1, 3, size, size))
+    return graph.write(path, image, [("output0", FLOAT, (1, 6, "N"))], names)
+
+
 def yolox(path, *, relative, names=("car", "truck")):
     """BGR from 0 to 255; centre and size, score of an object, scores: (1, N, 5 + C)."""
     graph, at = Graph(), cells()

@@ -12,11 +12,14 @@ import shutil
 import subprocess
 import sys
 import warnings
+from ast import literal_eval
 from pathlib import Path
 from types import SimpleNamespace
 
+import cv2
 import numpy as np
 import pytest
+from onnx_networks import yolov8_anywhere
 
 from vehicle_pf_tracker import TrafficTracker, read_counts, read_tracks
 from vehicle_pf_tracker.core.errors import InputError
@@ -110,18 +113,30 @@ class Values(np.ndarray):
         return np.array(self)
 
 
-class FakeYolo:
-    """Stand-in of a detector of Ultralytics, which finds the vehicles of the clip."""
+class Yolo:
+    """Stand-in of Ultralytics, which runs a network of YOLOv8's form as Ultralytics does.
+
+    Square BGR images as wide as the network's input; the network is the file's, with `.onnx`.
+    """
 
     def __init__(self, name):
-        self.names, self.index = {2: "car", 5: "bus"}, -25
+        runtime = pytest.importorskip("onnxruntime")
+        self._session = runtime.InferenceSession(str(Path(name).with_suffix(".onnx")))
+        self.names = literal_eval(self._session.get_modelmeta().custom_metadata_map["names"])
 
     def __call__(self, frame, conf, verbose):
-        boxes = truth(self.index) if self.index >= 0 else np.zeros((0, 4))
-        boxes[:, 2:] += boxes[:, :2]
-        self.index += 1
-        names = ("xyxy", boxes), ("conf", [0.9, 0.8][: len(boxes)]), ("cls", [2, 5][: len(boxes)])
-        found = SimpleNamespace(**{name: np.array(v, float).view(Values) for name, v in names})
+        planes = np.float32(frame[:, :, ::-1].transpose(2, 0, 1)[None] / 255)
+        (output,) = self._session.run(None, {"images": planes})
+        rows = output[0].T
+        scores = rows[:, 4:].max(axis=1)
+        kinds = rows[:, 4:].argmax(axis=1)
+        boxes = np.hstack([rows[:, :2] - rows[:, 2:4] / 2, rows[:, 2:4]])
+        kept = np.array(cv2.dnn.NMSBoxes(boxes, scores, conf, 0.7), int)
+        corners = np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
+        names = ("xyxy", corners), ("conf", scores), ("cls", kinds)
+        found = SimpleNamespace(
+            **{name: np.asarray(values[kept], float).view(Values) for name, values in names}
+        )
         return [SimpleNamespace(boxes=found)]
 
 
@@ -139,7 +154,7 @@ def output(path):
 def program(clips, monkeypatch, capsys):
     """Run a program of the page in the folder of clips; return what it prints."""
     monkeypatch.chdir(clips)
-    monkeypatch.setitem(sys.modules, "ultralytics", SimpleNamespace(YOLO=FakeYolo))
+    monkeypatch.setitem(sys.modules, "ultralytics", SimpleNamespace(YOLO=Yolo))
 
     def call(name):
         exec(compile(PROGRAMS[name], name, "exec"), {"__name__": "__main__"})
@@ -152,11 +167,28 @@ def test_there_are_eight_programs():
     assert len(PROGRAMS) == 8
 
 
-def test_the_program_for_ultralytics_names_each_vehicle(program):
-    words = [line.split() for line in program("With the detections of Ultralytics").splitlines()]
+def test_the_program_for_ultralytics_names_each_vehicle(program, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    side, size, step = 32, 320, 4
+    yolov8_anywhere(tmp_path / "yolov8n.onnx", size, side, step)
+    ground = np.vstack([GROUND, GROUND])[:size]
+    tops = {(255, 0, 0): 60, (0, 0, 255): 200}  # a red car and a blue truck
+    with video_writer(tmp_path / "traffic.mp4", (size, size), 25) as write:
+        for index in range(50):
+            frame = ground.copy()
+            for colour, top in tops.items():
+                left = step * (index + 5)
+                frame[top : top + side, left : left + side] = colour
+            write(frame, index / 25)
+    lines = program("With the detections of Ultralytics").splitlines()
+    words = [line.split(maxsplit=3) for line in lines]
     assert {tuple(line[:3]) for line in words} == {
-        ("1", "car", "TRACKING"), ("2", "bus", "TRACKING"),
+        ("1", "car", "TRACKING"), ("2", "truck", "TRACKING"),
     }  # fmt: skip
+    # Every box is a vehicle's: the last ones stand where it stands.
+    for line, top in zip(words[-2:], tops.values(), strict=True):
+        left_and_top = list(map(float, line[3].split(",")))[:2]
+        assert left_and_top == pytest.approx([step * 54, top], abs=3)
 
 
 def test_the_program_for_rows_writes_tracks(program, clips):
