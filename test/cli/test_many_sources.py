@@ -5,7 +5,9 @@
 
 import csv
 import json
+import os
 import shutil
+import signal
 
 import pytest
 from dask_processes import scheduler, workers
@@ -34,7 +36,7 @@ def done(monkeypatch):
     """Follow sources in this process, and name those that were followed."""
     names = []
 
-    def in_turn(function, jobs, _workers):
+    def in_turn(function, jobs, _workers, _lost):
         for job in jobs:
             names.append(job.name)
             yield job, function(job)
@@ -164,6 +166,28 @@ def test_traffic_counts_over_all_sources(videos, tmp_path, done, capsys):
     assert (tmp_path / "all" / "west" / "tracks.csv").exists()
     total = next(line for line in capsys.readouterr().out.splitlines() if "all " in line)
     assert f" {3 * COUNT} " in total
+
+
+def killed(request):
+    """Stand-in of `run_one` that a decoder ends in the middle of one of the sources."""
+    if "north" in request.source:
+        os.kill(os.getpid(), signal.SIGSEGV)
+    return run_verb.run_one(request)
+
+
+def test_a_decoder_that_ends_its_process_costs_its_source_only(
+    videos, tmp_path, monkeypatch, capsys
+):
+    out = tmp_path / "all"
+    monkeypatch.setattr(run_verb, "run_one", killed)
+    assert follow("run", *videos, *PF, "--workers", 2, "-o", out) == 1
+    (error,) = [line for line in capsys.readouterr().err.splitlines() if "SIGSEGV" in line]
+    assert "north: its process was ended by SIGSEGV" in error
+    for name in ("east", "west"):
+        assert (out / name / "estimates.csv").exists()
+    monkeypatch.undo()
+    assert follow("run", *videos, *PF, "--workers", 1, "-o", out) == 0
+    assert "2 of 3 sources were done before" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -3,12 +3,13 @@
 
 """Advice to use a network, with the line to type."""
 
+import json
 import shlex
 from pathlib import Path
 
 import pytest
 
-from vehicle_pf_tracker.cli.network_advice import network_advice
+from vehicle_pf_tracker.cli.network_advice import advice_over_sources, network_advice
 from vehicle_pf_tracker.trackers.traffic.session import DetectionTotals
 
 COMMAND = ["vehicle-pf-tracker", "traffic", "my clip.mp4", "--lines", "lines.yaml", "-o", "out"]
@@ -26,3 +27,18 @@ def test_the_line_runs_the_same_with_a_network(own):
     assert sentence.startswith("in 45% of the images")
     words = shlex.split(sentence.rpartition("apart: ")[2])
     assert words == [*COMMAND, "--model", "yolox-nano", "-o", "out_yolox-nano"]
+
+
+def test_the_line_over_many_sources_names_the_folder_over_all(tmp_path):
+    shares = {"east": ("motion", 50), "north": ("motion", 10), "west": ("model", 90)}
+    folders = [tmp_path / name for name in (*shares, "failed")]
+    for name, (detector, ambiguous) in shares.items():
+        (tmp_path / name).mkdir()
+        found = {"images_with_detections": 100, "images_with_ambiguous_blobs": ambiguous}
+        (tmp_path / name / "run.json").write_text(json.dumps({"detector": detector, **found}))
+    command = ["vehicle-pf-tracker", "traffic", "cams/*.mp4", "-o", "all"]
+    (sentence,) = advice_over_sources(command, Path("all"), folders)
+    assert sentence.startswith("in 1 of 4 sources (east) blobs may have held several vehicles")
+    words = shlex.split(sentence.rpartition("apart: ")[2])
+    assert words == [*command, "--model", "yolox-nano", "-o", "all_yolox-nano"]
+    assert advice_over_sources(command, Path("all"), folders[1:]) == []

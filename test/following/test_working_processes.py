@@ -1,12 +1,42 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
+import os
 import signal
 import subprocess
 import sys
 
+import pytest
+
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.following import processes
-from vehicle_pf_tracker.following.processes import wait_or_kill
+from vehicle_pf_tracker.following.processes import run_in_processes, wait_or_kill
+
+
+def answer(task):
+    """Answer, or end the process as a decoder does that writes where it may not."""
+    if task in (2, 7):
+        os.kill(os.getpid(), signal.SIGSEGV if task == 2 else signal.SIGKILL)
+    if task == 3:
+        os._exit(5)
+    return str(task)
+
+
+def test_a_process_that_is_ended_costs_its_task_only():
+    found = dict(run_in_processes(answer, range(9), 2, lambda sentence: sentence))
+    assert {task: result for task, result in found.items() if task not in (2, 3, 7)} == {
+        task: str(task) for task in (0, 1, 4, 5, 6, 8)
+    }
+    assert found[2].startswith("its process was ended by SIGSEGV, perhaps by a library")
+    assert found[3] == "its process was ended with status 5"
+    assert found[7] == (
+        "its process was ended by SIGKILL, perhaps out of memory: fewer --workers may help"
+    )
+
+
+def test_without_a_result_for_it_the_end_of_a_process_is_an_error():
+    with pytest.raises(InputError, match="a worker process was ended from outside"):
+        list(run_in_processes(answer, [2], 1))
 
 
 def test_one_that_ends_gives_its_status():

@@ -97,6 +97,7 @@ def follow_each(
     variant: Variant,
     follow: Follow,
     configure: Callable[[Any], Configuration],
+    advise: Callable[[Sequence[str], Path, Sequence[Path]], list[str]] = lambda *_: [],
 ) -> int:
     """Follow each source of a request, and print the table over all; return the exit status.
 
@@ -110,6 +111,8 @@ def follow_each(
         Follows one source.
     configure : callable
         Gives the parameters of a request, so that their mistakes end the command at its start.
+    advise : callable
+        Gives sentences that end the command, of its words, the folder over all and those in it.
 
     Raises
     ------
@@ -126,7 +129,10 @@ def follow_each(
         for name, one in requests_by_name(request).items()
     ]
     with claimed([Products(folder)], [job.request.source for job in jobs], overwrite=True):
-        return _complete(jobs, request, make_folder(folder))
+        status = _complete(jobs, request, make_folder(folder))
+    for sentence in advise(request.command, folder, [folder / job.name for job in jobs]):
+        print(sentence)
+    return status
 
 
 def _complete(jobs: Sequence[Job], request: SeveralSources, folder: Path) -> int:
@@ -165,7 +171,7 @@ def _print(table: SourceTable) -> None:
 
 def _run(jobs: Sequence[Job], request: SeveralSources) -> Iterator[tuple[Job, Outcome]]:
     if request.scheduler is None:
-        return run_in_processes(follow_job, jobs, request.workers)
+        return run_in_processes(follow_job, jobs, request.workers, _lost)
     return run_on_cluster(
         follow_job,
         jobs,
@@ -173,6 +179,10 @@ def _run(jobs: Sequence[Job], request: SeveralSources) -> Iterator[tuple[Job, Ou
         key=lambda job: f"{job.name}-{job.key}".replace(" ", "-"),
         on_notice=console.tell_notice,
     )
+
+
+def _lost(sentence: str) -> Outcome:
+    return Outcome({}, sentence)
 
 
 def follow_job(job: Job) -> Outcome:

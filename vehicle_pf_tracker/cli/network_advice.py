@@ -9,12 +9,18 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
+from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.detection.parameters import MOTION
+from vehicle_pf_tracker.evaluation.evaluation_folder import read_document
 from vehicle_pf_tracker.following.known_networks import NETWORKS
+from vehicle_pf_tracker.results.run_folder import RUN
 from vehicle_pf_tracker.trackers.traffic.session import DetectionTotals
 
 _AMBIGUOUS = 0.35
 """Share of images with ambiguous blobs above which a network counts better: on clips with truth, at
 .28 and .30 counts at lines were within one of ten, from .45 on a tenth to all were missed."""
+_MOST_NAMED = 5
+"""Sources that the advice names, what a line of a terminal holds."""
 _OWN = "--detector"
 """Option that chooses motion, and cannot stand beside `--model`."""
 
@@ -31,16 +37,54 @@ def network_advice(command: Sequence[str], folder: Path, found: DetectionTotals)
     found : DetectionTotals
         What motion has detected in it.
     """
-    if found.ambiguous <= _AMBIGUOUS * found.images:
+    if not _is_ambiguous(found):
         return []
+    return [f"in {found.ambiguous / found.images:.0%} of the images {_advice(command, folder)}"]
+
+
+def advice_over_sources(command: Sequence[str], folder: Path, folders: Sequence[Path]) -> list[str]:
+    """Return a sentence where a network would have counted better in a source; else none.
+
+    Parameters
+    ----------
+    command : sequence of str
+        Command line over all sources.
+    folder : Path
+        Folder over all.
+    folders : sequence of Path
+        Folders of the sources; those without results, or without motion, say nothing.
+    """
+    names = [one.name for one in folders if _is_ambiguous(_found_in(one))]
+    if not names:
+        return []
+    where = f"{len(names)} of {len(folders)} sources ({', '.join(names[:_MOST_NAMED])}"
+    where += ", …)" if len(names) > _MOST_NAMED else ")"
+    return [f"in {where} {_advice(command, folder)}"]
+
+
+def _is_ambiguous(found: DetectionTotals) -> bool:
+    return found.ambiguous > _AMBIGUOUS * found.images
+
+
+def _found_in(folder: Path) -> DetectionTotals:
+    try:
+        document = read_document(folder / RUN)
+    except InputError:  # it failed, and that was said
+        return DetectionTotals()
+    if document.get("detector") != MOTION:
+        return DetectionTotals()
+    return DetectionTotals(
+        images=document["images_with_detections"],
+        ambiguous=document["images_with_ambiguous_blobs"],
+    )
+
+
+def _advice(command: Sequence[str], folder: Path) -> str:
+    """Return the advice, with the line that repeats a command with a network."""
     network = next(iter(NETWORKS))
     words = [word for word in command if not word.startswith(f"{_OWN}=")]
     if _OWN in words:
         at = words.index(_OWN)
         words[at : at + 2] = []
     line = shlex.join([*words, "--model", network, "-o", f"{folder}_{network}"])
-    share = found.ambiguous / found.images
-    return [
-        f"in {share:.0%} of the images blobs may have held several vehicles; a network tells them "
-        f"apart: {line}"
-    ]
+    return f"blobs may have held several vehicles; a network tells them apart: {line}"

@@ -14,7 +14,7 @@ from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.many_sources import follow_each
-from vehicle_pf_tracker.cli.network_advice import network_advice
+from vehicle_pf_tracker.cli.network_advice import advice_over_sources, network_advice
 from vehicle_pf_tracker.cli.requests import option, positive_number
 from vehicle_pf_tracker.cli.serving import served
 from vehicle_pf_tracker.cli.source_lists import SeveralSources
@@ -96,7 +96,7 @@ def run(request: Request) -> int:
     """Follow all vehicles of the source, or of each of several, and print a summary."""
     if not request.is_of_several:
         return run_one(request)
-    return follow_each(request, TRAFFIC, run_one, _configuration)
+    return follow_each(request, TRAFFIC, run_one, _configuration, advice_over_sources)
 
 
 def run_one(request: Request) -> int:

@@ -10,7 +10,7 @@ import os
 import signal
 import subprocess
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from typing import TypeAlias, TypeVar
@@ -28,7 +28,10 @@ PATIENCE = 10.0
 
 
 def run_in_processes(
-    function: Callable[[TaskT], ResultT], tasks: Sequence[TaskT], workers: int
+    function: Callable[[TaskT], ResultT],
+    tasks: Sequence[TaskT],
+    workers: int,
+    lost: Callable[[str], ResultT] | None = None,
 ) -> Iterator[tuple[TaskT, ResultT]]:
     """Call `function` with each task; yield every task with its result as soon as it is there.
 
@@ -40,31 +43,83 @@ def run_in_processes(
         Tasks in the order of their start.
     workers : int
         Number of processes.
+    lost : callable or None
+        Makes the result of a task whose process is ended from outside, as by a fault of a library
+        in C, of a sentence that says so; all other tasks are done.
 
     Raises
     ------
     InputError
-        If a process is ended from outside.
+        If a process is ended from outside, and there is no `lost`.
+    """
+    waiting = dict(enumerate(tasks))
+    while waiting:
+        ended: list[str] = []
+        for index, result in _in_pool(function, waiting, workers, ended.append):
+            yield waiting.pop(index), result
+        if ended and lost is None:
+            raise InputError(
+                "a worker process was ended from outside, perhaps out of memory; "
+                "run the command again to go on, with fewer --workers"
+            )
+        # The pool does not say which task it was. Tasks are begun in order, so that it is among the
+        # first: each of them alone.
+        suspects = {index: waiting.pop(index) for index in list(waiting)[: workers + 1]}
+        for index, task in suspects.items():
+            ended = []
+            for _, result in _in_pool(function, {index: task}, 1, ended.append):
+                yield task, result
+            if ended and lost is not None:
+                yield task, lost(f"its process was ended {ended[0]}")
+
+
+def _in_pool(
+    function: Callable[[TaskT], ResultT],
+    tasks: Mapping[int, TaskT],
+    workers: int,
+    on_end: Callable[[str], object],
+) -> Iterator[tuple[int, ResultT]]:
+    """Yield the results of tasks by their keys, without those that are missing where it breaks.
+
+    `on_end` takes how a process ended then: of a pool of one, the one that broke it.
     """
     # Fresh processes: forked ones would inherit locks of OpenCV's threads.
     pool = ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _prepare)
     # Those of before are not ours to end.
     others = multiprocessing.active_children()
+    own: list[multiprocessing.process.BaseProcess] = []
+    has_broken = False
     try:
-        futures = {pool.submit(function, task): task for task in tasks}
+        futures = {pool.submit(function, task): key for key, task in tasks.items()}
+        own = [one for one in multiprocessing.active_children() if one not in others]
         for future in as_completed(futures):
             # Taken out: a result that was given is not kept until the end.
-            yield futures.pop(future), future.result()
-    except BrokenProcessPool as error:
-        raise InputError(
-            "a worker process was ended from outside, perhaps out of memory; "
-            "run the command again to go on, with fewer --workers"
-        ) from error
+            key = futures.pop(future)
+            # Of a pool that broke, some may still have a result.
+            if isinstance(future.exception(), BrokenProcessPool):
+                has_broken = True
+            else:
+                yield key, future.result()
+        if has_broken:
+            on_end(_how_it_ended(own))
+    except BrokenProcessPool:  # while tasks were handed over
+        on_end(_how_it_ended(own))
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
         for process in multiprocessing.active_children():
             if process not in others:
                 process.terminate()
+
+
+def _how_it_ended(processes: Sequence[multiprocessing.process.BaseProcess]) -> str:
+    for process in processes[:1]:
+        process.join(PATIENCE)
+    status = processes[0].exitcode if processes else None
+    if status is None or status >= 0:
+        return f"with status {status}"
+    if -status == signal.SIGKILL:
+        return "by SIGKILL, perhaps out of memory: fewer --workers may help"
+    return f"by {signal.Signals(-status).name}, perhaps by a library that its file is too much for"
 
 
 def _prepare() -> None:

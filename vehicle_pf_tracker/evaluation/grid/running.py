@@ -157,7 +157,11 @@ Runner: TypeAlias = Callable[[Sequence[GridCell]], Iterable[tuple[GridCell, Cell
 
 def on_this_machine(workers: int) -> Runner:
     """Return what runs cells in `workers` processes; results do not depend on how many."""
-    return functools.partial(run_in_processes, run_cell, workers=workers)
+    return functools.partial(run_in_processes, run_cell, workers=workers, lost=_lost)
+
+
+def _lost(sentence: str) -> CellResult:
+    return CellResult(reason=sentence)
 
 
 def on_cluster(address: str, on_notice: Callable[[str], object] = lambda _: None) -> Runner:
