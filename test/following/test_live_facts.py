@@ -4,6 +4,7 @@
 """Numbers beside the picture of a live page."""
 
 import json
+from dataclasses import replace
 
 from traffic_samples import vehicle
 
@@ -55,6 +56,22 @@ def test_lines_have_counts_per_minute_and_mean_speed():
     assert lines["rows"][0] == ("gate", "in", 0, 3, "35", "0 to 0")
     assert lines["rows"][1] == ("gate", "out", 0, 0, None, "0 to 0")
     json.dumps(facts)
+
+
+def test_two_wheelers_are_in_no_number_of_the_summary(monkeypatch):
+    counter = Counter(CountingPlan(), apart=frozenset({"bicycle"}))
+    speeds = {1: 60.0, 2: 20.0, 3: 10.0}
+    monkeypatch.setattr(counter, "speed_kmh", speeds.get)
+    estimates = [
+        replace(vehicle(1, 50, 50), label="car", serial=1),
+        replace(vehicle(2, 70, 50, TrackMode.OCCLUDED), label="bicycle", serial=2),
+        replace(vehicle(3, 90, 50), label="bicycle", serial=3),
+    ]
+    facts = traffic_facts(counter, RecentCrossings(), estimates, "")
+    assert facts["vehicles"] == 1
+    assert facts["summary"] == "1 vehicle in view, mean 60 km/h"
+    (classes,) = facts["tables"]
+    assert classes["rows"] == [("bicycle", 2), ("car", 1)]
 
 
 def test_targets_have_mode_and_position():

@@ -55,8 +55,10 @@ def traffic_facts(
     """
     # 1. Vehicles in view, and a table of their classes.
     confirmed = [one for one in estimates if one.mode in CONFIRMED]
-    hidden = sum(one.mode is TrackMode.OCCLUDED for one in confirmed)
-    speeds = [kmh for one in confirmed if (kmh := counter.speed_kmh(one.serial)) is not None]
+    # What is counted apart, as bicycles are, is in none of the summary's numbers.
+    vehicles = [one for one in confirmed if counter.is_vehicle(one.label)]
+    hidden = sum(one.mode is TrackMode.OCCLUDED for one in vehicles)
+    speeds = [kmh for one in vehicles if (kmh := counter.speed_kmh(one.serial)) is not None]
     tables = []
     classes = Tally(one.label or "unknown" for one in confirmed)
     # A detector of motion knows no classes: then the table says nothing.
@@ -87,11 +89,11 @@ def traffic_facts(
     if zones:
         tables.append(_table("zones", ("zone", "inside", "entered", "left"), zones))
     # 4. The summary in words.
-    vehicles = sum(counter.is_vehicle(one.label) for one in confirmed)
-    words = [when, f"{vehicles} vehicles in view"]
+    noun = "vehicle" if len(vehicles) == 1 else "vehicles"
+    words = [when, f"{len(vehicles)} {noun} in view"]
     words += [f"{hidden} hidden"] if hidden else []
     words += [f"mean {fmean(speeds):.0f} km/h"] if speeds else []
-    return {"vehicles": vehicles, "summary": ", ".join(filter(None, words)), "tables": tables}
+    return {"vehicles": len(vehicles), "summary": ", ".join(filter(None, words)), "tables": tables}
 
 
 def target_facts(rows: Mapping[str, EstimateRow], elapsed_ns: int) -> dict[str, object]:
