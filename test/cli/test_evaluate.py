@@ -64,7 +64,7 @@ def test_restarts_have_columns_of_their_own(bags, tmp_path, capsys):
     assert evaluate(out, bags, *QUICK, "--restart", "5") == 0
     shown = capsys.readouterr().out
     assert "With restarts after failure" in shown and "robustness" in shown
-    assert "With restarts after failure</th>" in (out / "report.html").read_text()
+    assert "With restarts after failure</h3>" in (out / "report.html").read_text()
     metrics = {line.split(",")[2] for line in (out / "summary.csv").read_text().splitlines()}
     assert {"failures", "restart_accuracy", "restart_failures", "restart_robustness"} <= metrics
     assert main(["evaluate", str(bags), "-o", str(out), "--traffic", "--restart", "5"]) == 2

@@ -137,14 +137,6 @@ def run_traffic(request: Request) -> int:
 
 _SHOWN = ("rmse_px", "median_px", "on_target", "success_auc", "recovered", "failures")
 """Metrics of the table on the terminal, few enough for its width."""
-_WITH_RESTARTS = (
-    "success_auc",
-    "failures",
-    "restart_accuracy",
-    "restart_failures",
-    "restart_robustness",
-)
-"""Metrics of a second table there, where there were restarts."""
 
 
 def run(request: Request) -> int:
@@ -179,7 +171,7 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
 
 def _judge(written: Report, limit: float | None) -> int:
     """Print the means, and return the status that they give."""
-    from vehicle_pf_tracker.evaluation.tables import overall_table
+    from vehicle_pf_tracker.evaluation.tables import overall_table, restarts_table
 
     evaluation = written.evaluation
     aggregates = written.aggregates
@@ -190,9 +182,9 @@ def _judge(written: Report, limit: float | None) -> int:
         console.tell_error("no system could run; the report says why")
         return 1
     console.print_rows(*overall_table(aggregates, _SHOWN).texts())
-    if any(found["restart_failures"] for found in aggregates.overall.values()):
-        title = "With restarts after failure, beside the two metrics without"
-        console.print_rows(*overall_table(aggregates, _WITH_RESTARTS).texts(), title)
+    if (restarts := restarts_table(aggregates)) is not None:
+        title = "With restarts after failure, beside two metrics without"
+        console.print_rows(*restarts.texts(), title)
     if failed:
         console.tell_error("not every run succeeded; the report says why")
     means = {label: found["rmse_px"] for label, found in aggregates.overall.items()}

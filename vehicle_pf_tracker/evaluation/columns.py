@@ -121,6 +121,10 @@ SUCCESS, PRECISION, RMSE, RECOVERED, STEP = (
 
 COMPARED = (SUCCESS, PRECISION, RMSE)
 """Metrics that systems are compared by; the first one orders the tables."""
+ONCE = tuple(column.key for column in COLUMNS if column.group != RESTARTS)
+"""Metrics of the run without restarts."""
+BESIDE_RESTARTS = ("success_auc", "failures")
+"""Metrics of that run which the table of the runs with restarts repeats."""
 PAPER = (SUCCESS, PRECISION, RMSE, RECOVERED, STEP)
 """Metrics of the LaTeX table."""
 

@@ -12,10 +12,12 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from vehicle_pf_tracker.evaluation.columns import (
+    BESIDE_RESTARTS,
     COLUMNS,
     COMPARED,
     NO_VALUE,
     RECOVERED,
+    RESTARTS,
     Column,
     number_text,
 )
@@ -128,6 +130,14 @@ def overall_table(aggregates: Aggregates, keys: Collection[str] | None = None) -
     # In the order of `COLUMNS`, whatever that of the keys.
     columns = [column for column in COLUMNS if keys is None or column.key in keys]
     return _metrics_table(aggregates.overall, columns, text)
+
+
+def restarts_table(aggregates: Aggregates) -> Table | None:
+    """Show the metrics of the runs with restarts beside two of those without; None without any."""
+    if not any(found["restart_failures"] for found in aggregates.overall.values()):
+        return None
+    keys = {column.key for column in COLUMNS if column.group == RESTARTS}
+    return overall_table(aggregates, keys.union(BESIDE_RESTARTS))
 
 
 def recording_table(aggregates: Aggregates, recording: str, columns: Sequence[Column]) -> Table:

@@ -13,7 +13,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from vehicle_pf_tracker.evaluation import tables
-from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED
+from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, ONCE
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, safe_name
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.figures import ERRORS, draw_all, styled, svg_element
@@ -40,7 +40,8 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
         facts=_facts(folder),
         notes=evaluation.notes,
         slots=styled(aggregates),
-        overall=tables.overall_table(aggregates),
+        overall=tables.overall_table(aggregates, ONCE),
+        restarts=tables.restarts_table(aggregates),
         figures=figures,
         behind=tables.behind_table(aggregates),
         pairs=tables.pairs_table(aggregates),

@@ -11,7 +11,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from vehicle_pf_tracker.evaluation import tables
-from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, NO_VALUE, PAPER
+from vehicle_pf_tracker.evaluation.columns import (
+    COLUMNS,
+    COMPARED,
+    NO_VALUE,
+    ONCE,
+    PAPER,
+    RESTARTS,
+)
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, aggregate
 from vehicle_pf_tracker.evaluation.report.figures import write_figures
@@ -34,12 +41,14 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     parts = [f"# {title(evaluation)}\n"]
     parts.append("".join(f"- {line}\n" for line in evaluation.notes))
     shown = {
-        "Means over recordings": tables.overall_table(aggregates),
+        "Means over recordings": tables.overall_table(aggregates, ONCE),
         "Differences to the first": tables.behind_table(aggregates),
     }
     if len(aggregates.order) > 2:  # of two systems the table above has the only difference
         pairs = tables.pairs_table(aggregates)
         shown[f"Differences of all pairs, {COMPARED[0].label}"] = pairs
+    if (restarts := tables.restarts_table(aggregates)) is not None:
+        shown[RESTARTS] = restarts
     for entry in evaluation.folder.recordings:
         shown[entry.name] = tables.recording_table(aggregates, entry.name, COLUMNS)
     for heading, table in shown.items():
