@@ -14,6 +14,7 @@ from vehicle_pf_tracker.trackers.traffic.association import birth_odds
 from vehicle_pf_tracker.trackers.traffic.candidates import weighed
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, PLACES
 from vehicle_pf_tracker.trackers.traffic.ending import end
+from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.existence import (
     CERTAIN,
     believed,
@@ -191,6 +192,30 @@ def test_a_vehicle_that_alone_is_missed_is_doubted():
 
 def test_a_detector_that_misses_all_vehicles_at_once_has_failed():
     assert missed([3.0, 3.0]) == [0, 0]
+
+
+def test_vehicles_that_were_missed_one_after_the_other_do_not_excuse_each_other():
+    assert min(missed([3.0, 5.0])) > 0
+
+
+def test_what_pixels_hold_on_empty_road_at_the_border_is_soon_lost():
+    rng = np.random.default_rng(0)
+    road = rng.integers(0, 256, (SIZE[1], SIZE[0], 3)).astype(np.uint8)
+    paint = rng.integers(0, 256, (40, 60, 3)).astype(np.uint8)
+    tracker = MultiVehicleTracker()
+    modes = []
+    for index in range(140):
+        frame = road.copy()
+        # It leaves over the left border, ever slower, until most of it is outside.
+        left = 140 * 0.9**index - 36
+        boxes = [(max(left, 0), 100, 60 + min(left, 0), 40)]
+        if index < 50:
+            hidden = max(-round(left), 0)
+            frame[100:140, hidden + round(left) : round(left) + 60] = paint[:, hidden:]
+        detections = Detections.make(boxes if index < 50 else np.empty((0, 4)))
+        modes.append([one.mode for one in tracker.step(frame, detections) if one.identity])
+    assert modes[49] == [TrackMode.TRACKING]
+    assert TrackMode.TRACKING not in modes[90]
 
 
 def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():

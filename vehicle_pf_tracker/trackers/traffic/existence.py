@@ -19,7 +19,7 @@ from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, plac
 from vehicle_pf_tracker.trackers.traffic.parameters import IGNORE
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State, Step
-from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
+from vehicle_pf_tracker.trackers.traffic.tracks import IN_SIGHT, Tracks
 
 CERTAIN = 7.0
 """Log odds, one in a thousand, beyond which nothing is surer: however long a vehicle was seen, some
@@ -254,6 +254,9 @@ def doubt(state: State, step: Step) -> State:
     in_sight = tracks.in_sight
     is_seen = absences.seen
     watched = confirmed & is_seen & (absences.undetected <= _BLIND_FOR) & in_sight
+    # All at once: of two that were missed one after the other it saw the second one meanwhile, and
+    # boxes that pixels hold on an empty road would excuse each other.
+    watched &= absences.undetected == absences.undetected[watched].min(initial=np.inf)
     if not (confirmed & detected).any() and watched.sum() >= _BLIND_FROM:
         return state
     # 2. Confirmed: a fixed price, the unknown may hide it. Tentative: a sequential test.
@@ -261,7 +264,10 @@ def doubt(state: State, step: Step) -> State:
     rates = state.experience.rate.learn(asked, detected)
     missed = ~detected & in_sight & ~(tracks.names.given & is_seen)
     taken = np.zeros(len(tracks))
-    taken[missed & confirmed] = elapsed * _MISSED
+    # Also of what pixels alone hold at the border, where most of it is outside: too little to ask
+    # the detector for it, but road that stands would hold the box of one that has left for ever.
+    held = ~detected & is_seen & (sights.visible > IN_SIGHT) & ~tracks.names.given
+    taken[(missed | held) & confirmed] = elapsed * _MISSED
     for row in np.flatnonzero(missed & ~confirmed).tolist():
         taken[row] = elapsed * -math.log(1 - rates[row])
     count = absences.missed + missed  # 3. note where it vanished
