@@ -27,7 +27,7 @@ import cv2
 import numpy as np
 
 from benchmarks.bench.environment import describe
-from benchmarks.bench.turns import BLOCK, Follower, Own, Theirs
+from benchmarks.bench.turns import TURN_FRAMES, Follower, Own, Theirs
 from laboratory.stress import find_sequences
 from laboratory.stress.footage import StressFootage, open_footage
 from vehicle_pf_tracker.core.box import Box
@@ -92,9 +92,9 @@ def beside_csrt(footage: StressFootage, baseline: Baseline, most_frames: int | N
         follower.start(first, box, 0)
         costs.ms[name] = []
     count = min(len(footage.truth), most_frames or len(footage.truth))
-    for begin in range(1, count, BLOCK):
-        frames = [footage.frame(index) for index in range(begin, min(begin + BLOCK, count))]
-        turn = begin // BLOCK % 2
+    for begin in range(1, count, TURN_FRAMES):
+        frames = [footage.frame(index) for index in range(begin, min(begin + TURN_FRAMES, count))]
+        turn = begin // TURN_FRAMES % 2
         for name in (OURS, CSRT)[:: -1 if turn else 1]:
             costs.ms[name] += [1e3 * followers[name].step(frame) for frame in frames]
     return costs

@@ -35,9 +35,9 @@ import numpy as np
 from benchmarks.bench.case import interquartile_range
 from benchmarks.bench.material import drive
 from benchmarks.bench.root import ROOT
-from benchmarks.bench.turns import BLOCK
+from benchmarks.bench.turns import TURN_FRAMES
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.image.kernels.interface import CHOICES
+from vehicle_pf_tracker.image.kernels.interface import KERNEL_CHOICES
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 WORKER = Path(__file__).with_name("versus_worker.py")
@@ -192,7 +192,7 @@ def compare(
     passes: int,
     settings: Mapping[str, str | int],
 ) -> Ratio:
-    """Step one variant in both versions, in turns of `BLOCK` frames.
+    """Step one variant in both versions, in turns of `TURN_FRAMES` frames.
 
     Parameters
     ----------
@@ -211,9 +211,9 @@ def compare(
     for seed in range(passes):
         for worker in workers:
             worker.ask("start", variant, {**settings, "seed": seed})
-        for turn, first in enumerate(range(1, frames - BLOCK + 1, BLOCK)):
+        for turn, first in enumerate(range(1, frames - TURN_FRAMES + 1, TURN_FRAMES)):
             for side in (0, 1) if turn % 2 else (1, 0):
-                times[side].append(workers[side].ask("step", first, BLOCK) / BLOCK)
+                times[side].append(workers[side].ask("step", first, TURN_FRAMES) / TURN_FRAMES)
     return Ratio.of(variant, *times)
 
 
@@ -272,7 +272,9 @@ def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--passes", type=int, default=3, help="passes over the drive")
     parser.add_argument("--frames", type=int, default=101, help="frames of a pass")
     parser.add_argument("--particles", type=int, default=0, help="0: each variant's own number")
-    parser.add_argument("--kernels", default="auto", choices=CHOICES, help="as the parameter")
+    parser.add_argument(
+        "--kernels", default="auto", choices=KERNEL_CHOICES, help="as the parameter"
+    )
     parser.add_argument("--cache", type=Path, default=CACHE, help="folder for other versions")
     parser.add_argument(
         "--toy",

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 
 from laboratory.faults import command as faults
 from laboratory.stress import command as stress
-from vehicle_pf_tracker.cli.console import USAGE
+from vehicle_pf_tracker.cli.console import USAGE_STATUS
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 
@@ -41,7 +41,7 @@ def _run(words: Sequence[str]) -> int:
     try:
         args = parser.parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say
-        return ended.code if isinstance(ended.code, int) else USAGE
+        return ended.code if isinstance(ended.code, int) else USAGE_STATUS
     return int(args.verb.run(request_of(args.kind, args)))
 
 

@@ -20,12 +20,12 @@ from vehicle_pf_tracker.evaluation.tables import NO_SCORE, markdown
 from vehicle_pf_tracker.trackers.uncertainty import Calibration, Spread
 from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 
-COLUMNS = (
+COVERAGE_COLUMNS = (
     "stamp", "error_x", "error_y", "xx", "xy", "yy", "width", "height", "vx", "vy", "period",
     "mode", "confidence", "occlusion",
 )  # fmt: skip
 """Columns of a run: time in s, errors and sizes in px, velocity in px per frame period."""
-INSIDE = 5.991
+INSIDE_95 = 5.991
 """Square of the Mahalanobis distance that holds 95 % of a normal distribution in two dimensions."""
 _TAIL = 3.0
 """Degrees of freedom of the Student distribution that is fitted: errors of trackers have far
@@ -53,7 +53,7 @@ class Runs:
         self.change = np.concatenate([_change(table)[1:] for table in tables])
 
     def __getitem__(self, name: str) -> Array:
-        column: Array = self._values[:, COLUMNS.index(name)]
+        column: Array = self._values[:, COVERAGE_COLUMNS.index(name)]
         return column
 
     @property
@@ -95,7 +95,7 @@ class Runs:
 
 def _read(path: Path) -> Array:
     try:
-        table: Array = np.load(path)[:, : len(COLUMNS)]
+        table: Array = np.load(path)[:, : len(COVERAGE_COLUMNS)]
     except (OSError, ValueError) as error:
         raise InputError(f"cannot read the run {path}: {error}") from error
     return table
@@ -104,7 +104,7 @@ def _read(path: Path) -> Array:
 def _hidden_for(table: Array) -> Array:
     """Return the time since the last claim of TRACKING, s."""
     stamps = table[:, 0]
-    visible = table[:, COLUMNS.index("mode")] == 0
+    visible = table[:, COVERAGE_COLUMNS.index("mode")] == 0
     seen = np.maximum.accumulate(np.where(visible, stamps, stamps[0]))
     since: Array = stamps - seen
     return since
@@ -112,7 +112,7 @@ def _hidden_for(table: Array) -> Array:
 
 def _change(table: Array) -> Array:
     """Return the logarithm of the side, in those of the first box."""
-    area = table[:, COLUMNS.index("width")] * table[:, COLUMNS.index("height")]
+    area = table[:, COVERAGE_COLUMNS.index("width")] * table[:, COVERAGE_COLUMNS.index("height")]
     change: Array = np.log(area / area[0]) / 2
     return change
 
@@ -152,7 +152,7 @@ def _fit(runs: Runs, used: npt.NDArray[np.bool_]) -> Spread:
     )
     numbers = np.exp(found.x)
     squares, _ = runs.squares(Spread(*numbers.tolist()))
-    factor = np.sqrt(np.quantile(squares[used], 0.95) / INSIDE)
+    factor = np.sqrt(np.quantile(squares[used], 0.95) / INSIDE_95)
     if not runs.hidden_for[used].any():  # visible: nothing grows
         numbers[4:] = 0
     # Four digits, as the table has them.
@@ -213,8 +213,8 @@ def _coverage_row(
     name: str, runs: Runs, calibrations: Mapping[str, Calibration]
 ) -> tuple[str, ...]:
     squares, areas = runs.calibrated(calibrations[name])
-    inside = squares <= INSIDE
-    radius = np.sqrt(INSIDE * np.sqrt(areas) / (runs["width"] * runs["height"]))
+    inside = squares <= INSIDE_95
+    radius = np.sqrt(INSIDE_95 * np.sqrt(areas) / (runs["width"] * runs["height"]))
     everything = np.ones(len(inside), bool)
     groups = (everything, runs.is_visible, ~runs.is_visible, runs.is_occluded)
     shares = (_percent(inside[group]) for group in groups)

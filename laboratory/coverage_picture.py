@@ -17,7 +17,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from laboratory.covariance_coverage import INSIDE, Runs
+from laboratory.covariance_coverage import INSIDE_95, Runs
 from vehicle_pf_tracker.results.output_files import replacing
 from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 
@@ -74,7 +74,7 @@ def _draw_drive(axes: Axes, paths: Mapping[str, list[Path]]) -> None:
         run = Runs(files[:1])
         _, areas = run.calibrated(CALIBRATIONS[name])
         frames = np.arange(2, len(areas) + 2)
-        radius = np.sqrt(INSIDE * np.sqrt(areas))
+        radius = np.sqrt(INSIDE_95 * np.sqrt(areas))
         axes.fill_between(frames, 0.05, radius, color=colour, alpha=0.2, lw=0,
                           label=f"{name}: radius of the 95 % ellipse")  # fmt: skip
         error = np.hypot(run["error_x"], run["error_y"])

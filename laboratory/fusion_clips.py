@@ -28,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 
 from laboratory.scenes import make_traffic_scene
-from laboratory.scenes.traffic_scene import SCALE, WIDTH
+from laboratory.scenes.traffic_scene import PX_PER_METRE, WIDTH
 from laboratory.stress import variant_system
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.cli.main import main as run_command
@@ -38,8 +38,8 @@ from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.recordings.video import open_footage
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.results.output_files import write_text
-from vehicle_pf_tracker.results.traffic_results import TRACKS
-from vehicle_pf_tracker.scenes.lane_traffic import PAINTS, Lane, convoy
+from vehicle_pf_tracker.results.traffic_results import TRACKS_FILE
+from vehicle_pf_tracker.scenes.lane_traffic import CAR_PAINTS, Lane, convoy
 from vehicle_pf_tracker.scenes.vehicles import saloon
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
@@ -114,13 +114,13 @@ def filmed(path: Path, model: str, output: Path) -> Clip:
     """Read a clip, and let `traffic` say where vehicles are, or read what it said before."""
     footage = open_footage(path)
     folder = output / path.stem
-    if not (folder / TRACKS).exists():
+    if not (folder / TRACKS_FILE).exists():
         status = run_command(["traffic", str(path), "--model", model, "-o", str(folder)])
         if status:
             raise SystemExit(status)  # it has said why
     boxes: Boxes = defaultdict(dict)
     sure: dict[int, set[int]] = defaultdict(set)
-    with (folder / TRACKS).open(newline="") as stream:
+    with (folder / TRACKS_FILE).open(newline="") as stream:
         for row in csv.DictReader(stream):
             score = float(row["score"] or "nan")
             if math.isnan(score):  # predicted
@@ -138,8 +138,13 @@ def look_alikes(frames: int = 600) -> Clip:
     """Make a road with cars of one kind and paint, of which some twenty drive each way."""
     rng = np.random.default_rng(0)
     actors = []
-    for lane in (Lane(100.0, SCALE, rightward=True), Lane(175.0, SCALE, rightward=False)):
-        actors += convoy(lane, 4.0, frames, WIDTH, rng, (60, 160), (lambda _: saloon(PAINTS[4]),))
+    for lane in (
+        Lane(100.0, PX_PER_METRE, rightward=True),
+        Lane(175.0, PX_PER_METRE, rightward=False),
+    ):
+        actors += convoy(
+            lane, 4.0, frames, WIDTH, rng, (60, 160), (lambda _: saloon(CAR_PAINTS[4]),)
+        )
     scene = make_traffic_scene("traffic-pair", settings={"frames": frames})
     scene = replace(scene, vehicles=tuple(zip(actors[::2], actors[1::2], strict=True)))
     boxes: Boxes = defaultdict(dict)

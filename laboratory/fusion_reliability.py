@@ -29,7 +29,7 @@ from laboratory.fusion_fit import (
 )
 from laboratory.stress import Reliability, Result, run_battery, variant_system
 from vehicle_pf_tracker.cli.main import exit_status
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
 from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.results.output_files import write_text
 
@@ -84,7 +84,7 @@ def reliability_figure(results: Sequence[Result]) -> Figure:
         "sequences": [result for result in results if result.case.kind == "plain"],
         "shifted boxes, painted occluders": [r for r in results if r.case.kind != "plain"],
     }
-    for (name, part), style in zip(parts.items(), STYLES, strict=False):
+    for (name, part), style in zip(parts.items(), LINE_STYLES, strict=False):
         points = pooled(part).diagram()
         confidence = [point["confidence"] for point in points]
         on_target = [point["on_target"] for point in points]

@@ -26,7 +26,7 @@ from laboratory.scenes import make_scene
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.results.output_files import make_folder, replacing
 from vehicle_pf_tracker.scenes.scene import SceneFrame
@@ -43,9 +43,9 @@ _DPI, _QUALITY = 130, 80
 _RIM = (Stroke(linewidth=2.8, foreground="black"), Normal())
 """Dark edge of a line, which keeps it visible on any scenery."""
 _LINES = {
-    Mode.TRACKING.value: (STYLES[5].colour, "-"),
-    Mode.OCCLUDED.value: (STYLES[4].colour, (0, (2, 1))),
-    Mode.LOST.value: (STYLES[3].colour, (0, (1, 1))),
+    Mode.TRACKING.value: (LINE_STYLES[5].colour, "-"),
+    Mode.OCCLUDED.value: (LINE_STYLES[4].colour, (0, (2, 1))),
+    Mode.LOST.value: (LINE_STYLES[3].colour, (0, (1, 1))),
 }
 """Colour and line of the estimated box by mode; the mode is also written above."""
 

@@ -5,11 +5,11 @@
 
     python -m laboratory.traffic_fit CAMERA=FOLDER... --boxes motion -o results/traffic_fit
 
-runs every decision of `DECISIONS` (or those of ``--only``) at each of its values over all clips,
-which are folders in MOTChallenge's layout; clips of one camera have the same name before the equals
-sign. The score of a run is the mean of HOTA and IDF1. ``leave_one_camera_out.md`` has for each
-decision the value that is best for the other cameras, what it scores on the one left out, and what
-the decision is worth: the shipped value's score less that without it. Runs are kept in
+runs every decision of `FITTED_DECISIONS` (or those of ``--only``) at each of its values over all
+clips, which are folders in MOTChallenge's layout; clips of one camera have the same name before the
+equals sign. The score of a run is the mean of HOTA and IDF1. ``leave_one_camera_out.md`` has for
+each decision the value that is best for the other cameras, what it scores on the one left out, and
+what the decision is worth: the shipped value's score less that without it. Runs are kept in
 ``runs.jsonl``: delete it when the code has changed.
 """
 
@@ -83,8 +83,8 @@ class Decision:
         return owner, name
 
 
-_MOTION = "detection.motion_thresholds:SHIPPED"
-DECISIONS: tuple[Decision, ...] = (
+_MOTION = "detection.motion_thresholds:SHIPPED_THRESHOLDS"
+FITTED_DECISIONS: tuple[Decision, ...] = (
     Decision(f"{_MOTION}.colour_threshold", (24.0, 42.0)),
     Decision(f"{_MOTION}.patience", (2.0, 8.0), 0.0),
     Decision(f"{_MOTION}.shadow", (0.5, 0.7), 1.0),
@@ -121,7 +121,7 @@ def main() -> int:
     parser.add_argument("-o", "--out", type=Path, required=True)
     args = parser.parse_args()
     clips = [read_clip(text, args.boxes) for text in args.clips]
-    decisions = [one for one in DECISIONS if not args.only or one.place in args.only]
+    decisions = [one for one in FITTED_DECISIONS if not args.only or one.place in args.only]
     if not decisions:
         raise InputError(f"--only names no decision: {', '.join(args.only)}")
     store = ResultStore(args.out / "runs.jsonl")

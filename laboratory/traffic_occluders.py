@@ -21,7 +21,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.evaluation.traffic.box_matches import matches
 from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read_sequence
-from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import SCENE_OCCLUDER, TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
@@ -78,10 +78,14 @@ def _name(names: dict[int, int], seen: Array, estimates: tuple[TrackEstimate, ..
 def _verdict(one: TrackEstimate, true: str, names: dict[int, int]) -> str:
     if one.mode not in {TrackMode.OCCLUDED, TrackMode.LOST}:
         return "seen"
-    claimed = SCENE if one.hidden_by == SCENE else str(names.get(int(one.hidden_by or 0)))
+    claimed = (
+        SCENE_OCCLUDER
+        if one.hidden_by == SCENE_OCCLUDER
+        else str(names.get(int(one.hidden_by or 0)))
+    )
     if claimed == true:
         return "right"
-    return "unnamed" if claimed == SCENE else "wrong"
+    return "unnamed" if claimed == SCENE_OCCLUDER else "wrong"
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ import numpy as np
 
 from laboratory.covariance_coverage import fitted_table, report, runs_of
 from laboratory.coverage_picture import draw
-from laboratory.scenes import SCENES, make_scene
+from laboratory.scenes import LABORATORY_SCENES, make_scene
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, specs
@@ -74,7 +74,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--variants", nargs="+", default=list(VARIANTS), metavar="VARIANT")
-    parser.add_argument("--scenes", nargs="+", default=list(SCENES), choices=list(SCENES))
+    parser.add_argument(
+        "--scenes", nargs="+", default=list(LABORATORY_SCENES), choices=list(LABORATORY_SCENES)
+    )
     parser.add_argument("--table", type=Path, default=TABLE, help="file that `fit` writes")
     parser.add_argument("--docs", type=Path, help="folder for images/uncertainty.png")
     return parser.parse_args()
@@ -103,7 +105,7 @@ def _run(args: argparse.Namespace) -> None:
 
 def _scenes(names: Sequence[str]) -> Iterator[tuple[str, str, dict[str, object]]]:
     for name in names:
-        known = specs(SCENES[name].parameters)
+        known = specs(LABORATORY_SCENES[name].parameters)
         for addition, settings in CAMERAS.items():
             if not settings or all(
                 key in known and value in known[key].choices for key, value in settings.items()
@@ -112,7 +114,7 @@ def _scenes(names: Sequence[str]) -> Iterator[tuple[str, str, dict[str, object]]
 
 
 def rows_of(variant: Variant, frames: Sequence[SceneFrame], seed: int) -> Iterator[Any]:
-    """Track a scene, and give for each frame the numbers named in `coverage.COLUMNS`."""
+    """Track a scene, and give for each frame the numbers named in `coverage.COVERAGE_COLUMNS`."""
     box = frames[0].truth.box
     target = TargetParameters(box.x, box.y, box.width, box.height)
     session = Session(

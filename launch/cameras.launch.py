@@ -10,7 +10,7 @@ from launch_ros.substitutions import FindPackageShare
 
 from vehicle_pf_tracker.ros.camera_file import read_cameras
 from vehicle_pf_tracker.ros.launching import (
-    ARGUMENTS,
+    TRACKER_ARGUMENTS,
     declared,
     included_tracker,
     is_true,
@@ -19,7 +19,7 @@ from vehicle_pf_tracker.ros.launching import (
 
 # Arguments that are the same for all cameras.
 FOR_ALL = {
-    **{name: ARGUMENTS[name] for name in ("use_sim_time", "log_level", "large_images")},
+    **{name: TRACKER_ARGUMENTS[name] for name in ("use_sim_time", "log_level", "large_images")},
     "respawn": ("true", "Start a node again when it ends"),
 }
 # In turns they share what libraries keep in memory, and one failure ends all.

@@ -11,15 +11,18 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch_ros.actions import Node
 
 from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.ros.launching import ARGUMENTS, declared, included_tracker
-from vehicle_pf_tracker.ros.replay.launched_replay import ARGUMENTS as REPLAY_ARGUMENTS
-from vehicle_pf_tracker.ros.replay.launched_replay import queue_depth, replay_words
+from vehicle_pf_tracker.ros.launching import TRACKER_ARGUMENTS, declared, included_tracker
+from vehicle_pf_tracker.ros.replay.launched_replay import (
+    REPLAY_ARGUMENTS,
+    queue_depth,
+    replay_words,
+)
 from vehicle_pf_tracker.ros.replay.publishing import recorded_images
 
 _NAMES = ("variant", "params_file", "namespace", "name", "log_level", "rviz", "foxglove")
 # Arguments that go on to the tracker's own launch file.
 PASSED_ON = {
-    **{name: ARGUMENTS[name] for name in _NAMES},
+    **{name: TRACKER_ARGUMENTS[name] for name in _NAMES},
     "use_sim_time": ("false", "Follow /clock, which the replay then publishes"),
 }
 

@@ -10,7 +10,7 @@ from launch_ros.parameter_descriptions import Parameter
 from launch_ros.substitutions import FindPackageShare
 
 from vehicle_pf_tracker.ros.launching import (
-    ARGUMENTS,
+    TRACKER_ARGUMENTS,
     declared,
     image_remappings,
     is_true,
@@ -22,11 +22,11 @@ from vehicle_pf_tracker.ros.launching import (
 
 
 def generate_launch_description() -> LaunchDescription:
-    return LaunchDescription([*declared(ARGUMENTS), OpaqueFunction(function=start)])
+    return LaunchDescription([*declared(TRACKER_ARGUMENTS), OpaqueFunction(function=start)])
 
 
 def start(context: LaunchContext) -> list[LaunchDescriptionEntity]:
-    given = {name: context.launch_configurations[name] for name in ARGUMENTS}
+    given = {name: context.launch_configurations[name] for name in TRACKER_ARGUMENTS}
     share = FindPackageShare("vehicle_pf_tracker").perform(context)
     executable, words = program(given["variant"])
     name = given["name"] or f"{given['variant']}_tracker"

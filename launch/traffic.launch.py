@@ -6,11 +6,11 @@
 from launch import LaunchDescription
 from launch.substitutions import LaunchConfiguration
 
-from vehicle_pf_tracker.ros.launching import ARGUMENTS, declared, included_tracker
+from vehicle_pf_tracker.ros.launching import TRACKER_ARGUMENTS, declared, included_tracker
 
 
 def generate_launch_description() -> LaunchDescription:
-    own = {name: words for name, words in ARGUMENTS.items() if name != "variant"}
+    own = {name: words for name, words in TRACKER_ARGUMENTS.items() if name != "variant"}
     passed_on = {name: LaunchConfiguration(name) for name in own}
     return LaunchDescription(
         [*declared(own), included_tracker({"variant": "traffic", **passed_on})]

@@ -13,11 +13,11 @@ from pathlib import Path
 
 from laboratory.result_store import ResultStore
 from reproduction.catalogue import ALL, EXPERIMENTS, PAPERS, find_experiments
-from reproduction.experiment import QUICK_SEEDS, SEEDS, Size
+from reproduction.experiment import EXPERIMENT_SEEDS, QUICK_SEEDS, Size
 from reproduction.output import write_report
 from reproduction.page import write_page
 from reproduction.running import complete
-from vehicle_pf_tracker.cli.console import USAGE, UsageError, counting
+from vehicle_pf_tracker.cli.console import USAGE_STATUS, UsageError, counting
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.cli.requests import (
     WorkersOption,
@@ -49,7 +49,7 @@ class Request(WorkersOption):
         "(default: results/reproduce)",
     )  # fmt: skip
     seeds: int | None = option(
-        type=positive, metavar="N", help=f"runs of each kind (default: {SEEDS})"
+        type=positive, metavar="N", help=f"runs of each kind (default: {EXPERIMENT_SEEDS})"
     )
     first_seed: int = option(
         type=natural, default=0, metavar="S",
@@ -76,7 +76,7 @@ def _run(words: Sequence[str]) -> int:
     try:
         args = parser.parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say
-        return ended.code if isinstance(ended.code, int) else USAGE
+        return ended.code if isinstance(ended.code, int) else USAGE_STATUS
     return _reproduce_all(request_of(Request, args))
 
 
@@ -88,7 +88,7 @@ def _reproduce_all(request: Request) -> int:
     if not request.figures:
         raise UsageError(f"name a FIGURE, or {ALL}; `{PROGRAM} --list` shows them")
     experiments = find_experiments(request.figures)
-    count = request.seeds or (QUICK_SEEDS if request.quick else SEEDS)
+    count = request.seeds or (QUICK_SEEDS if request.quick else EXPERIMENT_SEEDS)
     size = Size(range(request.first_seed, request.first_seed + count), request.quick)
     store = ResultStore(request.output / CELLS)
     for experiment in experiments:

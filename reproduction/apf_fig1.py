@@ -14,9 +14,9 @@ from matplotlib.figure import Figure
 
 from reproduction import experiment as ex
 from reproduction.apf_systems import (
+    BAR_SETTING,
     INTERPRETATIONS,
     INTERPRETATIONS_NOTE,
-    SETTING,
     artificial_video,
     with_sigma,
 )
@@ -140,8 +140,9 @@ def _verdict(grids: Mapping[str, Grid], size: ex.Size) -> ex.ExperimentVerdict:
                 "yes: 95 % of the runs there have an RMSE below 15 px; partly: 75 %",
             ),
         ),
-        f"{SETTING} No bar; speeds from {speeds[0]} to {speeds[-1]} and sigma from {sigmas[0]} to "
-        f"{sigmas[-1]} px/frame, {len(size.seeds)} seeds; grey levels are means over the seeds. "
+        f"{BAR_SETTING} No bar; speeds from {speeds[0]} to {speeds[-1]} and sigma from "
+        f"{sigmas[0]} to {sigmas[-1]} px/frame, {len(size.seeds)} seeds; grey levels are means "
+        "over the seeds. "
         f"{INTERPRETATIONS_NOTE}",
     )
 

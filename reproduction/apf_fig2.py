@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from reproduction import experiment as ex
 from reproduction.apf_systems import (
-    SETTING,
+    BAR_SETTING,
     VEHICLE_WIDTH,
     artificial_video,
     covered,
@@ -57,7 +57,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
                     "half of it",
                 ),
             ),
-            f"{SETTING} The speed is {choice.speed:g} px/frame.",
+            f"{BAR_SETTING} The speed is {choice.speed:g} px/frame.",
         ),
     )
 

@@ -15,10 +15,10 @@ from matplotlib.figure import Figure
 
 from reproduction import experiment as ex
 from reproduction.apf_systems import (
+    BAR_SETTING,
     INTERPRETATIONS,
     INTERPRETATIONS_NOTE,
-    SETTING,
-    SPEED,
+    VEHICLE_SPEED,
     artificial_video,
     covered,
     with_sigma,
@@ -73,7 +73,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
 
 
 def _cell(interpretation: str, width: int, seed: int) -> RunCell:
-    system = with_sigma(INTERPRETATIONS[interpretation], SPEED)
+    system = with_sigma(INTERPRETATIONS[interpretation], VEHICLE_SPEED)
     return RunCell(artificial_video(width), system, seed, _RECORD)
 
 
@@ -204,9 +204,9 @@ def _verdict(table: _Runs) -> ex.ExperimentVerdict:
                 "yes: in 95 % of the runs; partly: in half",
             ),
         ),
-        f"{SETTING} The vehicle passes at {SPEED:g} px/frame, sigma is the same number; "
-        f"{len(table.widths)} widths, "
-        f"{len(table.seeds)} seeds. Grey levels are those of the first seed. "
+        f"{BAR_SETTING} The vehicle passes at {VEHICLE_SPEED:g} px/frame, sigma is the same "
+        f"number; {len(table.widths)} widths, {len(table.seeds)} seeds. Grey levels are "
+        "those of the first seed. "
         f"{INTERPRETATIONS_NOTE}",
     )
 

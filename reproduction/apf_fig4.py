@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 
 from reproduction import experiment as ex
 from reproduction.apf_systems import (
+    BAR_SETTING,
     INTERPRETATIONS,
     INTERPRETATIONS_NOTE,
-    SETTING,
-    SPEED,
+    VEHICLE_SPEED,
     artificial_video,
     covered,
     with_sigma,
@@ -65,7 +65,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
 
 
 def _cell(interpretation: str, width: int, seed: int) -> RunCell:
-    system = with_sigma(INTERPRETATIONS[interpretation], SPEED)
+    system = with_sigma(INTERPRETATIONS[interpretation], VEHICLE_SPEED)
     return RunCell(artificial_video(width), system, seed, _RECORD)
 
 
@@ -136,8 +136,8 @@ def _verdict(results: ex.Results, size: ex.Size) -> ex.ExperimentVerdict:
                 "mode begins there and not before; partly: in half",
             ),
         ),
-        f"{SETTING} It passes at {SPEED:g} px/frame, sigma is the same number; {len(size.seeds)} "
-        "seeds. Curves are those of the first seed. "
+        f"{BAR_SETTING} It passes at {VEHICLE_SPEED:g} px/frame, sigma is the same number; "
+        f"{len(size.seeds)} seeds. Curves are those of the first seed. "
         f"{INTERPRETATIONS_NOTE}",
     )
 

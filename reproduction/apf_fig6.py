@@ -13,11 +13,11 @@ from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
 from reproduction import experiment as ex
-from reproduction.apf_systems import INTERPRETATIONS, RIVALS, SIX
+from reproduction.apf_systems import APF_RIVALS, INTERPRETATIONS, SIX_SYSTEMS
 from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
 from reproduction.numbers import median_and_range
 from reproduction.shading import shade_occlusions
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
 from vehicle_pf_tracker.evaluation.scores import SETTLING_FRAMES, Scores
 
 _PLACE = "section IV, figure 6"
@@ -38,8 +38,8 @@ def _figure(runs: Mapping[str, Sequence[Scores]]) -> Figure:
     figure = Figure(figsize=(10, 7), layout="constrained")
     linear, logarithmic = figure.subplots(2, 1, sharex=True)
     for axes in (linear, logarithmic):
-        shade_occlusions(axes, runs[SIX[0].label][0])
-        for system, style in zip(SIX, STYLES, strict=True):
+        shade_occlusions(axes, runs[SIX_SYSTEMS[0].label][0])
+        for system, style in zip(SIX_SYSTEMS, LINE_STYLES, strict=True):
             draw_band(axes, runs[system.label], style, system.label)
         axes.set(ylabel="error of the centre, px")
     linear.set(ylim=(0, None), title="linear, as in the paper")
@@ -73,7 +73,7 @@ def _table(runs: dict[str, list[Scores]]) -> ex.DataTable:
 
 
 def _verdict(runs: dict[str, list[Scores]], size: ex.Size) -> ex.ExperimentVerdict:
-    rivals = {rival.label: _mean_errors(runs[rival.label]) for rival in RIVALS}
+    rivals = {rival.label: _mean_errors(runs[rival.label]) for rival in APF_RIVALS}
     findings = tuple(
         _finding(interpretation, _mean_errors(runs[system.label]), rivals)
         for interpretation, system in INTERPRETATIONS.items()

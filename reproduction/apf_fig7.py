@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
 from reproduction import experiment as ex
-from reproduction.apf_systems import INTERPRETATIONS, RIVALS, SIX
+from reproduction.apf_systems import APF_RIVALS, INTERPRETATIONS, SIX_SYSTEMS
 from reproduction.numbers import counted, share
 from reproduction.shading import shade_occlusions
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 _PLACE = "section IV, figure 7"
@@ -23,7 +23,7 @@ _PLACE = "section IV, figure 7"
 def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Draw the first seed's x, and judge all seeds."""
     runs = video3.all_scores(results, size)
-    drawn = {system.label: runs[system.label][0] for system in SIX}
+    drawn = {system.label: runs[system.label][0] for system in SIX_SYSTEMS}
     return ex.Report(video3.data(runs, size), _figure(drawn), _verdict(runs, size))
 
 
@@ -34,7 +34,7 @@ def _figure(runs: dict[str, Scores]) -> Figure:
     shade_occlusions(axes, first)
     true = [(f.row.frame, f.truth.box.centre[0]) for f in first.frames if f.truth is not None]
     axes.plot(*zip(*true, strict=True), color="0.55", lw=4.5, alpha=0.6, label="truth")
-    for (label, scored), style in zip(runs.items(), STYLES, strict=True):
+    for (label, scored), style in zip(runs.items(), LINE_STYLES, strict=True):
         drawn = [(f.row.frame, f.row.x) for f in scored.frames if f.row.x is not None]
         axes.plot(*zip(*drawn, strict=True), color=style.colour, ls=style.line, lw=1.6, label=label)
     axes.set(xlabel="frame", ylabel="x, px")
@@ -48,7 +48,7 @@ def _verdict(runs: dict[str, list[Scores]], size: ex.Size) -> ex.ExperimentVerdi
         interpretation: video3.recoveries(runs[system.label])
         for interpretation, system in INTERPRETATIONS.items()
     }
-    others = {rival.label: video3.recoveries(runs[rival.label]) for rival in RIVALS}
+    others = {rival.label: video3.recoveries(runs[rival.label]) for rival in APF_RIVALS}
     return ex.ExperimentVerdict(
         (
             ex.Claim(

@@ -12,9 +12,9 @@ from typing import TypeAlias
 from reproduction import apf_systems as apf
 from reproduction.experiment import DataTable, Entry
 from reproduction.numbers import counted, mean_and_spread, rank_correlation
-from reproduction.paper_scenes import VIDEOS
+from reproduction.paper_scenes import VIDEO_SCENES
 
-LABELS = tuple(system.label for system in (*apf.RIVALS, apf.APF))
+LABELS = tuple(system.label for system in (*apf.APF_RIVALS, apf.APF))
 """The six, in the order of the paper's columns."""
 _PRINTED_ROWS = (
     (85.83, 100.19, 87.34, 93.45, 86.83, 25.65),
@@ -40,7 +40,7 @@ _PRINTED_ROWS = (
 )
 PUBLISHED: Mapping[str, Mapping[str, float]] = {
     video: dict(zip(LABELS, row, strict=True))
-    for video, row in zip(VIDEOS, _PRINTED_ROWS, strict=True)
+    for video, row in zip(VIDEO_SCENES, _PRINTED_ROWS, strict=True)
 }
 """The paper's RMSE in px, by video and by tracker."""
 BESIDE = (apf.RELATIVE, apf.AS_PRINTED, *apf.OWN_LIKELIHOOD, *apf.LIBERTIES)
@@ -52,7 +52,7 @@ Errors: TypeAlias = Mapping[str, Mapping[str, Sequence[float]]]
 
 def groups(videos: Errors) -> dict[str, list[str]]:
     """Return the videos that averages are taken over, by title."""
-    total = [name for name in videos if "total" in VIDEOS[name].occlusion]
+    total = [name for name in videos if "total" in VIDEO_SCENES[name].occlusion]
     others = [name for name in videos if name not in total]
     return {"average": list(videos), "total occlusion": total, "no total occlusion": others}
 
@@ -68,7 +68,7 @@ def video_table(videos: Errors) -> DataTable:
     rows: list[tuple[Entry, ...]] = [
         (
             name,
-            VIDEOS[name].occlusion,
+            VIDEO_SCENES[name].occlusion,
             *(
                 f"{mean_and_spread(errors[label])} ({PUBLISHED[name][label]:.2f})"
                 for label in LABELS
@@ -110,17 +110,17 @@ def ratios(videos: Errors, label: str, rivals: Sequence[str]) -> dict[str, float
 def published_ratio(video: str) -> float:
     """Return the paper's RMSE of APF over that of the best rival."""
     row = PUBLISHED[video]
-    return row[apf.APF.label] / min(row[rival.label] for rival in apf.RIVALS)
+    return row[apf.APF.label] / min(row[rival.label] for rival in apf.APF_RIVALS)
 
 
 def ratio_table(videos: Errors) -> DataTable:
     """Compare how far APF is ahead of the best rival, which the scene's size does not change."""
-    rivals = [rival.label for rival in apf.RIVALS]
+    rivals = [rival.label for rival in apf.APF_RIVALS]
     found = {
         system.label: ratios(videos, system.label, rivals) for system in (apf.APF, apf.RELATIVE)
     }
     rows = tuple(
-        (name, VIDEOS[name].occlusion, *(f"{of[name]:.2f}" for of in found.values()),
+        (name, VIDEO_SCENES[name].occlusion, *(f"{of[name]:.2f}" for of in found.values()),
          f"{published_ratio(name):.2f}")
         for name in videos
     )  # fmt: skip
@@ -138,6 +138,6 @@ def beside_table(videos: Errors, recovered: Mapping[str, Sequence[bool]]) -> Dat
             ),
             counted(recovered[system.label]),
         )
-        for system in (*apf.SIX, *BESIDE)
+        for system in (*apf.SIX_SYSTEMS, *BESIDE)
     )
     return DataTable(("tracker", *groups(videos), "recovered from total occlusions"), rows)

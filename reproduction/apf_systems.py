@@ -8,21 +8,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reproduction.cells import RunCell, SceneChoice, System
-from reproduction.experiment import OURS, PAPER, PRINTED
+from reproduction.experiment import OUR_INTERPRETATION, PAPER_RULE, PRINTED_RULE
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.parameters.table import Value
 
 VEHICLE_WIDTH, VEHICLE_HEIGHT = 30.0, 22.0
 """Size of the vehicle, px: the bar of 30 px in the paper's figure 2 hides it wholly."""
-SPEED = 5.0
+VEHICLE_SPEED = 5.0
 """px/frame, where the paper keeps it constant."""
-SETTING = (
+BAR_SETTING = (
     f"The artificial video (scene `bar`): a {VEHICLE_WIDTH:g} x {VEHICLE_HEIGHT:g} px vehicle on "
     "even ground with sensor noise, 15 frames per second."
 )
 
 
-def artificial_video(width: float, speed: float = SPEED) -> SceneChoice:
+def artificial_video(width: float, speed: float = VEHICLE_SPEED) -> SceneChoice:
     """Choose the video with a bar of `width` px; 0 leaves it out."""
     size = {"vehicle_width": VEHICLE_WIDTH, "vehicle_height": VEHICLE_HEIGHT}
     return SceneChoice.of("bar", {"speed": float(speed), "width": float(width), **size})
@@ -44,7 +44,7 @@ _FIXED: dict[str, Value] = {
     "reference.alpha": 0.01,
 }
 APF = System.of("APF", "apf", {**_FIXED, **_LIKELIHOOD})
-RIVALS = (
+APF_RIVALS = (
     System.of("PF", "pf", _LIKELIHOOD),
     System.of("SAPF", "sapf", _LIKELIHOOD),
     System.of("HPFMS", "hpfms", _LIKELIHOOD),
@@ -54,7 +54,7 @@ RIVALS = (
 """Rivals in the order of the paper's tables."""
 RELATIVE = System.of("APF, relative", "apf", {"occlusion.rule": "relative", **_LIKELIHOOD})
 AS_PRINTED = System.of("APF as printed", "apf", {"as_printed": True})
-INTERPRETATIONS = {PAPER: APF, OURS: RELATIVE, PRINTED: AS_PRINTED}
+INTERPRETATIONS = {PAPER_RULE: APF, OUR_INTERPRETATION: RELATIVE, PRINTED_RULE: AS_PRINTED}
 INTERPRETATIONS_NOTE = (
     "The paper's rule is step 4 of its algorithm with a tau of 0.8, which the paper prints for its "
     "artificial videos alone; `video01` to `video20` have the same. The paper prints no alpha; "
@@ -67,7 +67,7 @@ _OWN: dict[str, Value] = {"likelihood.sigma_v": 0.158}
 """Perez's lambda of 20, the default of the rivals' variants."""
 OWN_LIKELIHOOD = tuple(
     System.of(f"{rival.label}, sigma_v 0.158", rival.variant, _OWN)
-    for rival in RIVALS
+    for rival in APF_RIVALS
     if rival.variant != "ms"
 )
 """The rivals with the likelihood that their papers have, which is their variants' default."""
@@ -78,7 +78,7 @@ LIBERTIES = (
 )
 """The rivals with options that their own papers have, or with APF's number of measurements: three
 steps of mean shift and one measurement for each of 50 particles are 200 windows."""
-SIX = (APF, *RIVALS)
+SIX_SYSTEMS = (APF, *APF_RIVALS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,14 +105,14 @@ class Comparison:
         return tuple(rival.label for rival in self.rivals)
 
 
-_MS = RIVALS[-1]
+_MS = APF_RIVALS[-1]
 OWN_SIGMA_V = "the paper's rule, rivals with their own sigma_v"
 COMPARISONS = (
-    *(Comparison(name, system, RIVALS) for name, system in INTERPRETATIONS.items()),
+    *(Comparison(name, system, APF_RIVALS) for name, system in INTERPRETATIONS.items()),
     Comparison(OWN_SIGMA_V, APF, (*OWN_LIKELIHOOD, _MS)),
     Comparison(
         "the paper's rule, rivals with their papers' options", APF,
-        (LIBERTIES[2], LIBERTIES[1], LIBERTIES[0], RIVALS[3], _MS),
+        (LIBERTIES[2], LIBERTIES[1], LIBERTIES[0], APF_RIVALS[3], _MS),
     ),
 )  # fmt: skip
 """APF under every interpretation against rivals of one likelihood, and in other company."""

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from reproduction import experiment as ex
 from reproduction.cells import RunCell, SceneChoice
 from reproduction.numbers import counted, share
-from reproduction.paper_scenes import VIDEOS
+from reproduction.paper_scenes import VIDEO_SCENES
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 
 _PLACE = "section IV, table I"
@@ -48,12 +48,12 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Read every scene's truth, and hold it against the paper's table."""
     truths = {
         (name, seed): SceneChoice.of(name).seeded(seed).truths()
-        for name in VIDEOS
+        for name in VIDEO_SCENES
         for seed in size.seeds
     }
     rows: list[tuple[ex.Entry, ...]] = []
     fits = []
-    for number, name in enumerate(VIDEOS, start=1):
+    for number, name in enumerate(VIDEO_SCENES, start=1):
         published = _published(number)
         found = [_found(name, truths[name, seed]) for seed in size.seeds]
         fits += [row == published for row in found]
@@ -64,8 +64,8 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
                 published.vehicle,
                 published.occlusion,
                 published.resolution,
-                VIDEOS[name].what,
-                f"{VIDEOS[name].parameters.speed:g}",
+                VIDEO_SCENES[name].what,
+                f"{VIDEO_SCENES[name].parameters.speed:g}",
                 *(_range([count[kind] for count in counts]) for kind in (0, 1)),
             )
         )
@@ -87,7 +87,7 @@ def _published(number: int) -> _Row:
 
 def _found(name: str, truths: Sequence[Truth]) -> _Row:
     """Describe a scene; the occlusion comes from its truth."""
-    parameters = VIDEOS[name].parameters
+    parameters = VIDEO_SCENES[name].parameters
     return _Row(parameters.vehicle, _kind(truths), parameters.resolution)
 
 
@@ -127,16 +127,16 @@ def _data(truths: dict[tuple[str, int], list[Truth]]) -> ex.DataTable:
 def _figure(truths: dict[tuple[str, int], list[Truth]], seed: int) -> Figure:
     figure = Figure(figsize=(9, 5), layout="constrained")
     axes = figure.add_subplot()
-    longest = max(len(truths[name, seed]) for name in VIDEOS)
-    shown = np.full((len(VIDEOS), longest), np.nan)
-    for row, name in enumerate(VIDEOS):
+    longest = max(len(truths[name, seed]) for name in VIDEO_SCENES)
+    shown = np.full((len(VIDEO_SCENES), longest), np.nan)
+    for row, name in enumerate(VIDEO_SCENES):
         visible = [truth.visible_fraction for truth in truths[name, seed]]
         shown[row, : len(visible)] = [1.0 if share is None else share for share in visible]
     image = axes.pcolormesh(
-        np.arange(1, longest + 1), np.arange(1, len(VIDEOS) + 1), shown, shading="nearest",
+        np.arange(1, longest + 1), np.arange(1, len(VIDEO_SCENES) + 1), shown, shading="nearest",
         cmap="gray", vmin=0, vmax=1, rasterized=True,
     )  # fmt: skip
-    axes.set(xlabel="frame", ylabel="video", yticks=range(1, len(VIDEOS) + 1))
+    axes.set(xlabel="frame", ylabel="video", yticks=range(1, len(VIDEO_SCENES) + 1))
     axes.invert_yaxis()
     axes.set_facecolor("#CFE3F1")
     figure.colorbar(image, ax=axes, label="visible share of the vehicle")
@@ -154,7 +154,7 @@ def _claim(fits: Sequence[bool]) -> ex.Claim:
 
 def _all_fit(fits: Sequence[bool]) -> ex.Finding:
     return ex.Finding(
-        ex.PAPER,
+        ex.PAPER_RULE,
         ex.Holds.share(share(fits), yes=1.0),
         f"{counted(fits)} scenes (videos times seeds) fit their row by their truth",
     )

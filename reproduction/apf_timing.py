@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from reproduction import apf_video3 as video3
 from reproduction import experiment as ex
-from reproduction.apf_systems import APF, RIVALS, SIX, ruled
+from reproduction.apf_systems import APF, APF_RIVALS, SIX_SYSTEMS, ruled
 from reproduction.numbers import median_and_range
 from reproduction.timing_cell import TimingCell
 
@@ -34,14 +34,14 @@ def cells(size: ex.Size) -> list[TimingCell]:
 def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Compare the times as ratios to APF's."""
     times = {seed: results[_cell(seed)]["step_ms"] for seed in size.seeds}
-    medians = {s.label: [median(times[seed][s.label]) for seed in size.seeds] for s in SIX}
+    medians = {s.label: [median(times[seed][s.label]) for seed in size.seeds] for s in SIX_SYSTEMS}
     ratios = {
         label: [own / ours for own, ours in zip(found, medians[APF.label], strict=True)]
         for label, found in medians.items()
     }
     rows = tuple(
         (system.label, seed, frame, step)
-        for system in SIX
+        for system in SIX_SYSTEMS
         for seed in size.seeds
         for frame, step in enumerate(times[seed][system.label], start=2)
     )
@@ -62,7 +62,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
 
 
 def _cell(seed: int) -> TimingCell:
-    systems = tuple(ruled(video3.SCENE, system, seed).system for system in SIX)
+    systems = tuple(ruled(video3.SCENE, system, seed).system for system in SIX_SYSTEMS)
     return TimingCell(video3.SCENE, systems, seed)
 
 
@@ -114,7 +114,7 @@ def _verdict(ratios: dict[str, list[float]], size: ex.Size) -> ex.ExperimentVerd
 
 def _filters(ratios: Mapping[str, Sequence[float]]) -> dict[str, float]:
     """Median ratio of the particle filters that APF is compared with."""
-    return {rival.label: median(ratios[rival.label]) for rival in RIVALS if rival.label != "MS"}
+    return {rival.label: median(ratios[rival.label]) for rival in APF_RIVALS if rival.label != "MS"}
 
 
 def _text(ratios: Mapping[str, Sequence[float]]) -> str:

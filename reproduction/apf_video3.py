@@ -10,19 +10,19 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 
 from reproduction import apf_systems as apf
-from reproduction.cells import PATH, RunCell, SceneChoice, System, scores
+from reproduction.cells import PATH_COLUMNS, RunCell, SceneChoice, System, scores
 from reproduction.experiment import DataTable, Results, Size
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 SCENE = SceneChoice.of("video03")
-SYSTEMS = tuple(dict.fromkeys((*apf.INTERPRETATIONS.values(), *apf.RIVALS)))
+SYSTEMS = tuple(dict.fromkeys((*apf.INTERPRETATIONS.values(), *apf.APF_RIVALS)))
 SETTING = (
     "The scene `video03` is our counterpart of the paper's Video3: a sport utility vehicle passes "
     "a lamp post, is hidden by a sign and then by a coach that overtakes; 15 frames per second. "
     "Each seed renders a new scene and seeds the trackers. " + apf.SIGMA_RULE
 )
-_RECORD = (*PATH, "regime")
+_RECORD = (*PATH_COLUMNS, "regime")
 
 
 def cell(system: System, seed: int) -> RunCell:

@@ -12,9 +12,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
 
-SHADES = {"total": "0.84", "partial and total": "0.84", "partial": "0.93", "none": "white"}
+OCCLUSION_SHADES = {
+    "total": "0.84",
+    "partial and total": "0.84",
+    "partial": "0.93",
+    "none": "white",
+}
 """The ground of a scene by its kind of occlusion."""
 GROUND_NOTE = "(dark ground: total occlusion, light: partial, white: none)"
 _SPREAD = 0.66
@@ -40,7 +45,7 @@ def draw_cases(axes: Axes, values: Values, shades: Mapping[str, str]) -> None:
     step = _SPREAD / len(labels)
     for place, name in enumerate(values):
         axes.axvspan(place - 0.5, place + 0.5, color=shades[name], lw=0)
-    for index, (label, style) in enumerate(zip(labels, STYLES, strict=False)):
+    for index, (label, style) in enumerate(zip(labels, LINE_STYLES, strict=False)):
         places = np.arange(len(values)) + (index - (len(labels) - 1) / 2) * step
         found = [of_scene[label] for of_scene in values.values()]
         axes.vlines(

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Protocol, TypeAlias
 
-from reproduction.paper_scenes import FIXED_SCENES, SCENES, make_scene
+from reproduction.paper_scenes import FIXED_SCENES, PAPER_SCENES, make_scene
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
@@ -63,7 +63,7 @@ class SceneChoice:
         fixed = FIXED_SCENES.get(self.name)
         if fixed is not None:
             return fixed.parameters.speed
-        default = specs(SCENES[self.name].parameters)["speed"].default
+        default = specs(PAPER_SCENES[self.name].parameters)["speed"].default
         return float(dict(self.settings).get("speed", default))
 
 
@@ -208,7 +208,7 @@ def start_session(system: System, seed: int, first: SceneFrame) -> Session:
     return Session(find_variant(system.variant), system.parameters(seed), settings)
 
 
-PATH = ("x", "y", "width", "height", "mode")
+PATH_COLUMNS = ("x", "y", "width", "height", "mode")
 """Scalars that a cell has to record for `scores`."""
 
 
@@ -218,12 +218,12 @@ def scores(cell: RunCell, result: Result) -> Scores:
     Parameters
     ----------
     cell : RunCell
-        Records `PATH` at least.
+        Records `PATH_COLUMNS` at least.
     result : Result
         Result of the cell.
     """
     truths = _truths(cell.scene)
-    columns = (result["trace"][name] for name in PATH)
+    columns = (result["trace"][name] for name in PATH_COLUMNS)
     rows = [
         EstimateRow(number, truth.stamp_ns, x, y, width, height, mode, None, None, None)
         for number, (truth, x, y, width, height, mode) in enumerate(

@@ -18,7 +18,7 @@ from reproduction import apf_systems as apf
 from reproduction import mfpf_systems as mfpf
 from reproduction import resampling_systems as resampling
 from reproduction.cells import RunCell, SceneChoice, System
-from reproduction.experiment import PAPER, DataTable, Entry
+from reproduction.experiment import PAPER_RULE, DataTable, Entry
 from reproduction.running import run_together
 from vehicle_pf_tracker.parameters.table import Value
 
@@ -57,8 +57,8 @@ class Effect:
 
 
 _APF = apf.with_sigma(apf.APF, apf.LARGEST_SIGMA)
-_MFPF = mfpf.read_as(mfpf.MFPF, PAPER)
-_ADAPTIVE = resampling.VIEWS[PAPER].adaptive
+_MFPF = mfpf.read_as(mfpf.MFPF, PAPER_RULE)
+_ADAPTIVE = resampling.VIEWS[PAPER_RULE].adaptive
 _VIDEOS = "video03", "video12"
 _SCENES = "overlap", "phases"
 _RADIUS = float(_MFPF.parameters(0).dispersion.radius)

@@ -18,14 +18,14 @@ from reproduction.cells import Cell, Result
 
 Entry: TypeAlias = float | int | str | None
 
-PAPER = "the paper's rule"
+PAPER_RULE = "the paper's rule"
 """The paper's algorithm as it was meant: misprints and gaps filled by docs/interpretations.md."""
-BASIC = "the paper's rule, basic rivals"
+BASIC_RIVALS = "the paper's rule, basic rivals"
 """The other open reading of P2: MFPF by the paper's rule beside single-feature filters that have
 nothing of what its section IV adds (interpretation 32)."""
-OURS = "our interpretation"
+OUR_INTERPRETATION = "our interpretation"
 """The variant's defaults, or what we add to the paper's rule, named in the setting."""
-PRINTED = "as printed"
+PRINTED_RULE = "as printed"
 """The paper to the letter, misprints included."""
 
 
@@ -173,7 +173,9 @@ class ExperimentVerdict:
 
     def to_json(self) -> dict[str, Any]:
         """Return plain values for JSON."""
-        others = {name: self.under(name) for name in (BASIC, OURS, PRINTED)}
+        others = {
+            name: self.under(name) for name in (BASIC_RIVALS, OUR_INTERPRETATION, PRINTED_RULE)
+        }
         under = {name: None if found is None else found.value for name, found in others.items()}
         return {"holds": self.holds.value, "under": under, **asdict(self)}
 
@@ -194,7 +196,7 @@ class ExperimentVerdict:
 T = TypeVar("T")
 Results: TypeAlias = Mapping[Cell, Result]
 
-SEEDS = 10
+EXPERIMENT_SEEDS = 10
 """Runs of each kind: with ten, a verdict that asks for 80 % of the seeds may lose two."""
 QUICK_SEEDS = 2
 """Runs of a quick check: the least that have a spread."""
@@ -212,7 +214,7 @@ class Size:
         True for coarse grids, a check that everything works.
     """
 
-    seeds: range = range(SEEDS)
+    seeds: range = range(EXPERIMENT_SEEDS)
     quick: bool = False
 
     def of(self, full: T, quick: T) -> T:

@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from reproduction import experiment as ex
 from reproduction import mfpf_systems as mfpf
 from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
-from reproduction.mfpf_systems import FOUR, MFPF, RIVALRIES, SINGLES
+from reproduction.mfpf_systems import FOUR_SYSTEMS, MFPF, RIVALRIES, SINGLE_FEATURES
 from reproduction.shading import shade_occlusions
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
 
 _PLACE = "section V, figures 5b to 15b"
 
@@ -34,7 +34,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
         )
         for interpretation in RIVALRIES
         for case in mfpf.cases(size)
-        for system in FOUR
+        for system in FOUR_SYSTEMS
         for seed in size.seeds
         for f in mfpf.run_scores(results, case, system, seed, interpretation).frames
         if f.truth is not None
@@ -59,11 +59,11 @@ def _figure(results: ex.Results, size: ex.Size) -> Figure:
         # MFPF first: its line is solid.
         runs = {
             system.label: [mfpf.run_scores(results, case, system, seed) for seed in size.seeds]
-            for system in (MFPF, *SINGLES)
+            for system in (MFPF, *SINGLE_FEATURES)
         }
         for axes in row:
             shade_occlusions(axes, runs[MFPF.label][0])
-            for (label, of_seeds), style in zip(runs.items(), STYLES, strict=False):
+            for (label, of_seeds), style in zip(runs.items(), LINE_STYLES, strict=False):
                 draw_band(axes, of_seeds, style, label)
         row[0].set(ylim=(0, None), ylabel="error, px")
         row[0].set_title(f"case {case[-1]}: {mfpf.occlusion_text(case)}", fontsize="medium")
@@ -104,7 +104,7 @@ def _claims(results: ex.Results, size: ex.Size) -> tuple[ex.Claim, ...]:
 def _errors(
     results: ex.Results, case: str, label: str, seed: int, interpretation: str
 ) -> list[float]:
-    (system,) = (s for s in FOUR if s.label == label)
+    (system,) = (s for s in FOUR_SYSTEMS if s.label == label)
     frames = mfpf.run_scores(results, case, system, seed, interpretation).frames
     return [frame.error for frame in frames if frame.error is not None]
 
@@ -117,7 +117,7 @@ def _spreads(results: ex.Results, size: ex.Size, interpretation: str) -> Mapping
             pstdev(_errors(results, case, system.label, seed, interpretation))
             for seed in size.seeds
         )
-        for system in FOUR
+        for system in FOUR_SYSTEMS
     }
 
 
@@ -139,13 +139,15 @@ def _parts(
     for case in mfpf.cases(size):
         shares = []
         for seed in size.seeds:
-            errors = {s.label: _errors(results, case, s.label, seed, interpretation) for s in FOUR}
+            errors = {
+                s.label: _errors(results, case, s.label, seed, interpretation) for s in FOUR_SYSTEMS
+            }
             own = errors.pop(MFPF.label)
             best = [min(of) for of in zip(*errors.values(), strict=True)]
             shares.append(fmean(a <= b for a, b in zip(own, best, strict=True)))
         totals = {
             s.label: fmean(mfpf.per_seed(results, size, case, s, interpretation, "rmse_px"))
-            for s in FOUR
+            for s in FOUR_SYSTEMS
         }
         found[case] = fmean(shares), totals.pop(MFPF.label) <= min(totals.values())
     return found

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from reproduction import experiment as ex
 from reproduction.cells import RunCell
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES
 from vehicle_pf_tracker.filtering.weights import Weights, from_log
 from vehicle_pf_tracker.trackers.papers.shared import LikelihoodParameters, log_likelihood
 
@@ -45,10 +45,10 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
     weights = _weights()
     counts = {
         scheme: np.sum([_counts(scheme, weights, seed) for seed in size.seeds], axis=0)
-        for scheme in SCHEMES
+        for scheme in RESAMPLING_SCHEMES
     }
     total = _DRAWS * len(size.seeds)
-    names = (_PRINTED, *(name for name in SCHEMES if name != _PRINTED))
+    names = (_PRINTED, *(name for name in RESAMPLING_SCHEMES if name != _PRINTED))
     rows = tuple(
         (scheme, event + 1, float(weights[event]), float(counts[scheme][event]) / total)
         for scheme in names
@@ -77,14 +77,14 @@ def _weights() -> Weights:
 
 
 def _counts(scheme: str, weights: Weights, seed: int) -> Array:
-    drawn = SCHEMES[scheme](weights, _DRAWS, np.random.default_rng(seed))
+    drawn = RESAMPLING_SCHEMES[scheme](weights, _DRAWS, np.random.default_rng(seed))
     return np.bincount(drawn, minlength=_EVENTS).astype(float)
 
 
 def _finding(scheme: str, weights: Weights, counts: Array, total: int) -> ex.Finding:
     spread = np.sqrt(total * weights * (1 - weights))
     worst = float(np.max(np.abs(counts - total * weights) / spread))
-    name = f"{ex.PAPER}, {scheme}" if scheme != _PRINTED else ex.PAPER
+    name = f"{ex.PAPER_RULE}, {scheme}" if scheme != _PRINTED else ex.PAPER_RULE
     return ex.Finding(
         name,
         ex.Holds.of(worst <= _MOST, _farthest(counts / total, weights) <= _SMALL),

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from reproduction import experiment as ex
 from reproduction import mfpf_systems as mfpf
-from reproduction.mfpf_systems import FOUR, MFPF, SINGLES
+from reproduction.mfpf_systems import FOUR_SYSTEMS, MFPF, SINGLE_FEATURES
 from reproduction.strips import strip_figure, telling_frames
 from vehicle_pf_tracker.core.truth import Occlusion
 
@@ -29,7 +29,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
         (case, system.label, seed, f.row.frame, f.row.x, f.row.y, f.truth.box.centre[0],
          f.truth.box.centre[1], f.truth.occlusion.name.lower(), f.truth.visible_fraction)
         for case in mfpf.cases(size)
-        for system in FOUR
+        for system in FOUR_SYSTEMS
         for f in mfpf.run_scores(results, case, system, seed).frames
         if f.truth is not None
     )  # fmt: skip
@@ -60,7 +60,7 @@ def _figure(results: ex.Results, size: ex.Size) -> Figure:
         # MFPF first: its line is solid.
         runs = {
             system.label: mfpf.run_scores(results, case, system, size.seeds[0])
-            for system in (MFPF, *SINGLES)
+            for system in (MFPF, *SINGLE_FEATURES)
         }
         choice = mfpf.cell(case, MFPF, size.seeds[0]).scene
         rows[f"case {case[-1]}"] = choice, runs, telling_frames(runs[MFPF.label], _FRAMES)
@@ -94,7 +94,7 @@ def _finding(counts: _Counts) -> ex.Finding:
             f"{case} ({mfpf.occlusion_text(case)}) {min(partial)} to {max(partial)} partly and "
             f"{min(hidden)} to {max(hidden)} fully hidden frames"
         )
-    return ex.Finding(ex.PAPER, ex.Holds.of(all(fits), any(fits)), "; ".join(parts))
+    return ex.Finding(ex.PAPER_RULE, ex.Holds.of(all(fits), any(fits)), "; ".join(parts))
 
 
 def _fits(case: str, hidden: list[int], partial: list[int]) -> bool:

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from reproduction import experiment as ex
 from reproduction.cells import Probe, Result, SceneChoice
 from reproduction.mfpf_systems import (
-    FEATURES,
+    FEATURE_NAMES,
     INTERPRETATIONS,
     MFPF,
     read_as,
@@ -31,7 +31,7 @@ from vehicle_pf_tracker.image.window import WindowFeature
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.base import Target
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
-    TEXTURES,
+    TEXTURE_FEATURES,
     MfpfParameters,
     edge_feature,
 )
@@ -92,7 +92,7 @@ class _Histograms:
         self._features = features(interpretation)
         self._target: Target | None = None
         self._first: dict[str, Any] = {}
-        self._distance: dict[str, list[float]] = {name: [] for name in FEATURES}
+        self._distance: dict[str, list[float]] = {name: [] for name in FEATURE_NAMES}
         self._visible: list[float] = []
 
     def feed(self, shown: SceneFrame) -> None:
@@ -116,7 +116,7 @@ def features(interpretation: str) -> dict[str, WindowFeature]:
     return {
         "color": RgbMarginals(),
         "edge": edge_feature(settings.edges),
-        "texture": TEXTURES[settings.texture](),
+        "texture": TEXTURE_FEATURES[settings.texture](),
     }
 
 
@@ -139,7 +139,7 @@ def cells(size: ex.Size) -> list[HistogramCell]:
 def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Draw the first seed's histograms, and judge all seeds."""
     rows: list[tuple[ex.Entry, ...]] = [
-        (interpretation, situation, seed, FEATURES[name], distance)
+        (interpretation, situation, seed, FEATURE_NAMES[name], distance)
         for interpretation in INTERPRETATIONS
         for situation in _SITUATIONS
         for seed in size.seeds
@@ -152,7 +152,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
                     _distances(results, situation, seed, interpretation)[name]
                     for seed in size.seeds
                 ]
-                for name in FEATURES
+                for name in FEATURE_NAMES
             }
             for situation in _SITUATIONS
         }
@@ -160,10 +160,10 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
     }
     table = ex.DataTable(
         ("", *(read_label(label, interpretation)
-               for interpretation in INTERPRETATIONS for label in FEATURES.values())),
+               for interpretation in INTERPRETATIONS for label in FEATURE_NAMES.values())),
         tuple(
             (_TITLES[situation], *(mean_and_spread(found[interpretation][situation][name], 2)
-                                   for interpretation in INTERPRETATIONS for name in FEATURES))
+                                   for interpretation in INTERPRETATIONS for name in FEATURE_NAMES))
             for situation in _SITUATIONS
         ),
     )  # fmt: skip
@@ -189,7 +189,7 @@ def _setting(size: ex.Size) -> str:
         f"those with less than {100 * _GONE:.0f} %. The picture shows the first seed: first frame, "
         "then the one of each kind that is furthest in colour. The paper's rule and our "
         "interpretation have the same features here; "
-        f"{_edges_text(ex.PAPER)}, as printed {_edges_text(ex.PRINTED)}."
+        f"{_edges_text(ex.PAPER_RULE)}, as printed {_edges_text(ex.PRINTED_RULE)}."
     )
 
 
@@ -226,9 +226,11 @@ def _distances(
 ) -> dict[str, float]:
     choice = SceneChoice.of(_SCENE).seeded(seed)
     # Frames are chosen alike for both interpretations.
-    chosen = chosen_frames(results[HistogramCell(choice, ex.PAPER)], situation)
+    chosen = chosen_frames(results[HistogramCell(choice, ex.PAPER_RULE)], situation)
     result = results[HistogramCell(choice, interpretation)]
-    return {name: fmean(result["distance"][name][index] for index in chosen) for name in FEATURES}
+    return {
+        name: fmean(result["distance"][name][index] for index in chosen) for name in FEATURE_NAMES
+    }
 
 
 def _claims(found: dict[str, dict[str, dict[str, list[float]]]]) -> tuple[ex.Claim, ...]:
@@ -259,7 +261,7 @@ def _order(interpretation: str, of: dict[str, dict[str, list[float]]]) -> ex.Fin
         order = sorted(means, key=means.__getitem__)
         ordered.append(order == ["edge", "texture", "color"])
         edges.append(order[0] == "edge")
-        values = " < ".join(f"{FEATURES[name]} {means[name]:.2f}" for name in order)
+        values = " < ".join(f"{FEATURE_NAMES[name]} {means[name]:.2f}" for name in order)
         parts.append(f"{_TITLES[situation]}: {values}")
     holds = ex.Holds.of(all(ordered), any(edges))
     return ex.Finding(interpretation, holds, f"mean distances, {'; '.join(parts)}")
@@ -268,7 +270,7 @@ def _order(interpretation: str, of: dict[str, dict[str, list[float]]]) -> ex.Fin
 def _empty(interpretation: str, of: dict[str, dict[str, list[float]]]) -> ex.Finding:
     means = {name: fmean(values) for name, values in of["full"].items()}
     empty = [value >= _INFORMATIVE for value in means.values()]
-    parts = ", ".join(f"{FEATURES[name]} {value:.2f}" for name, value in means.items())
+    parts = ", ".join(f"{FEATURE_NAMES[name]} {value:.2f}" for name, value in means.items())
     return ex.Finding(
         interpretation,
         ex.Holds.of(all(empty), any(empty)),
@@ -301,10 +303,10 @@ def _figure(size: ex.Size) -> Figure:
 
 def _pictures(seed: int) -> dict[str, tuple[Frame, dict[str, Any]]]:
     """Cut out the true window, and describe it: the first frame's, and the worst of each kind."""
-    made = features(ex.PAPER)
+    made = features(ex.PAPER_RULE)
     target = None
     shown: list[tuple[Frame, dict[str, Any]]] = []
-    probe = _Histograms(ex.PAPER)
+    probe = _Histograms(ex.PAPER_RULE)
     for scene_frame in SceneChoice.of(_SCENE).seeded(seed).make().frames():
         target = target or Target(scene_frame.frame, scene_frame.truth.box)
         probe.feed(scene_frame)

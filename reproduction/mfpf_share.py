@@ -13,13 +13,21 @@ from matplotlib.figure import Figure
 from reproduction import mfpf_systems as mfpf
 from reproduction.case_figure import (
     GROUND_NOTE,
-    SHADES,
+    OCCLUSION_SHADES,
     Values,
     draw_cases,
 )
-from reproduction.experiment import PAPER, Claim, DataTable, Entry, ExperimentVerdict, Report, Size
+from reproduction.experiment import (
+    PAPER_RULE,
+    Claim,
+    DataTable,
+    Entry,
+    ExperimentVerdict,
+    Report,
+    Size,
+)
 from reproduction.numbers import mean_and_spread
-from reproduction.paper_scenes import CASES
+from reproduction.paper_scenes import CASE_SCENES
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +57,7 @@ def share_report(
     ]
     return Report(
         DataTable(("interpretation", "case", words.of, "seed", words.column), tuple(rows)),
-        _share_figure(shares[PAPER], words.axis),
+        _share_figure(shares[PAPER_RULE], words.axis),
         ExperimentVerdict(tuple(claims), mfpf.setting(size)),
         {words.title: _share_table(shares, paper)},
     )
@@ -77,7 +85,7 @@ def _share_figure(found: Values, what: str) -> Figure:
     """Draw percentages by case; `what` they are of stands at the axis."""
     figure = Figure(figsize=(9, 4.2), layout="constrained")
     axes = figure.add_subplot()
-    draw_cases(axes, found, {case: SHADES[CASES[case].occlusion] for case in found})
+    draw_cases(axes, found, {case: OCCLUSION_SHADES[CASE_SCENES[case].occlusion] for case in found})
     axes.set_xticks(range(len(found)), [case.removeprefix("case") for case in found])
     axes.set(ylim=(-3, 103), ylabel=what, xlabel=f"case {GROUND_NOTE}")
     figure.legend(loc="outside lower center", ncols=4, frameon=False)

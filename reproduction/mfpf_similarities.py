@@ -14,10 +14,10 @@ from matplotlib.figure import Figure
 from reproduction import experiment as ex
 from reproduction import mfpf_systems as mfpf
 from reproduction.mfpf_case_plots import draw_by_case
-from reproduction.mfpf_systems import FEATURES, INTERPRETATIONS, MFPF
+from reproduction.mfpf_systems import FEATURE_NAMES, INTERPRETATIONS, MFPF
 from reproduction.numbers import counted, mean_and_spread, share
 from reproduction.shading import shade_occlusions
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
 
 _PLACE = "section V, figures 5a to 15a"
 _RECOVERING = "case4", "case5"
@@ -38,7 +38,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
             for seed in size.seeds:
                 rows += _rows(results, case, seed, interpretation)
     columns = ("interpretation", "case", "seed", "frame",
-               *(f"{value}_{name}" for value in ("as", "used") for name in FEATURES),
+               *(f"{value}_{name}" for value in ("as", "used") for name in FEATURE_NAMES),
                "regime")  # fmt: skip
     return ex.Report(
         ex.DataTable(columns, tuple(rows)),
@@ -56,7 +56,7 @@ def _rows(
     results: ex.Results, case: str, seed: int, interpretation: str
 ) -> list[tuple[ex.Entry, ...]]:
     trace = mfpf.trace(results, case, MFPF, seed, interpretation)
-    names = [f"{value}_{name}" for value in ("as", "used") for name in FEATURES]
+    names = [f"{value}_{name}" for value in ("as", "used") for name in FEATURE_NAMES]
     columns = zip(*(trace[name] for name in names), trace["regime"], strict=True)
     return [
         (interpretation, case, seed, frame, *values)
@@ -76,11 +76,11 @@ def _draw(axes: Axes, results: ex.Results, case: str, seed: int) -> None:
     scored = mfpf.run_scores(results, case, MFPF, seed)
     shade_occlusions(axes, scored)
     trace = mfpf.trace(results, case, MFPF, seed)
-    for (name, label), style in zip(FEATURES.items(), STYLES, strict=False):
+    for (name, label), style in zip(FEATURE_NAMES.items(), LINE_STYLES, strict=False):
         values = trace[f"as_{name}"][1:]
         frames = range(2, len(values) + 2)
         axes.plot(frames, values, color=style.colour, ls=style.line, lw=1.5, label=label)
-        limit = mfpf.threshold(ex.PAPER) * values[0]
+        limit = mfpf.threshold(ex.PAPER_RULE) * values[0]
         axes.axhline(limit, color=style.colour, ls=style.line, lw=0.8)
     predicted = [n for n, r in enumerate(trace["regime"], start=1) if r == "prediction"]
     axes.plot(
@@ -165,7 +165,7 @@ def _used(
             fmean(mfpf.trace(results, case, MFPF, seed, interpretation)[f"used_{name}"][1:])
             for seed in size.seeds
         ]
-        for name in FEATURES
+        for name in FEATURE_NAMES
     }
 
 
@@ -178,7 +178,7 @@ def _stays(interpretation: str, by_case: Mapping[str, Mapping[str, Sequence[floa
         parts.append(
             f"{case}: "
             + ", ".join(
-                f"{FEATURES[name]} {mean_and_spread([100 * v for v in values], 0)}"
+                f"{FEATURE_NAMES[name]} {mean_and_spread([100 * v for v in values], 0)}"
                 for name, values in used.items()
             )
         )
@@ -193,12 +193,12 @@ def _losses(
     results: ex.Results, size: ex.Size, interpretation: str
 ) -> Mapping[str, Sequence[float]]:
     """Largest loss of each feature's average similarity in case 1, for each seed."""
-    losses: dict[str, list[float]] = {name: [] for name in FEATURES}
+    losses: dict[str, list[float]] = {name: [] for name in FEATURE_NAMES}
     if "case1" not in mfpf.cases(size):
         return losses
     for seed in size.seeds:
         trace = mfpf.trace(results, "case1", MFPF, seed, interpretation)
-        for name in FEATURES:
+        for name in FEATURE_NAMES:
             values = trace[f"as_{name}"][1:]
             losses[name].append(1 - min(values) / values[0])
     return losses
@@ -209,7 +209,7 @@ def _lowest(interpretation: str, losses: Mapping[str, Sequence[float]]) -> ex.Fi
         return ex.Finding(interpretation, ex.Holds.NO, _NOT_RUN)
     means = {name: fmean(values) for name, values in losses.items()}
     parts = ", ".join(
-        f"{FEATURES[name]} {mean_and_spread([100 * v for v in values], 0)} %"
+        f"{FEATURE_NAMES[name]} {mean_and_spread([100 * v for v in values], 0)} %"
         for name, values in losses.items()
     )
     place = sorted(means, key=lambda name: -means[name]).index("color")
@@ -241,7 +241,7 @@ def _excluded(interpretation: str, unused: Sequence[tuple[float, float, float]])
     hits = [color > 0 and edge == texture == 0 for color, edge, texture in unused]
     parts = ", ".join(
         f"{label} {mean_and_spread([100 * seed[number] for seed in unused], 0)} %"
-        for number, label in enumerate(FEATURES.values())
+        for number, label in enumerate(FEATURE_NAMES.values())
     )
     return ex.Finding(
         interpretation,
@@ -291,8 +291,8 @@ def _all_back(results: ex.Results, size: ex.Size, interpretation: str) -> Sequen
 def _first_back(interpretation: str, back: Sequence[Sequence[str]]) -> ex.Finding:
     firsts = [name for names in back for name in names]
     judged = len(back)
-    parts = ", ".join(f"{label} {firsts.count(name)}" for name, label in FEATURES.items())
-    most = max(FEATURES, key=firsts.count)
+    parts = ", ".join(f"{label} {firsts.count(name)}" for name, label in FEATURE_NAMES.items())
+    most = max(FEATURE_NAMES, key=firsts.count)
     return ex.Finding(
         interpretation,
         ex.Holds.of(
@@ -313,7 +313,7 @@ def _back(results: ex.Results, case: str, seed: int, interpretation: str) -> lis
         return None
     for index in range(last, len(frames)):
         if trace["regime"][index] == "estimation":
-            return [name for name in FEATURES if trace[f"used_{name}"][index]]
+            return [name for name in FEATURE_NAMES if trace[f"used_{name}"][index]]
     return []
 
 

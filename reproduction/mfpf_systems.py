@@ -10,21 +10,28 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from reproduction.cells import PATH, RunCell, SceneChoice, System, scores
-from reproduction.experiment import BASIC, OURS, PAPER, PRINTED, Results, Size
-from reproduction.paper_scenes import CASES as CATALOGUE
+from reproduction.cells import PATH_COLUMNS, RunCell, SceneChoice, System, scores
+from reproduction.experiment import (
+    BASIC_RIVALS,
+    OUR_INTERPRETATION,
+    PAPER_RULE,
+    PRINTED_RULE,
+    Results,
+    Size,
+)
+from reproduction.paper_scenes import CASE_SCENES
 from vehicle_pf_tracker.evaluation.scores import Scores
 from vehicle_pf_tracker.parameters.table import Value
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import MfpfParameters
 
-FEATURES: Mapping[str, str] = MappingProxyType(
+FEATURE_NAMES: Mapping[str, str] = MappingProxyType(
     {"color": "RGB", "edge": "Edge", "texture": "Texture"}
 )
 """The names that `~/mode` uses, and the paper's, in the order of its tables."""
-COLOR, EDGE, TEXTURE = (System.of(label, f"sfpf_{name}") for name, label in FEATURES.items())
+COLOR, EDGE, TEXTURE = (System.of(label, f"sfpf_{name}") for name, label in FEATURE_NAMES.items())
 MFPF = System.of("MFPF", "mfpf")
-SINGLES = (COLOR, EDGE, TEXTURE)
-FOUR = (*SINGLES, MFPF)
+SINGLE_FEATURES = (COLOR, EDGE, TEXTURE)
+FOUR_SYSTEMS = (*SINGLE_FEATURES, MFPF)
 
 DEFAULTS = "defaults"
 _STEADY: Mapping[str, Value] = MappingProxyType(
@@ -46,10 +53,10 @@ _EDGES: Mapping[str, Value] = MappingProxyType({"edges.threshold": 0.2, "edges.f
 """Edge points of the filters that have the edge feature, chosen with `_STEADY`."""
 INTERPRETATIONS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
     {
-        PAPER: {**_STEADY, **_RULE},
-        OURS: _STEADY,
+        PAPER_RULE: {**_STEADY, **_RULE},
+        OUR_INTERPRETATION: _STEADY,
         DEFAULTS: {},
-        PRINTED: {"as_printed": True, "dispersion.radius": 4.0},
+        PRINTED_RULE: {"as_printed": True, "dispersion.radius": 4.0},
     }
 )
 """Settings of every filter by interpretation; the paper prints no radius, so it gets ours."""
@@ -58,8 +65,8 @@ _SHARP: Mapping[str, Value] = MappingProxyType({"likelihood.sigma_v": 0.1})
 """A sharper likelihood, which a filter with one feature needs where three multiply theirs."""
 _OWN: Mapping[str, Mapping[str, Mapping[str, Value]]] = MappingProxyType(
     {
-        PAPER: {"sfpf_edge": _SHARP, "sfpf_texture": _SHARP},
-        BASIC: {"sfpf_texture": {"reference_weight": 0.6}},
+        PAPER_RULE: {"sfpf_edge": _SHARP, "sfpf_texture": _SHARP},
+        BASIC_RIVALS: {"sfpf_texture": {"reference_weight": 0.6}},
     }
 )
 """Values that serve a single-feature filter better than those chosen for MFPF, by reading. Tried
@@ -69,9 +76,9 @@ filter 48 to 39 px, of the basic texture filter 79 to 70 px; the shared values a
 """
 RIVALRIES: Mapping[str, Mapping[str, Value]] = MappingProxyType(
     {
-        PAPER: INTERPRETATIONS[PAPER],
-        BASIC: {**_STEADY, **_RULE},
-        **{name: INTERPRETATIONS[name] for name in (OURS, DEFAULTS, PRINTED)},
+        PAPER_RULE: INTERPRETATIONS[PAPER_RULE],
+        BASIC_RIVALS: {**_STEADY, **_RULE},
+        **{name: INTERPRETATIONS[name] for name in (OUR_INTERPRETATION, DEFAULTS, PRINTED_RULE)},
     }
 )
 """The same and one more, for claims that compare MFPF with the single-feature filters."""
@@ -88,20 +95,23 @@ LAST_FRAMES = 20
 
 def read_label(label: str, interpretation: str) -> str:
     """Name a filter, or a feature, under `interpretation`; the paper's rule goes without saying."""
-    return label if interpretation == PAPER else f"{label}, {interpretation}"
+    return label if interpretation == PAPER_RULE else f"{label}, {interpretation}"
 
 
 def read_as(system: System, interpretation: str) -> System:
     """Give the settings of `interpretation` to a filter, under a name of its own."""
-    if interpretation == BASIC and system.variant == "mfpf":
-        return read_as(system, PAPER)
+    if interpretation == BASIC_RIVALS and system.variant == "mfpf":
+        return read_as(system, PAPER_RULE)
     settings = dict(RIVALRIES[interpretation])
-    if interpretation in (PAPER, BASIC, OURS) and system.variant in ("mfpf", "sfpf_edge"):
+    if interpretation in (PAPER_RULE, BASIC_RIVALS, OUR_INTERPRETATION) and system.variant in (
+        "mfpf",
+        "sfpf_edge",
+    ):
         settings |= _EDGES
-    if interpretation == BASIC:
+    if interpretation == BASIC_RIVALS:
         settings |= {"extended": False}
     settings |= _OWN.get(interpretation, {}).get(system.variant, {})
-    if interpretation == PAPER and system.variant == "mfpf":
+    if interpretation == PAPER_RULE and system.variant == "mfpf":
         settings |= _RULE_OF_ALL
     return replace(system.but(settings), label=read_label(system.label, interpretation))
 
@@ -111,10 +121,14 @@ def cases(size: Size) -> tuple[str, ...]:
     return size.of(CASES, QUICK_CASES)
 
 
-def cell(case: str, system: System, seed: int, interpretation: str = PAPER) -> RunCell:
+def cell(case: str, system: System, seed: int, interpretation: str = PAPER_RULE) -> RunCell:
     """Make the cell of a filter on a case; the seed draws the scene, too."""
-    own = [name for name in FEATURES if system.variant in ("mfpf", f"sfpf_{name}")]
-    record = (*PATH, "regime", *(f"{value}_{name}" for value in ("as", "used") for name in own))
+    own = [name for name in FEATURE_NAMES if system.variant in ("mfpf", f"sfpf_{name}")]
+    record = (
+        *PATH_COLUMNS,
+        "regime",
+        *(f"{value}_{name}" for value in ("as", "used") for name in own),
+    )
     return RunCell(SceneChoice.of(case).seeded(seed), read_as(system, interpretation), seed, record)
 
 
@@ -124,14 +138,14 @@ def cells(size: Size) -> list[RunCell]:
         cell(case, system, seed, interpretation)
         for case in cases(size)
         for interpretation in RIVALRIES
-        for system in FOUR
+        for system in FOUR_SYSTEMS
         for seed in size.seeds
     ]
     return list(dict.fromkeys(found))
 
 
 def run_scores(
-    results: Results, case: str, system: System, seed: int, interpretation: str = PAPER
+    results: Results, case: str, system: System, seed: int, interpretation: str = PAPER_RULE
 ) -> Scores:
     """Hold one run against the truth again."""
     found = cell(case, system, seed, interpretation)
@@ -139,7 +153,7 @@ def run_scores(
 
 
 def trace(
-    results: Results, case: str, system: System, seed: int, interpretation: str = PAPER
+    results: Results, case: str, system: System, seed: int, interpretation: str = PAPER_RULE
 ) -> Mapping[str, list[Any]]:
     """Give what was recorded of one run."""
     recorded: Mapping[str, list[Any]] = results[cell(case, system, seed, interpretation)]["trace"]
@@ -168,7 +182,7 @@ def threshold(interpretation: str) -> float:
 
 def occlusion_text(case: str) -> str:
     """Return the content of a case's scene, such as what occludes the vehicle."""
-    return CATALOGUE[case].what
+    return CASE_SCENES[case].what
 
 
 _VALUES = ", ".join(f"`{name}` {value:g}" for name, value in {**_STEADY, **_EDGES}.items())

@@ -15,10 +15,10 @@ from statistics import fmean
 from reproduction import experiment as ex
 from reproduction import mfpf_systems as mfpf
 from reproduction import mfpf_textures as textures
-from reproduction.case_figure import SHADES, error_case_figure
+from reproduction.case_figure import OCCLUSION_SHADES, error_case_figure
 from reproduction.cells import RunCell, System
 from reproduction.numbers import mean_and_spread, share
-from reproduction.paper_scenes import CASES
+from reproduction.paper_scenes import CASE_SCENES
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 
 _PLACE = "section V, table I"
@@ -61,10 +61,10 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
         f"of {len(size.seeds)}:": _followed_table(followed, size),
         "The three textures, RMS in px:": textures.table(results, size),
     }
-    shades = {name: SHADES[CASES[name].occlusion] for name in mfpf.cases(size)}
+    shades = {name: OCCLUSION_SHADES[CASE_SCENES[name].occlusion] for name in mfpf.cases(size)}
     return ex.Report(
         _data(errors, followed, results, size),
-        error_case_figure(errors[ex.PAPER], shades, [_short(n) for n in shades], "case"),
+        error_case_figure(errors[ex.PAPER_RULE], shades, [_short(n) for n in shades], "case"),
         ex.ExperimentVerdict(
             (
                 *_claims(errors),
@@ -88,7 +88,7 @@ def _errors(
     return {
         case: {
             system.label: mfpf.per_seed(results, size, case, system, interpretation, "rmse_px")
-            for system in mfpf.FOUR
+            for system in mfpf.FOUR_SYSTEMS
         }
         for case in mfpf.cases(size)
     }
@@ -103,7 +103,7 @@ def _followed(results: ex.Results, size: ex.Size, interpretation: str) -> Follow
     return {
         case: {
             system.label: [is_close(case, system, seed) for seed in size.seeds]
-            for system in mfpf.FOUR
+            for system in mfpf.FOUR_SYSTEMS
         }
         for case in mfpf.cases(size)
     }
@@ -125,7 +125,7 @@ def _data(
         )
     ]
     rows += [
-        (ex.PAPER, case, label, texture, seed, rms, None)
+        (ex.PAPER_RULE, case, label, texture, seed, rms, None)
         for texture, case, label, seed, rms in textures.rows(results, size)
     ]
     columns = ("interpretation", "case", "filter", "texture", "seed", "rmse_px",
@@ -173,7 +173,9 @@ def _over_cases(errors: Errors, label: str) -> list[float]:
 
 
 def _best_single(found: Mapping[str, Sequence[float]]) -> str:
-    return min((single.label for single in mfpf.SINGLES), key=lambda label: fmean(found[label]))
+    return min(
+        (single.label for single in mfpf.SINGLE_FEATURES), key=lambda label: fmean(found[label])
+    )
 
 
 def _claims(errors: Mapping[str, Errors]) -> tuple[ex.Claim, ...]:
@@ -255,7 +257,7 @@ def _further(
                 ),
                 _over_all(
                     "the paper's rule, single features with their defaults",
-                    errors[ex.PAPER],
+                    errors[ex.PAPER_RULE],
                     errors[mfpf.DEFAULTS],
                 ),
             ),
@@ -274,7 +276,7 @@ def _further(
 
 def _over_all(interpretation: str, found: Errors, rivals: Errors) -> ex.Finding:
     own = _over_cases(found, mfpf.MFPF.label)
-    singles = {single.label: _over_cases(rivals, single.label) for single in mfpf.SINGLES}
+    singles = {single.label: _over_cases(rivals, single.label) for single in mfpf.SINGLE_FEATURES}
     best = _best_single(singles)
     wins = [a < b for a, b in zip(own, singles[best], strict=True)]
     is_below = fmean(own) < fmean(singles[best])
@@ -293,7 +295,9 @@ def _to_the_end(interpretation: str, found: Followed) -> ex.Finding:
     parts = []
     for case, of_case in found.items():
         own = of_case[mfpf.MFPF.label]
-        best = max((single.label for single in mfpf.SINGLES), key=lambda label: sum(of_case[label]))
+        best = max(
+            (single.label for single in mfpf.SINGLE_FEATURES), key=lambda label: sum(of_case[label])
+        )
         needed = _FOLLOWS if case in mfpf.WITHOUT_HIDING else share(of_case[best])
         # As often as a rival that never does is not often enough.
         enough.append(any(own) and share(own) >= needed)

@@ -12,7 +12,7 @@ from reproduction import mfpf_systems as mfpf
 from reproduction.case_figure import Values
 from reproduction.experiment import Claim, Experiment, Finding, Holds, Report, Results, Size
 from reproduction.mfpf_share import ShareWords, share_report
-from reproduction.mfpf_systems import FEATURES, INTERPRETATIONS, MFPF
+from reproduction.mfpf_systems import FEATURE_NAMES, INTERPRETATIONS, MFPF
 from reproduction.numbers import median_and_range
 
 _PLACE = "section V, table II"
@@ -57,7 +57,7 @@ def _shares(results: Results, size: Size, case: str, interpretation: str) -> dic
     limit = mfpf.threshold(interpretation)
     found: dict[str, list[float]] = {}
     for seed in size.seeds:
-        for (name, label), single in zip(FEATURES.items(), mfpf.SINGLES, strict=True):
+        for (name, label), single in zip(FEATURE_NAMES.items(), mfpf.SINGLE_FEATURES, strict=True):
             averages = mfpf.trace(results, case, single, seed, interpretation)[f"as_{name}"][1:]
             above = [value >= limit * averages[0] for value in averages]
             found.setdefault(label, []).append(100 * fmean(above))

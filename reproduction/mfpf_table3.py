@@ -53,7 +53,7 @@ def _shares(results: Results, size: Size, interpretation: str) -> dict[str, dict
                     results, size, case, system, interpretation, "p_error_lt_15px"
                 )
             ]
-            for system in mfpf.FOUR
+            for system in mfpf.FOUR_SYSTEMS
         }
         for case in mfpf.cases(size)
     }
@@ -82,7 +82,7 @@ def _first(interpretation: str, found: Values) -> Finding:
     ahead = []
     parts = []
     for case, of_case in found.items():
-        best = max((s.label for s in mfpf.SINGLES), key=lambda label: fmean(of_case[label]))
+        best = max((s.label for s in mfpf.SINGLE_FEATURES), key=lambda label: fmean(of_case[label]))
         own = fmean(of_case[mfpf.MFPF.label])
         ahead.append(own >= fmean(of_case[best]))
         parts.append(f"{case} {own:.0f} % ({best} {fmean(of_case[best]):.0f} %)")
@@ -98,9 +98,9 @@ def _over_all(interpretation: str, found: Values) -> Finding:
         system.label: [
             fmean(of) for of in zip(*(c[system.label] for c in found.values()), strict=True)
         ]
-        for system in mfpf.FOUR
+        for system in mfpf.FOUR_SYSTEMS
     }
-    best = max((s.label for s in mfpf.SINGLES), key=lambda label: fmean(means[label]))
+    best = max((s.label for s in mfpf.SINGLE_FEATURES), key=lambda label: fmean(means[label]))
     own = means[mfpf.MFPF.label]
     is_above = fmean(own) > fmean(means[best])
     is_often = share([a > b for a, b in zip(own, means[best], strict=True)]) >= _OFTEN

@@ -10,7 +10,7 @@ from statistics import fmean
 
 from reproduction import mfpf_systems as mfpf
 from reproduction.cells import RunCell, System
-from reproduction.experiment import PAPER, Claim, DataTable, Finding, Holds, Results, Size
+from reproduction.experiment import PAPER_RULE, Claim, DataTable, Finding, Holds, Results, Size
 from reproduction.mfpf_systems import MFPF, TEXTURE
 from reproduction.numbers import mean_and_spread
 
@@ -81,11 +81,13 @@ def _finding(found: Mapping[str, Sequence[Sequence[float]]]) -> Finding:
         f"{texture} {mean_and_spread(joint)} px in MFPF, {mean_and_spread(alone)} px alone"
         for texture, (joint, alone) in found.items()
     )
-    return Finding(PAPER, Holds.of(all(first), any(first)), f"mean RMS over all cases: {parts}")
+    return Finding(
+        PAPER_RULE, Holds.of(all(first), any(first)), f"mean RMS over all cases: {parts}"
+    )
 
 
 def _rms(results: Results, size: Size, case: str, system: System) -> list[float]:
-    return mfpf.per_seed(results, size, case, system, PAPER, "rmse_px")
+    return mfpf.per_seed(results, size, case, system, PAPER_RULE, "rmse_px")
 
 
 def _over_cases(results: Results, size: Size, system: System) -> list[float]:

@@ -41,7 +41,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
     times = {seed: results[_cell(seed)]["step_ms"] for seed in seeds}
     means = {
         plain.label: [float(np.mean(times[seed][system.label])) for seed in seeds]
-        for plain, system in zip(mfpf.FOUR, systems, strict=True)
+        for plain, system in zip(mfpf.FOUR_SYSTEMS, systems, strict=True)
     }
     rows = tuple(
         (system.label, seed, frame, step)
@@ -79,7 +79,7 @@ def _timed(size: ex.Size) -> range:
 
 
 def _systems() -> tuple[System, ...]:
-    return tuple(mfpf.read_as(system, ex.PAPER) for system in mfpf.FOUR)
+    return tuple(mfpf.read_as(system, ex.PAPER_RULE) for system in mfpf.FOUR_SYSTEMS)
 
 
 def _cell(seed: int) -> TimingCell:
@@ -88,7 +88,7 @@ def _cell(seed: int) -> TimingCell:
 
 def _ratios(means: Mapping[str, Sequence[float]]) -> list[float]:
     """MFPF's time over the mean of the three, for each seed."""
-    singles = [means[single.label] for single in mfpf.SINGLES]
+    singles = [means[single.label] for single in mfpf.SINGLE_FEATURES]
     return [own / fmean(of) for own, *of in zip(means[mfpf.MFPF.label], *singles, strict=True)]
 
 
@@ -96,7 +96,7 @@ def _tripled(ratios: Sequence[float]) -> ex.Finding:
     low, high = _TRIPLE
     middle = median(ratios)
     return ex.Finding(
-        ex.PAPER,
+        ex.PAPER_RULE,
         ex.Holds.of(low <= middle <= high, middle >= _MORE),
         f"{median_and_range(ratios, 2)} times the mean of the three",
     )

@@ -57,7 +57,7 @@ def _section(experiment: ex.Experiment, report: ex.Report, size: ex.Size) -> str
 def _command(experiment: ex.Experiment, size: ex.Size) -> str:
     words = ["python -m reproduction", experiment.name]
     words += ["--quick"] if size.quick else []
-    usual = size.of(ex.SEEDS, ex.QUICK_SEEDS)
+    usual = size.of(ex.EXPERIMENT_SEEDS, ex.QUICK_SEEDS)
     words += [] if len(size.seeds) == usual else [f"--seeds {len(size.seeds)}"]
     words += [f"--first-seed {size.seeds.start}"] if size.seeds.start else []
     return " ".join(words)

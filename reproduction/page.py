@@ -12,7 +12,14 @@ from pathlib import Path
 from typing import Any
 
 from reproduction.catalogue import Paper
-from reproduction.experiment import BASIC, OURS, PAPER, PRINTED, SEEDS, Experiment
+from reproduction.experiment import (
+    BASIC_RIVALS,
+    EXPERIMENT_SEEDS,
+    OUR_INTERPRETATION,
+    PAPER_RULE,
+    PRINTED_RULE,
+    Experiment,
+)
 from reproduction.output import FIGURE, VERDICT
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors
@@ -68,10 +75,10 @@ def write_page(folder: Path, results: Path, papers: Sequence[Paper], command: st
         for experiment, verdict in judged:
             picture = _copy_smallest(results / experiment.name, pictures, experiment.name)
             parts.append(_section(experiment, verdict, picture))
-    head = ["figure", "what", PAPER, OURS, PRINTED, "seeds"]
+    head = ["figure", "what", PAPER_RULE, OUR_INTERPRETATION, PRINTED_RULE, "seeds"]
     table = "\n".join([_row(head), _row(["---"] * len(head)), *overview])
     page = folder / PAGE
-    top = _HEAD.format(command=command, usual=SEEDS, overview=table)
+    top = _HEAD.format(command=command, usual=EXPERIMENT_SEEDS, overview=table)
     write_text(page, "\n".join([top, *parts]))
     return page
 
@@ -101,10 +108,10 @@ def _verdict(results: Path, experiment: Experiment) -> Mapping[str, Any]:
 
 
 def _overview_row(experiment: Experiment, verdict: Mapping[str, Any]) -> str:
-    others = [verdict["under"][name] or "–" for name in (OURS, PRINTED)]
+    others = [verdict["under"][name] or "–" for name in (OUR_INTERPRETATION, PRINTED_RULE)]
     link = f"[`{experiment.name}`](#{experiment.name})"
     seeds = _seeds(verdict["seeds"])
-    basic = verdict["under"].get(BASIC)
+    basic = verdict["under"].get(BASIC_RIVALS)
     holds = f"**{verdict['holds']}**" + (f"; basic rivals: **{basic}**" if basic else "")
     return _row([link, experiment.title, holds, *others, seeds])
 
@@ -126,8 +133,8 @@ def _section(experiment: Experiment, verdict: Mapping[str, Any], picture: str) -
 def _claims(claims: Sequence[Mapping[str, Any]]) -> str:
     """Give each claim a row: the deciding finding, then those of the other interpretations."""
     found = {finding["interpretation"] for claim in claims for finding in claim["findings"][1:]}
-    others = [name for name in (BASIC, OURS, PRINTED) if name in found]
-    head = ["claim", PAPER if others else "result", *others, "verdict"]
+    others = [name for name in (BASIC_RIVALS, OUR_INTERPRETATION, PRINTED_RULE) if name in found]
+    head = ["claim", PAPER_RULE if others else "result", *others, "verdict"]
     rows = [_row(head), _row(["---"] * len(head))]
     for claim in claims:
         first, *rest = claim["findings"]

@@ -18,14 +18,14 @@ from typing import TypeAlias
 
 from laboratory import scenes as laboratory_scenes
 from laboratory.scenes.drives import cross, dense, near_traffic, tree_shadows
-from laboratory.scenes.turns import RADIUS, TurningDrive
+from laboratory.scenes.turns import TURN_RADIUS, TurningDrive
 from reproduction.signs import posts_at, sign_at
 from vehicle_pf_tracker.core.truth import TOTAL_BELOW
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes import catalogue
 from vehicle_pf_tracker.scenes.catalogue import SceneKind
 from vehicle_pf_tracker.scenes.courses import Pace
-from vehicle_pf_tracker.scenes.drive import LANE, Drive, DriveParameters
+from vehicle_pf_tracker.scenes.drive import TARGET_LANE, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.drives import (
     bridge_at,
     clear,
@@ -37,7 +37,7 @@ from vehicle_pf_tracker.scenes.models import Model
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.scenery import pillar, tree
-from vehicle_pf_tracker.scenes.solids import ELEVATION, Face
+from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION, Face
 from vehicle_pf_tracker.scenes.vehicles import coach, van
 
 Build: TypeAlias = Callable[[DriveParameters, int], Scene]
@@ -174,7 +174,7 @@ _VIDEO_TABLE = (
                chosen("car", 6.0, "right", {**_TOWN, **_ROUGH}), clear),
 )  # fmt: skip
 
-VIDEOS: dict[str, FixedScene] = {video.name: video for video in _VIDEO_TABLE}
+VIDEO_SCENES: dict[str, FixedScene] = {video.name: video for video in _VIDEO_TABLE}
 """The table by name."""
 
 
@@ -190,13 +190,13 @@ def _turn_behind_trees(parameters: DriveParameters, seed: int) -> Scene:
     """Turn behind the thick crowns of two trees on the near side."""
     drive = TurningDrive(parameters, seed)
     rng = stream(seed, "trees")
-    top = drive.row - RADIUS * math.sin(ELEVATION) - 1.1 * drive.target.size[1]
+    top = drive.row - TURN_RADIUS * math.sin(VIEW_ELEVATION) - 1.1 * drive.target.size[1]
     foot = drive.road.rows.stop + 40
     front = [
         actor
         for share in (0.1, 0.9)
         for actor in tree(
-            drive.x(drive.corner + share * RADIUS), (105, top, drive.row + 45), foot, 0.8, rng
+            drive.x(drive.corner + share * TURN_RADIUS), (105, top, drive.row + 45), foot, 0.8, rng
         )
     ]
     return drive.scene(front, behind=())
@@ -219,7 +219,7 @@ def _past_parked_vehicles(drive: Drive) -> list[Actor]:
 def _parked(drive: Drive, faces: list[Face], rear: float) -> tuple[Actor, Actor]:
     """Park a vehicle in the nearer lane, its rear at a place along the way."""
     model = Model(faces, drive.scale)
-    return model.on(drive.course(rear + model.size[0] / 2, Pace.steady(0.0), LANE + 1))
+    return model.on(drive.course(rear + model.size[0] / 2, Pace.steady(0.0), TARGET_LANE + 1))
 
 
 CLEAR = 10
@@ -272,13 +272,13 @@ _CASE_TABLE = (
                     lambda d: trees_at(d, (0.5,), 0.42), lambda d: pillar_at(d, 0.78, 6))),
 )  # fmt: skip
 
-CASES: dict[str, FixedScene] = {case.name: case for case in _CASE_TABLE}
+CASE_SCENES: dict[str, FixedScene] = {case.name: case for case in _CASE_TABLE}
 """The table by name."""
 
 
-FIXED_SCENES: dict[str, FixedScene] = VIDEOS | CASES
+FIXED_SCENES: dict[str, FixedScene] = VIDEO_SCENES | CASE_SCENES
 """The scenes after the papers, by name."""
-SCENES: dict[str, SceneKind[Scene]] = laboratory_scenes.SCENES | {
+PAPER_SCENES: dict[str, SceneKind[Scene]] = laboratory_scenes.LABORATORY_SCENES | {
     name: SceneKind(NoParameters, row.scene, row.summary) for name, row in FIXED_SCENES.items()
 }
 
@@ -287,4 +287,4 @@ def make_scene(
     name: str, *, seed: int = 0, settings: Mapping[str, object] | Sequence[str] = ()
 ) -> Scene:
     """Make the scene `name`, as `vehicle_pf_tracker.scenes.catalogue.make_scene` does."""
-    return catalogue.scene_of(SCENES, name, seed=seed, settings=settings)
+    return catalogue.scene_of(PAPER_SCENES, name, seed=seed, settings=settings)

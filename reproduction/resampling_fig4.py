@@ -15,7 +15,7 @@ from reproduction import resampling_systems as resampling
 from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
 from reproduction.numbers import median_and_range
 from reproduction.shading import shade_occlusions
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
 
 _PLACE = "section VI, figure 4"
 _LOW = 15.0
@@ -77,7 +77,7 @@ def _errors(results: ex.Results, size: ex.Size, interpretation: str) -> Errors:
 def _figure(results: ex.Results, size: ex.Size) -> Figure:
     figure = Figure(figsize=(11, 6.4), layout="constrained")
     axes = figure.subplots(2, 2, sharex="col")
-    titles = ex.PAPER, f"{ex.PAPER}{resampling.HARD}"
+    titles = ex.PAPER_RULE, f"{ex.PAPER_RULE}{resampling.HARD}"
     for column, title in zip(axes.T, titles, strict=True):
         for ax, is_log in zip(column, (False, True), strict=True):
             _draw(ax, results, size, resampling.VIEWS[title])
@@ -93,7 +93,7 @@ def _figure(results: ex.Results, size: ex.Size) -> Figure:
 
 def _draw(axes: Axes, results: ex.Results, size: ex.Size, view: resampling.View) -> None:
     shade_occlusions(axes, resampling.run_scores(results, view, view.conventional, size.seeds[0]))
-    for system, style in zip(reversed(view.pair), STYLES, strict=False):
+    for system, style in zip(reversed(view.pair), LINE_STYLES, strict=False):
         runs = [resampling.run_scores(results, view, system, seed) for seed in size.seeds]
         draw_band(axes, runs, style, system.variant)
 

@@ -15,7 +15,7 @@ from reproduction import experiment as ex
 from reproduction import resampling_systems as resampling
 from reproduction.numbers import median_and_range
 from reproduction.shading import shade_occlusions
-from vehicle_pf_tracker.evaluation.plots import STYLES, Style
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES, Style
 
 _PLACE = "section VI, figure 5"
 _MOST_PASSES = 20
@@ -81,13 +81,15 @@ def _means(results: ex.Results, size: ex.Size, interpretation: str, scalar: str)
 
 def _figure(results: ex.Results, size: ex.Size) -> Figure:
     figure = Figure(figsize=(10, 5.6), layout="constrained")
-    interpretations = {name: resampling.VIEWS[name] for name in (ex.PAPER, ex.PRINTED)}
+    interpretations = {name: resampling.VIEWS[name] for name in (ex.PAPER_RULE, ex.PRINTED_RULE)}
     axes = figure.subplots(2, len(interpretations), sharex=True, sharey="row")
     for column, (interpretation, view) in enumerate(interpretations.items()):
         for row, scalar in enumerate(("resampling_passes", "resampled_particles")):
             ax = axes[row, column]
             shade_occlusions(ax, resampling.run_scores(results, view, view.pair[0], size.seeds[0]))
-            for system, style in zip(reversed(view.pair), (STYLES[0], STYLES[1]), strict=True):
+            for system, style in zip(
+                reversed(view.pair), (LINE_STYLES[0], LINE_STYLES[1]), strict=True
+            ):
                 runs = [resampling.trace(results, view, system, s)[scalar] for s in size.seeds]
                 _draw(ax, [run[1:] for run in runs], style, system.variant)
         axes[0, column].set(title=interpretation)

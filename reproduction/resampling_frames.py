@@ -12,13 +12,13 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 _PLACE = "section VI, figures 2 and 3"
-_SHOWN = ex.PAPER, f"{ex.PAPER}{resampling.HARD}"
+_SHOWN = ex.PAPER_RULE, f"{ex.PAPER_RULE}{resampling.HARD}"
 _JUDGED = (
-    ex.PAPER,
-    ex.OURS,
-    ex.PRINTED,
-    f"{ex.PAPER}{resampling.HARD}",
-    f"{ex.PRINTED}{resampling.HARD}",
+    ex.PAPER_RULE,
+    ex.OUR_INTERPRETATION,
+    ex.PRINTED_RULE,
+    f"{ex.PAPER_RULE}{resampling.HARD}",
+    f"{ex.PRINTED_RULE}{resampling.HARD}",
 )
 
 

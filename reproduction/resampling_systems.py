@@ -11,11 +11,19 @@ from statistics import fmean
 from types import MappingProxyType
 from typing import Any
 
-from reproduction.cells import PATH, RunCell, SceneChoice, System, scores
-from reproduction.experiment import OURS, PAPER, PRINTED, DataTable, Entry, Results, Size
+from reproduction.cells import PATH_COLUMNS, RunCell, SceneChoice, System, scores
+from reproduction.experiment import (
+    OUR_INTERPRETATION,
+    PAPER_RULE,
+    PRINTED_RULE,
+    DataTable,
+    Entry,
+    Results,
+    Size,
+)
 from vehicle_pf_tracker.core.truth import TOTAL_BELOW, Truth
 from vehicle_pf_tracker.evaluation.scores import Scores
-from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES
 
 SCENE = SceneChoice.of("overlap")
 """The paper's timing, in which a remnant of the vehicle stays visible."""
@@ -31,7 +39,7 @@ PHASES = "before", "partial", "full", "after"
 """Frames of the vehicle's way past the occluders."""
 VARIANTS = CONVENTIONAL, ADAPTIVE = "conventional", "adaptive"
 _DEFAULT_SCHEME = "multinomial"
-_RECORD = (*PATH, "regime", "n_eff", "resampling_passes", "resampled_particles")
+_RECORD = (*PATH_COLUMNS, "regime", "n_eff", "resampling_passes", "resampled_particles")
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,14 +75,14 @@ _RULE = {"weighted_mean": False}
 _PRINT = {"as_printed": True}
 INTERPRETATIONS: Mapping[str, View] = MappingProxyType(
     {
-        PAPER: _view(PAPER, _RULE),
-        OURS: _view(OURS, {}),
-        PRINTED: _view(PRINTED, _PRINT),
+        PAPER_RULE: _view(PAPER_RULE, _RULE),
+        OUR_INTERPRETATION: _view(OUR_INTERPRETATION, {}),
+        PRINTED_RULE: _view(PRINTED_RULE, _PRINT),
         STRICTER: _view(STRICTER, _PRINT, {"low_weight": 0.5}),
         BY_SIMILARITY: _view(BY_SIMILARITY, _RULE, {"occlusion.test": "similarity"}),
         **{
-            f"{PAPER}, {scheme}": _view(scheme, {**_RULE, "resampling": scheme})
-            for scheme in SCHEMES
+            f"{PAPER_RULE}, {scheme}": _view(scheme, {**_RULE, "resampling": scheme})
+            for scheme in RESAMPLING_SCHEMES
             if scheme != _DEFAULT_SCHEME
         },
     }
@@ -84,7 +92,8 @@ VIEWS: Mapping[str, View] = MappingProxyType(
     {
         **INTERPRETATIONS,
         **{
-            f"{name}{HARD}": INTERPRETATIONS[name].on(HARD_SCENE) for name in (PAPER, OURS, PRINTED)
+            f"{name}{HARD}": INTERPRETATIONS[name].on(HARD_SCENE)
+            for name in (PAPER_RULE, OUR_INTERPRETATION, PRINTED_RULE)
         },
     }
 )

@@ -19,7 +19,7 @@ from matplotlib.patheffects import Normal, Stroke
 from reproduction.cells import SceneChoice
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.plots import STYLES, Style
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES, Style
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 _VIEW = 260, 150
@@ -97,7 +97,7 @@ def _draw(axes: Axes, frame: Frame, runs: Mapping[str, Scores], number: int) -> 
     _add_box(axes, truth.box, Style("black", "-", ""), 3.6)
     _add_box(axes, truth.box, Style("white", "-", ""), 2.0)
     axes.plot([], [], color="white", lw=2.0, label="truth", path_effects=_RIM)
-    for (label, scored), style in zip(runs.items(), itertools.cycle(STYLES), strict=False):
+    for (label, scored), style in zip(runs.items(), itertools.cycle(LINE_STYLES), strict=False):
         row = scored.frames[number - 1].row
         if row.x is not None and row.y is not None and row.width and row.height:
             box = Box.around((row.x, row.y), row.width, row.height)

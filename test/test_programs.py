@@ -21,7 +21,7 @@ from laboratory.scenes import make_traffic_scene
 from laboratory.scenes.mot_folder import write_mot_folder
 from reproduction.catalogue import EXPERIMENTS
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.baseline_process import VARIABLE, baseline_python
+from vehicle_pf_tracker.evaluation.baseline_process import BASELINES_VARIABLE, baseline_python
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 
 pytestmark = pytest.mark.slow
@@ -177,7 +177,7 @@ def skip_without(needs):
         try:
             baseline_python(None)
         except InputError:
-            pytest.skip(f"no baselines: `make baselines`, or set {VARIABLE}")
+            pytest.skip(f"no baselines: `make baselines`, or set {BASELINES_VARIABLE}")
 
 
 @pytest.mark.parametrize("name", PROGRAMS)

@@ -24,7 +24,7 @@ from vehicle_pf_tracker.parameters.table import Value, from_mapping
 from vehicle_pf_tracker.results.output_files import replacing
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.scenes.scene import SceneFrame
-from vehicle_pf_tracker.showing.drawing import COLOURS, Annotator, write_words
+from vehicle_pf_tracker.showing.drawing import MODE_COLOURS, Annotator, write_words
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 SCENE = "highway"
@@ -86,7 +86,7 @@ def _annotated(name: str, frames: Sequence[SceneFrame]) -> Iterator[Frame]:
         annotator.follow(tracker.estimate)
         annotator.draw(picture, tracker.estimate)
         strip = picture[ROWS].copy()
-        write_words(strip, f"{name}: {row.mode}", (8, 24), COLOURS[row.mode], 2)
+        write_words(strip, f"{name}: {row.mode}", (8, 24), MODE_COLOURS[row.mode], 2)
         yield strip
 
 

@@ -18,7 +18,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-from vehicle_pf_tracker.following.known_networks import NETWORKS, PACKAGE, KnownNetwork
+from vehicle_pf_tracker.following.known_networks import (
+    DETECTOR_PACKAGE,
+    KNOWN_NETWORKS,
+    KnownNetwork,
+)
 
 ROOT = Path(__file__).parents[1]
 VERSION = "0.1.1"
@@ -69,26 +73,30 @@ def build(network: Path, out: Path) -> tuple[Path, str]:
     subprocess.CalledProcessError
         If pip cannot build it.
     """
-    known = {one.file: name for name, one in NETWORKS.items()}
+    known = {one.file: name for name, one in KNOWN_NETWORKS.items()}
     if network.name not in known:
         raise ValueError(f"{network.name} is none of {', '.join(known)}")
     name = known[network.name]
     digest = hashlib.sha256(network.read_bytes()).hexdigest()
-    verdict = _verdict(NETWORKS[name], digest)
+    verdict = _verdict(KNOWN_NETWORKS[name], digest)
     with tempfile.TemporaryDirectory() as folder:
         project = Path(folder)
-        package = project / PACKAGE
+        package = project / DETECTOR_PACKAGE
         package.mkdir()
         shutil.copy(network, package)
         shutil.copy(ROOT / "LICENSE", project)  # Apache-2.0 as well
         (package / "__init__.py").write_text(f'"""The file {network.name}."""\n', encoding="utf-8")
-        facts = {"licence": NETWORKS[name].licence, "package": PACKAGE, "version": VERSION}
-        text = _PROJECT.format(name=PACKAGE.replace("_", "-"), network=name, **facts)
+        facts = {
+            "licence": KNOWN_NETWORKS[name].licence,
+            "package": DETECTOR_PACKAGE,
+            "version": VERSION,
+        }
+        text = _PROJECT.format(name=DETECTOR_PACKAGE.replace("_", "-"), network=name, **facts)
         (project / "pyproject.toml").write_text(text, encoding="utf-8")
         notice = _NOTICE.format(
             file=network.name,
-            url=NETWORKS[name].url,
-            licence=NETWORKS[name].licence,
+            url=KNOWN_NETWORKS[name].url,
+            licence=KNOWN_NETWORKS[name].licence,
             digest=digest,
             verdict=verdict,
         )
@@ -96,7 +104,7 @@ def build(network: Path, out: Path) -> tuple[Path, str]:
         out.mkdir(parents=True, exist_ok=True)
         words = ["--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", str(out.absolute())]
         subprocess.run([sys.executable, "-m", "pip", "wheel", *words, str(project)], check=True)
-    return out / f"{PACKAGE}-{VERSION}-py3-none-any.whl", verdict
+    return out / f"{DETECTOR_PACKAGE}-{VERSION}-py3-none-any.whl", verdict
 
 
 def _verdict(network: KnownNetwork, digest: str) -> str:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from vehicle_pf_tracker.trackers.registry import TRAFFIC, Variant
+from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT, Variant
 
 _Permissions = Mapping[str, tuple[str, ...]]
 
@@ -116,7 +116,7 @@ def policy(variants: Iterable[Variant]) -> str:
 
 
 def _enclave(variant: Variant) -> str:
-    permissions = TRAFFIC_PERMISSIONS if variant is TRAFFIC else PERMISSIONS
+    permissions = TRAFFIC_PERMISSIONS if variant is TRAFFIC_VARIANT else PERMISSIONS
     groups = "".join(_group(permission, names) for permission, names in permissions.items())
     return _ENCLAVE.format(name=variant.name, node=variant.executable, groups=groups)
 

@@ -18,7 +18,7 @@ from typing import Any
 from unittest import mock
 
 import vehicle_pf_tracker
-from vehicle_pf_tracker.cli.console import PROGRAM
+from vehicle_pf_tracker.cli.console import PROGRAM_NAME
 from vehicle_pf_tracker.cli.main import VERBS, main
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -58,7 +58,7 @@ def first_page() -> str:
 def commands() -> str:
     """Return what every verb says with ``--help``."""
     wide = mock.patch.dict(os.environ, COLUMNS="100")
-    parts = ["# Commands", f"What `{PROGRAM} VERB --help` prints."]
+    parts = ["# Commands", f"What `{PROGRAM_NAME} VERB --help` prints."]
     for verb in VERBS:
         with wide, contextlib.redirect_stdout(io.StringIO()) as printed:
             main([verb, "--help"])

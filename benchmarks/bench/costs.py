@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator
 
 from benchmarks.bench.case import Case
 from benchmarks.bench.effort import Effort
-from benchmarks.bench.material import SIZES
+from benchmarks.bench.material import FRAME_SIZES
 from benchmarks.bench.turns import Follower, Own, follow
 
-VARIANTS = ("apf", "mfpf")
+BENCHED_VARIANTS = ("apf", "mfpf")
 """A variant of one feature, and one of three."""
 # From a quarter of the default to 25 times as much: a cost per particle or per pixel shows in the
 # larger steps, and a cost per step in the smallest.
@@ -25,7 +25,7 @@ BASES = {"particles": "n200", "window": "41x31", "image": "vga", "trackers": "1"
 
 def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:
     """Measure ``cost/WHAT/VARIANT/SETTING``; the baseline is the same variant with `BASES`."""
-    for variant in VARIANTS:
+    for variant in BENCHED_VARIANTS:
         for what, settings in _settings(variant).items():
             yield from _compared(f"cost/{what}/{variant}", settings, BASES[what], wanted, effort)
 
@@ -37,7 +37,7 @@ def _settings(variant: str) -> dict[str, dict[str, Follower]]:
             f"{width}x{height}": Own(variant, {"window.width": width, "window.height": height})
             for width, height in WINDOWS
         },
-        "image": {size: Own(variant, size=size) for size in SIZES},
+        "image": {size: Own(variant, size=size) for size in FRAME_SIZES},
         "trackers": {str(count): Own(variant, count=count) for count in TRACKERS},
     }
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.bench.results import Results
 from benchmarks.bench.targets import STEPS
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
 
 
 def steps_figure(results: Results) -> Figure:
@@ -22,7 +22,7 @@ def steps_figure(results: Results) -> Figure:
     names = sorted(found, key=found.__getitem__)
     figure = Figure(figsize=(7, 0.6 + 0.32 * max(len(names), 1)), layout="constrained")
     axes = figure.add_subplot()
-    axes.barh(names, [found[name] for name in names], color=STYLES[0].colour, height=0.65)
+    axes.barh(names, [found[name] for name in names], color=LINE_STYLES[0].colour, height=0.65)
     wanted = [(STEPS[name], index) for index, name in enumerate(names) if name in STEPS]
     if wanted:
         axes.plot(
@@ -31,7 +31,7 @@ def steps_figure(results: Results) -> Figure:
             marker="|",
             ms=14,
             mew=2.5,
-            color=STYLES[1].colour,
+            color=LINE_STYLES[1].colour,
             label="wanted",
         )
         axes.legend(frameon=False, loc="lower right")

@@ -17,7 +17,7 @@ from vehicle_pf_tracker.scenes.catalogue import make_scene
 
 FRAME_RATE = 15.0
 """Images per second of the drive, that of the APF paper's video."""
-SIZES = {"vga": (640, 480), "720p": (1280, 720), "1080p": (1920, 1080)}
+FRAME_SIZES = {"vga": (640, 480), "720p": (1280, 720), "1080p": (1920, 1080)}
 """Width and height in px of the images that traffic cameras send."""
 CLOUD_SIGMA = 8.0
 """Spread in px of the particles, that of `pf`'s motion."""
@@ -39,8 +39,8 @@ def drive() -> Drive:
 
 
 def enlarged(frame: Frame, size: str) -> Frame:
-    """Let `frame` stand in the top-left corner of an image of one of `SIZES`, mirrored beyond."""
-    width, height = SIZES[size]
+    """Enlarge a frame to one of `FRAME_SIZES`: it is in the top-left corner, mirrored beyond."""
+    width, height = FRAME_SIZES[size]
     below = max(height - frame.shape[0], 0)
     beside = max(width - frame.shape[1], 0)
     while below or beside:

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from benchmarks.bench.costs import VARIANTS
+from benchmarks.bench.costs import BENCHED_VARIANTS
 from benchmarks.bench.material import drive
 from benchmarks.bench.resident import resident_mb
 from benchmarks.bench.root import ROOT
@@ -33,7 +33,7 @@ class MemoryCase:
 
 def measure(wanted: Callable[[str], bool]) -> Iterator[MemoryCase]:
     """Measure ``memory/trackers/VARIANT``: a process with `TRACKERS` trackers and with one."""
-    for variant in VARIANTS:
+    for variant in BENCHED_VARIANTS:
         name = f"memory/trackers/{variant}/{TRACKERS}"
         if wanted(name):
             words = [sys.executable, "-m", "benchmarks.bench.memory", variant, str(TRACKERS)]

@@ -19,21 +19,21 @@ from typing import Any
 from vehicle_pf_tracker.ros.executables import main as run
 from vehicle_pf_tracker.trackers.base import BaseTracker
 
-METER = struct.Struct("dd")
+METER_RECORD = struct.Struct("dd")
 """Content of the file: CPU seconds of all steps, and their number."""
 
 
 def meter_steps(path: Path) -> None:
     """Add up in `path` what `BaseTracker.step` takes from now on."""
     with path.open("r+b") as file:
-        shared = mmap.mmap(file.fileno(), METER.size)
+        shared = mmap.mmap(file.fileno(), METER_RECORD.size)
     original = BaseTracker.step
 
     def step(self: Any, *arguments: Any) -> Any:
         before = time.thread_time()
         estimate = original(self, *arguments)
-        seconds, steps = METER.unpack(shared)
-        shared[:] = METER.pack(seconds + time.thread_time() - before, steps + 1)
+        seconds, steps = METER_RECORD.unpack(shared)
+        shared[:] = METER_RECORD.pack(seconds + time.thread_time() - before, steps + 1)
         return estimate
 
     BaseTracker.step = step  # type: ignore[method-assign, assignment]

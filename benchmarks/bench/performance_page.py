@@ -12,9 +12,9 @@ from typing import TypeAlias
 from benchmarks.bench.case import Case
 from benchmarks.bench.figures import steps_figure
 from benchmarks.bench.results import Results
-from benchmarks.bench.slower_steps import SLOWER, last_ratios, slower_steps
-from benchmarks.bench.targets import TARGETS, Target
-from benchmarks.bench.turns import BLOCK
+from benchmarks.bench.slower_steps import SLOWER_RATIO, last_ratios, slower_steps
+from benchmarks.bench.targets import SPEED_TARGETS, Target
+from benchmarks.bench.turns import TURN_FRAMES
 from laboratory.figure_files import save
 
 PAGE = "performance.md"
@@ -31,7 +31,7 @@ interquartile range; above 1 ours is cheaper. Ratios carry over to other machine
 `make bench` writes this page; `bench.json` has all cases, `targets.md` the speed targets.
 """
 _STEPS = f"""## One frame's step
-One vehicle of 40x30 px drives through 640x480 images. Each tracker follows it through {BLOCK}
+One vehicle of 40x30 px drives through 640x480 images. Each tracker follows it through {TURN_FRAMES}
 frames at full speed, then the next one takes its turn. All run with their defaults, OpenCV's
 trackers in a process of their own with one thread. [fusion.md](fusion.md) has the cost of `fusion`
 on real video.
@@ -63,7 +63,7 @@ longer than above. Start-up lasts until the node is ready. Its baselines are the
 
 def write_targets(results: Results, folder: Path) -> None:
     """Write the table of the speed targets into `folder`."""
-    (folder / TARGETS_TABLE).write_text(targets_table(results, TARGETS), encoding="utf-8")
+    (folder / TARGETS_TABLE).write_text(targets_table(results, SPEED_TARGETS), encoding="utf-8")
 
 
 def write(results: Results, folder: Path) -> str:
@@ -87,7 +87,7 @@ def page(results: Results, last: str = "") -> str:
     parts = [
         _HEAD,
         _environment(results),
-        _targets(results, TARGETS),
+        _targets(results, SPEED_TARGETS),
         _STEPS,
         _steps(results),
         _dearer(results, last),
@@ -210,7 +210,10 @@ def _dearer(results: Results, last: str) -> str:
         return head + "There was no page to compare with.\n"
     factors = slower_steps(results, last)
     if not factors:
-        return head + f"No step takes more than {SLOWER:g} times as long, beside the baselines.\n"
+        return (
+            head
+            + f"No step takes more than {SLOWER_RATIO:g} times as long, beside the baselines.\n"
+        )
     rows = [(f"`{variant}`", f"{factor:.2f}") for variant, factor in factors.items()]
     return head + table(("step", "times as long"), rows)
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import yaml
 
 from benchmarks.bench.material import drive
-from benchmarks.bench.metered_node import METER
+from benchmarks.bench.metered_node import METER_RECORD
 from benchmarks.bench.resident import resident_mb
 from benchmarks.bench.root import ROOT
 from vehicle_pf_tracker.core.errors import InputError
@@ -99,7 +99,7 @@ class StepMeter:
 
     def __init__(self) -> None:
         self._file = tempfile.NamedTemporaryFile()  # noqa: SIM115 - as long as this object
-        self._file.write(METER.pack(0.0, 0.0))
+        self._file.write(METER_RECORD.pack(0.0, 0.0))
         self._file.flush()
 
     @property
@@ -110,7 +110,7 @@ class StepMeter:
     @property
     def cpu_seconds(self) -> float:
         """CPU seconds of all steps."""
-        return float(METER.unpack(Path(self.path).read_bytes())[0])
+        return float(METER_RECORD.unpack(Path(self.path).read_bytes())[0])
 
 
 def floor_words(image: str) -> list[str]:

@@ -10,7 +10,7 @@ import statistics
 
 from benchmarks.bench.results import Results
 
-SLOWER = 1.1
+SLOWER_RATIO = 1.1
 """A step that takes more than this many times as long is reported: less is within what two runs on
 one idle machine differ by."""
 _HEAD = "| step | ms | "
@@ -48,4 +48,4 @@ def slower_steps(results: Results, page: str) -> dict[str, float]:
         if case.name in last:
             factors.setdefault(case.name.split("/")[1], []).append(last[case.name] / case.ratio)
     medians = {variant: statistics.median(values) for variant, values in factors.items()}
-    return {variant: factor for variant, factor in medians.items() if factor > SLOWER}
+    return {variant: factor for variant, factor in medians.items() if factor > SLOWER_RATIO}

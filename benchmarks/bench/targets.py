@@ -89,7 +89,7 @@ STEPS = {
 }
 """Target ratio of CSRT's step to a variant's full step."""
 
-TARGETS = (
+SPEED_TARGETS = (
     _faster("kernel/joint512/41x31/vga/n200", 25),
     _faster("kernel/joint512/41x31/vga/n1000", 80),
     _faster("kernel/joint512/41x31/vga/n5000", 200),

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.evaluation.baselines import Baseline
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 
-BLOCK = 10
+TURN_FRAMES = 10
 """Frames of a turn: as in a recording that is tracked at full speed, and not once in a while."""
 
 
@@ -111,7 +111,7 @@ class Theirs:
 def follow(
     followers: Mapping[str, Follower], seeds: Sequence[int], most_frames: int
 ) -> tuple[dict[str, list[float]], dict[str, float]]:
-    """Let all follow the vehicle in turns of `BLOCK` frames; who begins changes from turn to turn.
+    """Let all follow the vehicle in turns of `TURN_FRAMES` frames; each turn another one begins.
 
     Parameters
     ----------
@@ -135,14 +135,14 @@ def follow(
     for seed in seeds:
         for follower in followers.values():
             follower.start(shown[0], boxes[0], seed)
-        for first in range(1, min(len(shown), most_frames) - BLOCK + 1, BLOCK):
-            turn = first // BLOCK % len(names)
+        for first in range(1, min(len(shown), most_frames) - TURN_FRAMES + 1, TURN_FRAMES):
+            turn = first // TURN_FRAMES % len(names)
             for name in names[turn:] + names[:turn]:
                 seconds = 0.0
-                for index in range(first, first + BLOCK):
+                for index in range(first, first + TURN_FRAMES):
                     seconds += followers[name].step(shown[index])
                     hits[name].append(_is_close(followers[name].centre, boxes[index]))
-                times[name].append(seconds / BLOCK)
+                times[name].append(seconds / TURN_FRAMES)
     return times, {name: sum(hits[name]) / len(hits[name]) for name in names}
 
 

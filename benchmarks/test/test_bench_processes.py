@@ -7,7 +7,7 @@ import ast
 import importlib
 from pathlib import Path
 
-from benchmarks.bench.metered_node import METER
+from benchmarks.bench.metered_node import METER_RECORD
 from benchmarks.bench.processes import StepMeter, tracker_words
 
 
@@ -29,5 +29,5 @@ def test_a_node_without_a_meter_is_started_by_what_the_package_has():
 def test_the_meter_reads_what_a_node_writes():
     meter = StepMeter()
     assert meter.cpu_seconds == 0
-    Path(meter.path).write_bytes(METER.pack(1.5, 3))
+    Path(meter.path).write_bytes(METER_RECORD.pack(1.5, 3))
     assert meter.cpu_seconds == 1.5

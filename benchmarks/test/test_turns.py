@@ -8,7 +8,7 @@ import pytest
 from benchmarks.bench.effort import QUICK
 from benchmarks.bench.material import drive
 from benchmarks.bench.steps import measure
-from benchmarks.bench.turns import BLOCK, Own, follow
+from benchmarks.bench.turns import TURN_FRAMES, Own, follow
 
 
 class Stub:
@@ -26,13 +26,15 @@ class Stub:
 
 def test_all_follow_the_same_frames_block_by_block():
     log = []
-    times, shares = follow({"a": Stub("a", log, 1.0), "b": Stub("b", log, 2.0)}, [7], 2 * BLOCK + 5)
+    times, shares = follow(
+        {"a": Stub("a", log, 1.0), "b": Stub("b", log, 2.0)}, [7], 2 * TURN_FRAMES + 5
+    )
     assert log[:2] == [("a", "start", 7), ("b", "start", 7)]
     steps = [name for name, what, _ in log if what == "step"]
-    assert steps == [*"a" * BLOCK, *"b" * BLOCK, *"b" * BLOCK, *"a" * BLOCK]
+    assert steps == [*"a" * TURN_FRAMES, *"b" * TURN_FRAMES, *"b" * TURN_FRAMES, *"a" * TURN_FRAMES]
     assert times == {"a": [1.0, 1.0], "b": [2.0, 2.0]}
     # They stay at the first box; the vehicle moves 5 px a frame, half its diagonal is 25 px.
-    assert shares["a"] == pytest.approx(4 / (2 * BLOCK))
+    assert shares["a"] == pytest.approx(4 / (2 * TURN_FRAMES))
 
 
 def test_the_cost_of_several_trackers_is_that_of_one():

@@ -8,7 +8,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from laboratory.faults.request import KINDS, Request
+from laboratory.faults.request import FAULT_KINDS, Request
 
 __all__ = ["Request", "run"]
 
@@ -19,7 +19,7 @@ def run(request: Request) -> int:
 
     rows = []
     with tempfile.TemporaryDirectory(prefix="faults_") as folder:
-        for kind in request.kinds or KINDS:
+        for kind in request.kinds or FAULT_KINDS:
             print(f"## {kind}", flush=True)
             rows.append(f"| {kind} | {'yes' if give(kind, request, Path(folder)) else 'no'} |")
     print("\n".join(["| faults | all held |", "| --- | --- |", *rows]))

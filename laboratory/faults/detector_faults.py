@@ -21,11 +21,11 @@ from sensor_msgs.msg import PointCloud2
 from laboratory.faults.detector import Detector, Fault, sightings
 from laboratory.faults.faulty_messages import header_at
 from laboratory.faults.lanes import Corners, Road, Traffic
-from laboratory.faults.ledger import ALIKE, Ledger
+from laboratory.faults.ledger import VARYING_PARTS, Ledger
 from laboratory.faults.node_process import NodeProcess, Tester
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
-from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT
 
 RATE = 12.0
 """Images a second: a node and this client keep up with it on one core."""
@@ -95,7 +95,9 @@ class Trial:
         self._tester = tester
         self._right = right
         self._count = round(seconds * RATE)
-        self._node = NodeProcess(tester, TRAFFIC.name, f"detector.kind:={kind}", "queue_depth:=20")
+        self._node = NodeProcess(
+            tester, TRAFFIC_VARIANT.name, f"detector.kind:={kind}", "queue_depth:=20"
+        )
         self._ledger = Ledger(self._node, may_wait=True)
         self._traffic = Traffic(ROAD, 10**6, 0)
         self._tracks = tester.collect(PointCloud2, f"{self._node.name}/tracks")
@@ -118,7 +120,7 @@ class Trial:
         both = before.keys() & after.keys()
         kept = sum(before[vehicle] == after[vehicle] for vehicle in both)
         sentences = Counter(
-            ALIKE.sub(_shortened, line) for line in self._node.output[said:].splitlines()
+            VARYING_PARTS.sub(_shortened, line) for line in self._node.output[said:].splitlines()
         )
         allowed = 2 + (time.monotonic() - began) / INTERVAL
         self._is_good &= max(sentences.values(), default=0) <= allowed

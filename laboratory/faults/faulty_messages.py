@@ -20,7 +20,7 @@ from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 
 WIDTH, HEIGHT = 64, 48
 """Size of the right images, px: small, so that thousands are sent in a minute."""
-TARGET = (4.0, 18.0, 12.0, 10.0)
+TARGET_BOX = (4.0, 18.0, 12.0, 10.0)
 """Target in them: x, y, width, height, px."""
 PERIOD_NS = 33_000_000
 """Time from one image to the next, ns: 30 Hz."""
@@ -61,7 +61,7 @@ class Drive:
     @staticmethod
     def _frame(noise: Frame, offset: int) -> Frame:
         frame: Frame = noise.copy()
-        x, y, width, height = (int(value) for value in TARGET)
+        x, y, width, height = (int(value) for value in TARGET_BOX)
         frame[y : y + height, x + offset : x + offset + width] = (200, 40, 30)
         frame[y : y + height // 2, x + offset : x + offset + width] = (30, 60, 210)
         return frame

@@ -26,7 +26,7 @@ import numpy as np
 import rclpy
 from mcap.writer import CompressionType
 
-from laboratory.faults.faulty_messages import FIRST_NS, PERIOD_NS, TARGET, Drive
+from laboratory.faults.faulty_messages import FIRST_NS, PERIOD_NS, TARGET_BOX, Drive
 from laboratory.faults.node_process import FaultError
 from vehicle_pf_tracker.cli.main import main as command
 from vehicle_pf_tracker.cli.params import default_yaml
@@ -139,7 +139,7 @@ def try_recording(path: Path, folder: Path) -> str:
     """Track a recording; return what came of it."""
     out = folder / "out"
     shutil.rmtree(out, ignore_errors=True)
-    target = ",".join(map(str, TARGET))
+    target = ",".join(map(str, TARGET_BOX))
     words = ["run", str(path), "--variant", "pf", "--set", "num_particles=20"]
     with _captured() as (told, errors):
         status = command([*words, "--target", target, "-o", str(out)])

@@ -16,9 +16,9 @@ from diagnostic_msgs.msg import DiagnosticArray
 from sensor_msgs.msg import Image
 
 from laboratory.faults.node_process import TIMEOUT, FaultError, NodeProcess, Tester
-from vehicle_pf_tracker.ros.messages import NOT_READY, REJECTED, WAITING, stamp_ns
+from vehicle_pf_tracker.ros.messages import NOT_READY, REJECTED_MESSAGE, WAITING_MESSAGE, stamp_ns
 
-ALIKE = re.compile(r"^.*?\]: |\d+")
+VARYING_PARTS = re.compile(r"^.*?\]: |\d+")
 """Parts in which sentences of one kind, that a node says, differ."""
 MB = 1e6
 """Bytes of a megabyte."""
@@ -183,9 +183,9 @@ def _is_loading(answer: DiagnosticArray) -> bool:
 
 
 def _is_right(mode: str, values: Mapping[str, str], sent: _Sent, *, may_wait: bool) -> bool:
-    if mode == REJECTED:
+    if mode == REJECTED_MESSAGE:
         return not sent.is_good and not values.get("reason", "unexpected").startswith("unexpected")
-    if mode == WAITING:
+    if mode == WAITING_MESSAGE:
         return may_wait
     if mode not in _TRACKED or "x" not in values:
         return may_wait

@@ -8,7 +8,7 @@ from __future__ import annotations
 import random
 import time
 
-from laboratory.faults.faulty_messages import TARGET, Drive, Faults
+from laboratory.faults.faulty_messages import TARGET_BOX, Drive, Faults
 from laboratory.faults.ledger import Ledger
 from laboratory.faults.node_process import NodeProcess, Tester
 
@@ -27,7 +27,7 @@ def give_messages(tester: Tester, variant: str, count: int, seed: int) -> bool:
     drive = Drive()
     draw = random.Random(seed)
     faults = Faults(drive.image, seed)
-    sides = zip(("x", "y", "width", "height"), TARGET, strict=True)
+    sides = zip(("x", "y", "width", "height"), TARGET_BOX, strict=True)
     words = [f"target.{name}:={value}" for name, value in sides]
     node = NodeProcess(tester, variant, "queue_depth:=50", "num_particles:=50", *words)
     ledger = Ledger(node)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, positive, switch
 
-KINDS = ("messages", "parameters", "recordings", "detector", "soak")
+FAULT_KINDS = ("messages", "parameters", "recordings", "detector", "soak")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,8 +17,8 @@ class Request(VerbRequest):
     """Request of the faults."""
 
     kinds: tuple[str, ...] = positional(
-        nargs="*", choices=(*KINDS, []), metavar="KIND",
-        help=f"faults to give: {', '.join(KINDS)} (default: all of them)",
+        nargs="*", choices=(*FAULT_KINDS, []), metavar="KIND",
+        help=f"faults to give: {', '.join(FAULT_KINDS)} (default: all of them)",
     )  # fmt: skip
     count: int = option(
         type=positive, default=300, metavar="N",

@@ -18,12 +18,12 @@ from sensor_msgs.msg import Image, PointCloud2
 from laboratory.faults.detector import Detector, Fault, sightings, vision
 from laboratory.faults.faulty_messages import FIRST_NS, Faults, header_at
 from laboratory.faults.lanes import Corners, Numbers, Road, Traffic
-from laboratory.faults.ledger import ALIKE, Ledger
+from laboratory.faults.ledger import VARYING_PARTS, Ledger
 from laboratory.faults.node_process import NodeProcess, Tester
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
-from vehicle_pf_tracker.trackers.registry import TRAFFIC, find_node
+from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT, find_node
 
 if TYPE_CHECKING:
     from laboratory.faults.request import Request
@@ -137,7 +137,7 @@ class Soak:
         names = request.nodes.split(",")
         lines = folder / "lines.yaml"
         lines.write_text(f"lines: {{exit: {{from: [{LINE}, {HEIGHT}], to: [{LINE}, 0]}}}}\n")
-        has_detector = TRAFFIC.name in names and not request.motion
+        has_detector = TRAFFIC_VARIANT.name in names and not request.motion
         self._detector = (
             Detector(tester, vision(folder), round(self._rate)) if has_detector else None
         )
@@ -145,7 +145,7 @@ class Soak:
         of_traffic = [f"detector.kind:={kind}", f"lines:={lines}"]
         self._ledgers = {}
         for name in names:
-            words = list(of_traffic) if name == TRAFFIC.name else []
+            words = list(of_traffic) if name == TRAFFIC_VARIANT.name else []
             # Reliable images wait in the queue while another process has the processor.
             words += [f"queue_depth:={_DEPTH if request.best_effort else _LONG_DEPTH}"]
             node = NodeProcess(tester, name, *words, is_reliable=not request.best_effort)
@@ -153,11 +153,11 @@ class Soak:
         self._changes = {
             name: [one for one in CHANGES if one[0] in Configuration.of(find_node(name)).specs()]
             for name in names
-            if name != TRAFFIC.name
+            if name != TRAFFIC_VARIANT.name
         }
         self._ways = itertools.cycle(self._detector.faults.items() if self._detector else ())
         self._fault: Fault | None = None
-        self._tracks = tester.collect(PointCloud2, f"/{TRAFFIC.executable}/tracks")
+        self._tracks = tester.collect(PointCloud2, f"/{TRAFFIC_VARIANT.executable}/tracks")
         self._numbers = Numbers(scene.road, total)
         self._corners: dict[int, Corners] = {}
 
@@ -192,10 +192,10 @@ class Soak:
         results = []
         for name, ledger in self._ledgers.items():
             results.append(ledger.report())
-            if name == TRAFFIC.name:
+            if name == TRAFFIC_VARIANT.name:
                 self._numbers.report()
                 results.append(not self._numbers.reissued)
-            said = Counter(ALIKE.sub("", line) for line in ledger.node.output.splitlines())
+            said = Counter(VARYING_PARTS.sub("", line) for line in ledger.node.output.splitlines())
             for sentence, count in said.most_common(20):
                 print(f"  said {count} times: {sentence[:160]}")
         return all(results)
@@ -216,7 +216,7 @@ class Soak:
             return
         if since == 0 or self._fault is None:
             words, self._fault = next(self._ways)
-            self._ledgers[TRAFFIC.name].counts[f"detector: {words}"] += 1
+            self._ledgers[TRAFFIC_VARIANT.name].counts[f"detector: {words}"] += 1
         self._fault(image.header, boxes)
 
     def _turn(self, number: int) -> None:

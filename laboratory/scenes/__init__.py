@@ -33,7 +33,7 @@ from vehicle_pf_tracker.scenes import catalogue
 from vehicle_pf_tracker.scenes.catalogue import SceneKind
 from vehicle_pf_tracker.scenes.drive import DriveParameters
 
-SCENES = catalogue.SCENES | {
+LABORATORY_SCENES = catalogue.SCENES | {
     "turn": SceneKind(DriveParameters, turn, "the target turns into a side road"),
     "turn_occluded": SceneKind(DriveParameters, turn_occluded, "it turns behind a house"),
     "cross": SceneKind(DriveParameters, cross, "a coach crosses the road in front of the target"),
@@ -137,5 +137,5 @@ TRAFFIC_SCENES: dict[str, SceneKind[TrafficScene]] = {
 }  # fmt: skip
 """The scenes with many vehicles, by name."""
 
-make_scene = partial(catalogue.scene_of, SCENES)
+make_scene = partial(catalogue.scene_of, LABORATORY_SCENES)
 make_traffic_scene = partial(catalogue.scene_of, TRAFFIC_SCENES)

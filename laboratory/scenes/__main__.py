@@ -9,7 +9,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from laboratory.scenes import SCENES, TRAFFIC_SCENES, make_scene, make_traffic_scene
+from laboratory.scenes import LABORATORY_SCENES, TRAFFIC_SCENES, make_scene, make_traffic_scene
 from laboratory.scenes.conditions import CONDITIONS
 from laboratory.scenes.mot_folder import SIMULATED_DETECTORS, write_mot_folder
 from laboratory.scenes.traffic_close import BRIEF, CloseScene
@@ -21,7 +21,7 @@ from vehicle_pf_tracker.cli.synth import record_scene
 def main() -> int:
     """Write a scene as a recording, or traffic as a folder in MOTChallenge's layout."""
     parser = argparse.ArgumentParser(prog="python -m laboratory.scenes", description=main.__doc__)
-    scenes = (*SCENES, *TRAFFIC_SCENES)
+    scenes = (*LABORATORY_SCENES, *TRAFFIC_SCENES)
     parser.add_argument("scene", metavar="SCENE", choices=scenes, help=", ".join(scenes))
     parser.add_argument("out", metavar="OUT", type=Path)
     parser.add_argument("--seed", type=int, default=0)
@@ -29,7 +29,7 @@ def main() -> int:
     parser.add_argument("--every", type=int, default=1, help="of traffic: keep each k-th frame")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
     args = parser.parse_args()
-    if args.scene in SCENES:
+    if args.scene in LABORATORY_SCENES:
         record_scene(make_scene(args.scene, seed=args.seed, settings=args.set), args.out)
     else:
         scene = make_traffic_scene(args.scene, seed=args.seed, settings=args.set)

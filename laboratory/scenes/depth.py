@@ -12,10 +12,10 @@ from itertools import pairwise
 import numpy as np
 
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.cameras import DISTURBANCES, MARGIN, OutdoorCamera
+from vehicle_pf_tracker.scenes.cameras import DISTURBANCES, SHAKE_MARGIN, OutdoorCamera
 from vehicle_pf_tracker.scenes.compositing import Image
 from vehicle_pf_tracker.scenes.courses import Pose
-from vehicle_pf_tracker.scenes.drive import SIZES, DriveParameters, target_faces
+from vehicle_pf_tracker.scenes.drive import PAPER_SIZES, DriveParameters, target_faces
 from vehicle_pf_tracker.scenes.models import Model
 from vehicle_pf_tracker.scenes.polygons import cells_inside
 from vehicle_pf_tracker.scenes.random_streams import stream
@@ -99,9 +99,9 @@ class IntoDepth:
 
 def scale(parameters: ScaleParameters, seed: int) -> Scene:
     """Make the scene; its speed is the mean in the image."""
-    width, height = SIZES[parameters.resolution]
+    width, height = PAPER_SIZES[parameters.resolution]
     side = 1.0 if parameters.heading == "right" else -1.0
-    depth = Depth(width + 2 * MARGIN, height + 2 * MARGIN, parameters.factor, side)
+    depth = Depth(width + 2 * SHAKE_MARGIN, height + 2 * SHAKE_MARGIN, parameters.factor, side)
     frames = math.dist(depth.point(0), depth.point(1)) / parameters.speed
     rng = stream(seed, "drive")
     model = Model(target_faces(parameters.vehicle, rng), NEAREST)

@@ -16,13 +16,13 @@ from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.cameras import DISTURBANCES, OutdoorCamera
 from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite
 from vehicle_pf_tracker.scenes.courses import Pace, Pose, standing, straight
-from vehicle_pf_tracker.scenes.drive import LANE, PAINTS, Drive, DriveParameters
+from vehicle_pf_tracker.scenes.drive import TARGET_LANE, TARGET_PAINTS, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.lane_traffic import convoy
 from vehicle_pf_tracker.scenes.models import Model
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.scenery import value_noise
-from vehicle_pf_tracker.scenes.solids import ELEVATION, SHADE
+from vehicle_pf_tracker.scenes.solids import SHADOW_TINT, VIEW_ELEVATION
 from vehicle_pf_tracker.scenes.vehicles import car, coach, saloon, suv, van
 
 
@@ -102,7 +102,7 @@ def tree_shadows(drive: Drive, shares: tuple[float, ...], depth: float) -> list[
         sunflecks = value_noise((rows, columns), (6, 7), rng)
         opacity = depth * np.clip(3 * (0.9 - rim), 0, 1) * np.clip(1.5 - 2.2 * sunflecks, 0, 1)
         place = Box(drive.x(drive.along(share)) - columns / 2, top, columns, rows)
-        sprite = Sprite(np.tile(SHADE, (rows, columns, 1)), opacity)
+        sprite = Sprite(np.tile(SHADOW_TINT, (rows, columns, 1)), opacity)
         actors.append(Actor(sprite, standing(place), hides=False))
     return actors
 
@@ -148,7 +148,7 @@ def near_traffic(drive: Drive) -> list[Actor]:
     """Fill the nearer lane with faster vehicles, each of which hides a part of the target."""
     rng = stream(drive.seed, "near lane")
     speed = drive.parameters.speed * rng.uniform(1.5, 1.7)
-    lane = drive.road.lane(LANE + 1)
+    lane = drive.road.lane(TARGET_LANE + 1)
     others = convoy(lane, speed, drive.frame_count, drive.width, rng, (40, 130), (van,))
     return _clear_at_first(drive, others)
 
@@ -172,8 +172,8 @@ def dense(parameters: DriveParameters, seed: int) -> Scene:
     fast = parameters.speed * rng.uniform(1.3, 1.5)
     stage = (drive.frame_count, drive.width)
     gaps = (14, 60)
-    far = convoy(drive.road.lane(LANE - 1), slow, *stage, rng, gaps)
-    near = convoy(drive.road.lane(LANE + 1), fast, *stage, rng, gaps, (van, suv))
+    far = convoy(drive.road.lane(TARGET_LANE - 1), slow, *stage, rng, gaps)
+    near = convoy(drive.road.lane(TARGET_LANE + 1), fast, *stage, rng, gaps, (van, suv))
     ahead = _own_lane(drive, rng)
     return drive.scene(
         [*_clear_at_first(drive, near), *drive.opposite_traffic()], behind=[*far, *ahead]
@@ -184,7 +184,7 @@ def _own_lane(drive: Drive, rng: np.random.Generator) -> list[Actor]:
     """Make the vehicles before and behind the target in its own lane, as fast as it is."""
     actors: list[Actor] = []
     for distance in (-200.0, -100.0, 100.0, 200.0):
-        faces = (car, saloon)[rng.integers(2)](PAINTS[rng.integers(len(PAINTS))])
+        faces = (car, saloon)[rng.integers(2)](TARGET_PAINTS[rng.integers(len(TARGET_PAINTS))])
         place = drive.start + distance + rng.uniform(-15, 15)
         actors += Model(faces, drive.scale).on(drive.course(place, drive.pace))
     return actors
@@ -225,7 +225,7 @@ def _crossing(drive: Drive, frame: float) -> tuple[float, float]:
 def _crossroads(drive: Drive, frame: float) -> Image:
     picture = drive.backdrop()
     x, y = _crossing(drive, frame)
-    slope = math.tan(CROSSING) * math.sin(ELEVATION) * (-1 if drive.rightward else 1)
+    slope = math.tan(CROSSING) * math.sin(VIEW_ELEVATION) * (-1 if drive.rightward else 1)
     top = -1.0
     bottom = drive.height + 1.0
     ends = (x + (top - y) / slope, top), (x + (bottom - y) / slope, bottom)

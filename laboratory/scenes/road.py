@@ -24,7 +24,7 @@ from laboratory.scenes.perspective import (
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.scenes.cameras import Camera
-from vehicle_pf_tracker.scenes.drive import PAINTS
+from vehicle_pf_tracker.scenes.drive import TARGET_PAINTS
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.vehicles import car, saloon, suv
@@ -136,7 +136,7 @@ def _vehicle(
 ) -> tuple[Actor, Actor]:
     """Make a vehicle that is at `start` in frame 0 and moves by `step` along y, m per frame."""
     maker, axles = _VEHICLES[kind]
-    faces = maker(PAINTS[int(rng.integers(len(PAINTS)))])
+    faces = maker(TARGET_PAINTS[int(rng.integers(len(TARGET_PAINTS)))])
     drive: Drive = lambda frame: (start[0], start[1] + step * frame)  # noqa: E731 - one expression
     heading = math.copysign(math.pi / 2, step)
     return RoadVehicle(faces, axles, heading, drive, camera).actors()

@@ -26,7 +26,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.lens import Lens
-from vehicle_pf_tracker.scenes.cameras import MARGIN, Disturbance, OutdoorCamera
+from vehicle_pf_tracker.scenes.cameras import SHAKE_MARGIN, Disturbance, OutdoorCamera
 from vehicle_pf_tracker.scenes.compositing import Image
 from vehicle_pf_tracker.scenes.random_streams import stream
 
@@ -98,7 +98,9 @@ class CloseScene(TrafficScene):
     def truth(self, index: int) -> tuple[VehicleTruth, ...]:
         """Exact truth about every vehicle in the image of frame `index`, by identity."""
         left, top = self.camera.offset(index)
-        stage = replace(self, width=self.width + 2 * MARGIN, height=self.height + 2 * MARGIN)
+        stage = replace(
+            self, width=self.width + 2 * SHAKE_MARGIN, height=self.height + 2 * SHAKE_MARGIN
+        )
         moved = [
             (one, Box(one.whole.x - left, one.whole.y - top, one.whole.width, one.whole.height))
             for one in TrafficScene.truth(stage, index)
@@ -123,7 +125,7 @@ def close_scene(parameters: CloseParameters, seed: int) -> CloseScene:
     rng = stream(seed, "camera beside traffic")
     aside = float(rng.uniform(6.0, 9.0))
     angle = math.radians(float(rng.uniform(42, 62)))
-    size = (WIDTH + 2 * MARGIN, HEIGHT + 2 * MARGIN)
+    size = (WIDTH + 2 * SHAKE_MARGIN, HEIGHT + 2 * SHAKE_MARGIN)
     focal = WIDTH / 2 / math.tan(_FIELD / 2)
     lens = Lens((focal, focal), (size[0] / 2 - 0.5, size[1] / 2 - 0.5))
     ahead = 12.0

@@ -30,7 +30,7 @@ from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.scenes.cameras import Camera
-from vehicle_pf_tracker.scenes.lane_traffic import PAINTS
+from vehicle_pf_tracker.scenes.lane_traffic import CAR_PAINTS
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.solids import Face
@@ -221,13 +221,15 @@ def _direction(
 
 def any_car(rng: np.random.Generator) -> OnRoad:
     """Draw a car or a van."""
-    paint = tinted(PAINTS[rng.integers(len(PAINTS))], rng.uniform(0.9, 1.08))
+    paint = tinted(CAR_PAINTS[rng.integers(len(CAR_PAINTS))], rng.uniform(0.9, 1.08))
     maker, axles = _CARS[rng.integers(len(_CARS))]
     return OnRoad(maker(paint), axles)
 
 
 def _lorry(rng: np.random.Generator) -> OnRoad:
-    cab, load, stripe = (PAINTS[number] for number in rng.choice(len(PAINTS), 3, replace=False))
+    cab, load, stripe = (
+        CAR_PAINTS[number] for number in rng.choice(len(CAR_PAINTS), 3, replace=False)
+    )
     # From the side no end of the box is seen.
     ends = [
         Face(((x, 0.0, 1.1), (x, 0.0, 4.0), (x, 2.5, 4.0), (x, 2.5, 1.1)), load) for x in (0, 8.3)

@@ -16,14 +16,14 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import PixelWindow
-from vehicle_pf_tracker.scenes.lane_traffic import PAINTS, Lane, Vehicle, any_car
+from vehicle_pf_tracker.scenes.lane_traffic import CAR_PAINTS, Lane, Vehicle, any_car
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.roads import Carriageway, countryside
 from vehicle_pf_tracker.scenes.scene import Actor, Path, Stage
 from vehicle_pf_tracker.scenes.scenery import bridge
 from vehicle_pf_tracker.scenes.vehicles import lorry
 
-SCALE = 7.0
+PX_PER_METRE = 7.0
 """px per metre: a car is about 30 px long, a lorry 80."""
 _TOP = 66
 """First row of asphalt, px."""
@@ -156,8 +156,8 @@ class TrafficScene(Stage):
 
 def traffic(parameters: TrafficSceneParameters, seed: int) -> TrafficScene:
     """Make traffic in the view from beside the road."""
-    far = Carriageway(_TOP, parameters.lanes, SCALE, rightward=True)
-    near = Carriageway(far.rows.stop + _MEDIAN, parameters.lanes, SCALE, rightward=False)
+    far = Carriageway(_TOP, parameters.lanes, PX_PER_METRE, rightward=True)
+    near = Carriageway(far.rows.stop + _MEDIAN, parameters.lanes, PX_PER_METRE, rightward=False)
     count = parameters.vehicles if parameters.directions == 1 else (parameters.vehicles + 1) // 2
     vehicles = [
         *_direction(far, count, parameters, stream(seed, "far traffic")),
@@ -192,11 +192,11 @@ def _direction(
     road: Carriageway, count: int, parameters: TrafficSceneParameters, rng: np.random.Generator
 ) -> list[tuple[Actor, Actor]]:
     """Make the vehicles of one direction: shadow and body of each."""
-    lane = Lane(0.0, SCALE, road.rightward)
+    lane = Lane(0.0, PX_PER_METRE, road.rightward)
     is_lorry = draw_lorries(count, parameters, rng)
     bodies = [_lorry(lane, rng) if large else any_car(lane, rng) for large in is_lorry]
-    lengths = [body.size[0] / SCALE for body in bodies]
-    flow = drive(lengths, is_lorry, parameters, WIDTH / SCALE, rng)
+    lengths = [body.size[0] / PX_PER_METRE for body in bodies]
+    flow = drive(lengths, is_lorry, parameters, WIDTH / PX_PER_METRE, rng)
     return [
         body.on(_way(road, body.size, flow.front[number], flow.lane[number]))
         for number, body in enumerate(bodies)
@@ -204,13 +204,15 @@ def _direction(
 
 
 def _lorry(lane: Lane, rng: np.random.Generator) -> Vehicle:
-    cab, load, stripe = (PAINTS[number] for number in rng.choice(len(PAINTS), 3, replace=False))
+    cab, load, stripe = (
+        CAR_PAINTS[number] for number in rng.choice(len(CAR_PAINTS), 3, replace=False)
+    )
     return Vehicle(lorry(cab, load, stripe), lane)
 
 
 def _way(road: Carriageway, size: tuple[float, float], front: Array, lane: Array) -> Path:
     """Make the path of a vehicle; constant before its first and after its last frame."""
-    x = front * SCALE
+    x = front * PX_PER_METRE
     left = x - size[0] if road.rightward else WIDTH - x
     ground = [road.lane(number).ground for number in range(road.lanes)]
     top = np.interp(lane, np.arange(road.lanes), ground) - size[1]

@@ -11,17 +11,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.cameras import MARGIN
+from vehicle_pf_tracker.scenes.cameras import SHAKE_MARGIN
 from vehicle_pf_tracker.scenes.compositing import Colour, Image
 from vehicle_pf_tracker.scenes.courses import Course, Pace, Pose
-from vehicle_pf_tracker.scenes.drive import FREE, LANE, Drive, DriveParameters
+from vehicle_pf_tracker.scenes.drive import FREE_PX, TARGET_LANE, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.polygons import cells_inside
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
 from vehicle_pf_tracker.scenes.scenery import asphalt, concrete, opaque
-from vehicle_pf_tracker.scenes.solids import ELEVATION
+from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION
 
-RADIUS = 60.0
+TURN_RADIUS = 60.0
 """Radius of a turn on the ground, px."""
 SIDE_ROAD = 44.0
 """Width of each of the two lanes of a side road, px."""
@@ -29,7 +29,7 @@ SIDE_ROAD = 44.0
 
 @dataclass(frozen=True, slots=True)
 class Bend:
-    """Drives straight, then along an arc, and straight on; as flat ground looks from `ELEVATION`.
+    """A straight drive, an arc, and a straight drive, on flat ground seen from `VIEW_ELEVATION`.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Bend:
         east, north = _rotated(along, across, self.start.heading)
         return Pose(
             self.start.x + east,
-            self.start.y - north * math.sin(ELEVATION),
+            self.start.y - north * math.sin(VIEW_ELEVATION),
             self.start.heading + turn,
             self.start.scale,
         )
@@ -116,20 +116,20 @@ class TurningDrive(Drive):
 
     @property
     def _end(self) -> float:
-        up = (self.row - MARGIN - FREE - self.target.size[0]) / math.sin(ELEVATION)
-        return self.corner + RADIUS * math.pi / 2 + up - RADIUS
+        up = (self.row - SHAKE_MARGIN - FREE_PX - self.target.size[0]) / math.sin(VIEW_ELEVATION)
+        return self.corner + TURN_RADIUS * math.pi / 2 + up - TURN_RADIUS
 
-    def course(self, s: float, pace: Pace, lane: int = LANE) -> Course:
+    def course(self, s: float, pace: Pace, lane: int = TARGET_LANE) -> Course:
         """Make the course of a vehicle that turns too; see `Drive.course`."""
         heading, left = (0.0, 1) if self.rightward else (math.pi, -1)
         start = Pose(self.x(s), self.road.middle(lane), heading, self.scale)
-        return Bend(start, pace, self.corner - s, RADIUS, left * math.pi / 2)
+        return Bend(start, pace, self.corner - s, TURN_RADIUS, left * math.pi / 2)
 
     def backdrop(self) -> Image:
         """Draw the empty road, and the side road."""
         rng = stream(self.seed, "backdrop")
         picture = self._ground((self.road,), rng)
-        middle = self.x(self.corner + RADIUS + 0.5 * SIDE_ROAD)
+        middle = self.x(self.corner + TURN_RADIUS + 0.5 * SIDE_ROAD)
         side_road(picture, (middle, -1.0), (middle, self.road.top + 4.0), 2 * SIDE_ROAD, rng)
         return picture
 
@@ -149,9 +149,9 @@ def house_at_corner(drive: TurningDrive) -> list[Actor]:
     """Build a house on the near side that hides the turn of `drive`."""
     length, height = drive.target.size
     near = drive.corner - 0.7 * length
-    far = drive.corner + RADIUS + 0.6 * length
+    far = drive.corner + TURN_RADIUS + 0.6 * length
     left = min(drive.x(near), drive.x(far))
-    top = drive.row - RADIUS * math.sin(ELEVATION) - 1.2 * height
+    top = drive.row - TURN_RADIUS * math.sin(VIEW_ELEVATION) - 1.2 * height
     box = Box(left, top, far - near, drive.road.rows.stop + 50 - top)
     return house(box, (196, 178, 150), stream(drive.seed, "house"))
 

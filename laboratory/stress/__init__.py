@@ -32,15 +32,15 @@ from laboratory.stress.battery import full_battery, list_cases, quick_battery
 from laboratory.stress.calibration import Reliability
 from laboratory.stress.cases import Case, StressFrame
 from laboratory.stress.footage import StressSource, find_sequences
-from laboratory.stress.kinds import KINDS, Kind
+from laboratory.stress.kinds import STRESS_KINDS, Kind
 from laboratory.stress.running import Result, follow, run_battery, run_case
 from laboratory.stress.scoring import Score, score_case, score_estimates
-from laboratory.stress.summary import MEASURES, Group, difference, groups
+from laboratory.stress.summary import CASE_MEASURES, Group, difference, groups
 from laboratory.stress.systems import Follower, StressSystem, variant_system
 
 __all__ = [
-    "KINDS",
-    "MEASURES",
+    "CASE_MEASURES",
+    "STRESS_KINDS",
     "Case",
     "Follower",
     "Group",

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from laboratory.stress.cases import Case
 from laboratory.stress.footage import StressSource
-from laboratory.stress.kinds import KINDS, Kind, case_seed
+from laboratory.stress.kinds import STRESS_KINDS, Kind, case_seed
 from laboratory.stress.placing import LEAST_LEAD
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
@@ -51,7 +51,7 @@ def list_cases(
     sources : iterable of StressSource
         The sequences.
     kinds : sequence of str or None
-        Names of `KINDS`; None takes all.
+        Names of `STRESS_KINDS`; None takes all.
     per_sequence : int or None
         Cases of each sequence at most, drawn at random from all groups of kinds in turns.
     limit : int or None
@@ -66,7 +66,7 @@ def list_cases(
     InputError
         If a kind is unknown or a sequence cannot be read.
     """
-    chosen = [_kind(name) for name in (kinds or KINDS)]
+    chosen = [_kind(name) for name in (kinds or STRESS_KINDS)]
     cases: list[Case] = []
     for source in sources:
         own = [(kind, case) for kind in chosen for case in kind.cases(source, seed)]
@@ -79,9 +79,9 @@ def list_cases(
 
 
 def _kind(name: str) -> Kind:
-    if name not in KINDS:
-        raise InputError(f"there is no kind {name!r}; the kinds are {', '.join(KINDS)}")
-    return KINDS[name]
+    if name not in STRESS_KINDS:
+        raise InputError(f"there is no kind {name!r}; the kinds are {', '.join(STRESS_KINDS)}")
+    return STRESS_KINDS[name]
 
 
 def _cut(case: Case, kind: Kind, max_frames: int | None) -> Case | None:

@@ -66,7 +66,7 @@ class Case:
     origin : StressSource
         The sequence and its camera.
     kind : str
-        Name of what is tested, one of `kinds.KINDS`.
+        Name of what is tested, one of `kinds.STRESS_KINDS`.
     variation : str
         Name of the case within its kind.
     first, count, step : int

@@ -22,7 +22,7 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.recordings.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.footage import stamp_of
-from vehicle_pf_tracker.recordings.frame_folder import FORMATS, FrameFolder
+from vehicle_pf_tracker.recordings.frame_folder import IMAGE_FORMATS, FrameFolder
 from vehicle_pf_tracker.recordings.reader import Recording
 
 CAMERAS = "cameras.csv"
@@ -141,7 +141,7 @@ def _open_folder(source: Source, path: Path) -> StressFootage:
 
     def frame(index: int) -> Frame:
         file = files[index]
-        return decode_compressed(FORMATS[file.suffix.lower()], file.read_bytes())
+        return decode_compressed(IMAGE_FORMATS[file.suffix.lower()], file.read_bytes())
 
     return StressFootage(source, folder.fps, truth, frame)
 

@@ -216,4 +216,4 @@ def _kinds() -> Iterator[Kind]:
     )
 
 
-KINDS: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in _kinds()})
+STRESS_KINDS: Mapping[str, Kind] = MappingProxyType({kind.name: kind for kind in _kinds()})

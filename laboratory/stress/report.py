@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from laboratory.stress.running import Result
-from laboratory.stress.summary import ALL, MEASURES, Group, faults, groups
+from laboratory.stress.summary import ALL_CASES, CASE_MEASURES, Group, faults, groups
 from vehicle_pf_tracker.evaluation.statistics import Summary
 from vehicle_pf_tracker.evaluation.tables import NO_SCORE, markdown
 from vehicle_pf_tracker.results.output_files import make_folder, write_json, write_text
@@ -21,7 +21,7 @@ from vehicle_pf_tracker.results.run_folder import versions
 
 CSV, JSON, MARKDOWN = "stress.csv", "stress.json", "stress.md"
 _TITLES = {
-    ALL: "All cases",
+    ALL_CASES: "All cases",
     "kind": "Kinds of cases",
     "path": "Painted total occlusions, by the vehicle's path",
     "occlusion": "Painted total occlusions, by occluder",
@@ -79,9 +79,9 @@ def table_rows(
     found: Sequence[Group], *, intervals: bool = True
 ) -> tuple[list[str], list[list[str]]]:
     """Return the headings and the rows of a table of groups, a line for each."""
-    is_named = found[0].by != ALL
-    names = [name for name in MEASURES if any(group.summary(name) for group in found)]
-    titles = [MEASURES[name].title for name in names]
+    is_named = found[0].by != ALL_CASES
+    names = [name for name in CASE_MEASURES if any(group.summary(name) for group in found)]
+    titles = [CASE_MEASURES[name].title for name in names]
     header = [*([found[0].by] if is_named else []), "system", "cases", *titles, "ECE"]
     rows = []
     for group in sorted(found, key=lambda each: [f.name for f in found].index(each.name)):
@@ -96,7 +96,7 @@ def _cell(group: Group, measure: str, intervals: bool) -> str:
     summary = group.summary(measure)
     if summary is None:
         return NO_SCORE
-    decimals = 1 if MEASURES[measure].unit else 3
+    decimals = 1 if CASE_MEASURES[measure].unit else 3
     text = _number(summary.mean, decimals)
     if intervals and summary.low is not None and summary.high is not None:
         text += f" ({_number(summary.low, decimals)}–{_number(summary.high, decimals)})"
@@ -116,7 +116,7 @@ def _csv(found: Sequence[Group]) -> str:
     writer.writerow(["by", "name", "system", "measure", "unit", *_SUMMARY])
     for group in found:
         for measure, summary in _summaries(group):
-            unit = MEASURES[measure].unit
+            unit = CASE_MEASURES[measure].unit
             values = [getattr(summary, name) for name in _SUMMARY]
             writer.writerow([group.by, group.name, group.system, measure, unit, *values])
     return text.getvalue()
@@ -126,7 +126,7 @@ _SUMMARY = ("count", "mean", "spread", "low", "high")
 
 
 def _summaries(group: Group) -> Iterator[tuple[str, Summary]]:
-    for measure in MEASURES:
+    for measure in CASE_MEASURES:
         summary = group.summary(measure)
         if summary is not None:
             yield measure, summary

@@ -16,7 +16,7 @@ from laboratory.stress.running import Result
 from laboratory.stress.scoring import Score
 from vehicle_pf_tracker.evaluation.statistics import Summary, summarise
 
-ALL = "(all)"
+ALL_CASES = "(all)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Measure:
     of: Callable[[Score], float | None]
 
 
-MEASURES: Mapping[str, Measure] = MappingProxyType(
+CASE_MEASURES: Mapping[str, Measure] = MappingProxyType(
     {
         "on_target": Measure("on target", "", lambda s: s.on_target),
         "mean_iou": Measure("IoU", "", lambda s: s.mean_iou),
@@ -66,7 +66,7 @@ class Group:
     system : str
         Label of the system.
     by : str
-        Property that they share: ``kind``, ``path``, ``occlusion``, ``camera`` or `ALL`.
+        Property that they share: ``kind``, ``path``, ``occlusion``, ``camera`` or `ALL_CASES`.
     name : str
         Value of that property.
     results : tuple of Result
@@ -105,7 +105,7 @@ class Group:
         The cases of a camera share its difficulties. Where there are several cameras, each one's
         mean is a sample; within one camera each case's mean over the seeds is.
         """
-        take = MEASURES[measure].of
+        take = CASE_MEASURES[measure].of
         by_case = _means((result.case.name, take(result.score)) for result in self.results)
         if self.by == "camera":
             return summarise(list(by_case.values()))
@@ -119,7 +119,7 @@ def groups(results: Sequence[Result]) -> list[Group]:
     found = []
     for system in dict.fromkeys(result.system for result in results):
         own = [result for result in results if result.system == system]
-        found.append(Group(system, ALL, ALL, tuple(own)))
+        found.append(Group(system, ALL_CASES, ALL_CASES, tuple(own)))
         for by, name in _GROUPINGS.items():
             for value in dict.fromkeys(filter(None, map(name, own))):
                 members = tuple(result for result in own if name(result) == value)
@@ -133,7 +133,7 @@ def difference(results: Sequence[Result], one: str, other: str, measure: str) ->
     Differences of the cases and seeds that both have are averaged over each camera; the interval is
     over the cameras. None where no case has both.
     """
-    take = MEASURES[measure].of
+    take = CASE_MEASURES[measure].of
     scores = {(r.system, r.case.name, r.seed): take(r.score) for r in results}
     seeds = sorted({result.seed for result in results})
     camera = {result.case.name: result.case.camera for result in results}

@@ -17,7 +17,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_row
 from vehicle_pf_tracker.evaluation.cache_key import variant_modules
-from vehicle_pf_tracker.evaluation.systems import BASELINE, System
+from vehicle_pf_tracker.evaluation.systems import BASELINE_PREFIX, System
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, to_mapping
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.trackers.estimate import Estimate
@@ -109,7 +109,9 @@ class BaselineFollower:
     def __init__(self, system: System, seed: int = 0) -> None:
         del seed
         python = Path(system.python) if system.python else None
-        self._baseline = Baseline(system.kind.removeprefix(BASELINE), python, system.model_files())
+        self._baseline = Baseline(
+            system.kind.removeprefix(BASELINE_PREFIX), python, system.model_files()
+        )
 
     def start(self, frame: Frame, box: Box) -> EstimateRow:
         """Start it; see `Follower`."""

@@ -9,10 +9,10 @@ import pytest
 
 from laboratory.scenes.turns import Bend
 from vehicle_pf_tracker.scenes.courses import Pace, Pose
-from vehicle_pf_tracker.scenes.solids import ELEVATION
+from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION
 
 START = Pose(100.0, 200.0, 0.0, 10.0)
-SLANT = math.sin(ELEVATION)
+SLANT = math.sin(VIEW_ELEVATION)
 
 
 def test_a_left_turn_goes_round_a_flattened_circle_and_away():

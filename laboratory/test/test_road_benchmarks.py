@@ -10,7 +10,14 @@ import pytest
 
 pytest.importorskip("scipy", reason="the extra evaluation is not installed")
 
-from laboratory.covariance_coverage import COLUMNS, INSIDE, Runs, fit, fitted_table, runs_of
+from laboratory.covariance_coverage import (
+    COVERAGE_COLUMNS,
+    INSIDE_95,
+    Runs,
+    fit,
+    fitted_table,
+    runs_of,
+)
 from laboratory.road_speed import roads_of, settings_of
 from laboratory.scenes.road import RoadSceneParameters, camera_of
 from laboratory.uncertainty import rows_of
@@ -28,7 +35,7 @@ def test_runs_have_the_covariances_of_the_node(tmp_path):
     frames = list(make_scene("bridge", seed=1).frames())[:75]
     variant = VARIANTS["apf"]
     table = np.array(list(rows_of(variant, frames, 4)))
-    assert table.shape == (75, len(COLUMNS))
+    assert table.shape == (75, len(COVERAGE_COLUMNS))
     np.save(tmp_path / "apf.bridge.4.npy", table)
     squares, areas = Runs([tmp_path / "apf.bridge.4.npy"]).calibrated(CALIBRATIONS["apf"])
 
@@ -52,8 +59,8 @@ def test_runs_have_the_covariances_of_the_node(tmp_path):
 def made(folder: Path, name: str, seed: int) -> Path:
     """Run of errors from a known spread: 2 clouds while visible, growing while hidden."""
     rng = np.random.default_rng(seed)
-    table = np.zeros((800, len(COLUMNS)))
-    column = {name: index for index, name in enumerate(COLUMNS)}
+    table = np.zeros((800, len(COVERAGE_COLUMNS)))
+    column = {name: index for index, name in enumerate(COVERAGE_COLUMNS)}
     table[:, column["stamp"]] = np.arange(800) * 0.1
     table[:, column["xx"]] = table[:, column["yy"]] = rng.uniform(1, 9, 800)
     table[:, [column["width"], column["height"]]] = 20.0
@@ -75,7 +82,7 @@ def test_the_fit_covers_runs_that_it_has_not_seen(tmp_path):
     assert found.visible.cloud == pytest.approx(2.0, rel=0.15)
     assert found.visible.growth == 0
     squares, _ = Runs([made(tmp_path, "pf", seed) for seed in range(10, 13)]).calibrated(found)
-    assert (squares <= INSIDE).mean() == pytest.approx(0.95, abs=0.02)
+    assert (squares <= INSIDE_95).mean() == pytest.approx(0.95, abs=0.02)
 
 
 def test_the_table_is_a_module_that_says_the_same(tmp_path):

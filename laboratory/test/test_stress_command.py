@@ -10,8 +10,8 @@ import pytest
 from small_recordings import frame_folder, record
 
 from laboratory.__main__ import main
-from laboratory.stress import KINDS
-from vehicle_pf_tracker.evaluation.systems import BASELINE
+from laboratory.stress import STRESS_KINDS
+from vehicle_pf_tracker.evaluation.systems import BASELINE_PREFIX
 
 PAGE = Path(__file__).parents[2] / "laboratory" / "notes" / "stress.md"
 BASE = ["--variants", "ms", "--workers", "1"]
@@ -55,10 +55,10 @@ def test_a_battery_is_run_and_resumed(footage, tmp_path, capsys):
 @pytest.mark.slow
 def test_baselines_are_run_too(footage, tmp_path):
     words = ["--kinds", "mirrored,plain", "--baselines-python", sys.executable]
-    args = ["stress", str(footage), *words, "--variants", f"{BASELINE}mil", "--workers", "1"]
+    args = ["stress", str(footage), *words, "--variants", f"{BASELINE_PREFIX}mil", "--workers", "1"]
     assert main([*args, "-o", str(tmp_path / "out")]) == 0
     results = json.loads((tmp_path / "out" / "stress.json").read_text())["results"]
-    assert [entry["system"] for entry in results] == [f"{BASELINE}mil"] * 4
+    assert [entry["system"] for entry in results] == [f"{BASELINE_PREFIX}mil"] * 4
     assert min(entry["mean_iou"] for entry in results) > 0.2
     assert {entry["fault"] for entry in results} == {""}
 
@@ -70,5 +70,5 @@ def test_an_unknown_kind_is_named(footage, tmp_path, capsys):
 
 def test_the_page_lists_every_kind():
     text = PAGE.read_text()
-    for kind in KINDS.values():
+    for kind in STRESS_KINDS.values():
         assert f"| `{kind.name}` | {kind.group} | {kind.summary} |" in text

@@ -5,9 +5,9 @@
 
 import pytest
 
-from laboratory.traffic_fit import DECISIONS, Decision, best_for_others, read_clip, row
+from laboratory.traffic_fit import FITTED_DECISIONS, Decision, best_for_others, read_clip, row
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED
+from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED_THRESHOLDS
 
 PIECE = Decision("detection.blobs:_PIECE", (0.5, 0.7), 0.0)
 SCORES = {
@@ -18,7 +18,7 @@ SCORES = {
 }
 
 
-@pytest.mark.parametrize("decision", DECISIONS, ids=lambda one: one.place)
+@pytest.mark.parametrize("decision", FITTED_DECISIONS, ids=lambda one: one.place)
 def test_every_decision_exists_and_is_as_before_after_a_trial(decision):
     shipped = decision.get()
     with decision.at(decision.values[0]):
@@ -27,11 +27,11 @@ def test_every_decision_exists_and_is_as_before_after_a_trial(decision):
 
 
 def test_a_field_of_a_frozen_table_is_tried_and_put_back():
-    decision = Decision("detection.motion_thresholds:SHIPPED.shadow", (0.9,))
+    decision = Decision("detection.motion_thresholds:SHIPPED_THRESHOLDS.shadow", (0.9,))
     with pytest.raises(ZeroDivisionError), decision.at(0.9):
-        assert SHIPPED.shadow == 0.9
+        assert SHIPPED_THRESHOLDS.shadow == 0.9
         raise ZeroDivisionError
-    assert SHIPPED.shadow == 0.6
+    assert SHIPPED_THRESHOLDS.shadow == 0.6
 
 
 def test_a_camera_has_no_vote_on_the_value_that_it_is_judged_with():

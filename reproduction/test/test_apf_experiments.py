@@ -13,7 +13,7 @@ from reproduction.catalogue import EXPERIMENTS, find_experiments
 from reproduction.cells import SceneChoice
 from reproduction.experiment import Holds, Size
 from reproduction.output import write_report
-from reproduction.paper_scenes import VIDEOS
+from reproduction.paper_scenes import VIDEO_SCENES
 from reproduction.running import complete
 from vehicle_pf_tracker.core.errors import InputError
 
@@ -109,18 +109,20 @@ def test_table_2_has_an_average_row_and_the_total_occlusions_apart():
 
 def test_table_2_has_all_videos_all_trackers_and_a_fresh_scene_for_each_seed():
     cells = EXPERIMENTS["apf-table2"].cells(Size(range(3)))
-    assert {cell.scene.name for cell in cells} == set(VIDEOS)
+    assert {cell.scene.name for cell in cells} == set(VIDEO_SCENES)
     assert len(cells) == 20 * 3 * 15
     assert all(cell.scene.seed == cell.seed for cell in cells)
 
 
 def test_all_six_have_one_likelihood_and_the_others_are_beside_them():
     likelihoods = {
-        system.parameters(0).likelihood for system in apf_systems.SIX if system.variant != "ms"
+        system.parameters(0).likelihood
+        for system in apf_systems.SIX_SYSTEMS
+        if system.variant != "ms"
     }
     assert len(likelihoods) == 1
     windows = dict(apf_systems.LIBERTIES[0].settings)["num_particles"] * 4
-    assert windows == apf_systems.SIX[0].parameters(0).num_particles == 200
+    assert windows == apf_systems.SIX_SYSTEMS[0].parameters(0).num_particles == 200
     for one in apf_systems.COMPARISONS:
         assert [r.variant for r in one.rivals] == ["pf", "sapf", "hpfms", "pfcl", "ms"]
 
@@ -151,7 +153,7 @@ def test_resampling_draws_each_event_as_often_as_it_weighs():
 @pytest.mark.parametrize(("speed", "sigma"), [(2.0, 5.0), (5.0, 7.5), (15.0, 10.0)])
 def test_one_rule_sets_sigma(speed, sigma):
     scene = SceneChoice.of("clear", {"speed": speed})
-    for system in apf_systems.SIX:
+    for system in apf_systems.SIX_SYSTEMS:
         ruled = apf_systems.ruled(scene, system, 7).system
         assert apf_systems.sigma_of(ruled) == (None if system.variant == "ms" else sigma)
         parameters = ruled.parameters(7)

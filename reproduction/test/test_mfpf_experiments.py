@@ -18,7 +18,7 @@ RMS = {"mfpf": 8.0, "sfpf_color": 10.0, "sfpf_edge": 20.0, "sfpf_texture": 12.0}
 def result(cell, error, used=(1.0, 1.0, 1.0), hidden_used=(1.0, 1.0, 1.0)):
     """Say that a filter was `error` px beside the truth in every frame."""
     truths = cell.scene.truths()
-    features = [name for name in mfpf_systems.FEATURES if f"as_{name}" in cell.record]
+    features = [name for name in mfpf_systems.FEATURE_NAMES if f"as_{name}" in cell.record]
     trace = {
         "x": [truth.box.centre[0] + error for truth in truths],
         "y": [truth.box.centre[1] for truth in truths],
@@ -27,7 +27,7 @@ def result(cell, error, used=(1.0, 1.0, 1.0), hidden_used=(1.0, 1.0, 1.0)):
         "mode": ["tracking"] * len(truths),
     }
     flags = [hidden_used if truth.occlusion == 2 else used for truth in truths]
-    for index, name in enumerate(mfpf_systems.FEATURES):
+    for index, name in enumerate(mfpf_systems.FEATURE_NAMES):
         if name in features:
             trace[f"used_{name}"] = [None, *(flag[index] for flag in flags[1:])]
             trace[f"as_{name}"] = [None, *(0.4 + 0.5 * flag[index] for flag in flags[1:])]
@@ -83,7 +83,7 @@ def test_table_1_judges_by_the_best_single_feature_and_counts_runs_that_end_clos
 
 
 def test_the_papers_rule_differs_from_ours_in_what_is_printed():
-    for system in mfpf_systems.FOUR:
+    for system in mfpf_systems.FOUR_SYSTEMS:
         paper, ours = (
             mfpf_systems.read_as(system, name).parameters(0)
             for name in ("the paper's rule", "our interpretation")

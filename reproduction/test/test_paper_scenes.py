@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from drive_checks import check_room_to_recover, check_target, phases
 
-from reproduction.paper_scenes import FIXED_SCENES, VIDEOS, make_scene
+from reproduction.paper_scenes import FIXED_SCENES, VIDEO_SCENES, make_scene
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
 
@@ -49,18 +49,18 @@ def test_scenes_have_the_occlusions_of_their_row(name, seed):
     promised = FIXED_SCENES[name].occlusion
     assert (TOTAL in states) == ("total" in promised)
     assert occluded_by_itself(runs) == ("partial" in promised)
-    if name in VIDEOS:
+    if name in VIDEO_SCENES:
         assert (states == {NONE}) == (promised == "none")
 
 
 def test_videos_follow_table_i():
     """Vehicle and resolution of the paper's rows."""
-    rows = [video.parameters for video in VIDEOS.values()]
+    rows = [video.parameters for video in VIDEO_SCENES.values()]
     kinds = ["suv", "car", "suv", "car", *3 * ["truck"], *3 * ["car"], "truck", *9 * ["car"]]
     assert [row.vehicle for row in rows] == kinds
     assert {row.resolution for row in rows[11:18]} == {"768x576"}
     assert {row.resolution for row in rows[:11] + rows[18:]} == {"640x480"}
-    assert list(VIDEOS) == [f"video{number:02d}" for number in range(1, 21)]
+    assert list(VIDEO_SCENES) == [f"video{number:02d}" for number in range(1, 21)]
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -116,7 +116,7 @@ def test_the_notes_name_every_scene():
 
 @pytest.mark.slow
 def test_scenes_of_one_table_show_different_vehicles():
-    names = list(VIDEOS)
+    names = list(VIDEO_SCENES)
     colours = {
         tuple((_window(some(name, 1)[0]) // 32).tolist()) for name in names[:4] + names[7:12]
     }

@@ -45,15 +45,22 @@ def test_the_first_finding_decides():
 def test_claims_are_joined_under_each_interpretation():
     claims = (
         ex.Claim(
-            "one", "figure 1", (ex.Finding(ex.PAPER, YES, ""), ex.Finding(ex.PRINTED, NO, "")), ""
+            "one",
+            "figure 1",
+            (ex.Finding(ex.PAPER_RULE, YES, ""), ex.Finding(ex.PRINTED_RULE, NO, "")),
+            "",
         ),
         ex.Claim("two", "figure 1", (ex.Finding("their defaults", NO, ""),), ""),
     )
     found = ex.ExperimentVerdict(claims, "")
     assert found.holds is PARTLY
-    assert found.under(ex.PRINTED) is NO
-    assert found.under(ex.OURS) is None
-    assert found.to_json()["under"] == {ex.BASIC: None, ex.OURS: None, ex.PRINTED: "no"}
+    assert found.under(ex.PRINTED_RULE) is NO
+    assert found.under(ex.OUR_INTERPRETATION) is None
+    assert found.to_json()["under"] == {
+        ex.BASIC_RIVALS: None,
+        ex.OUR_INTERPRETATION: None,
+        ex.PRINTED_RULE: "no",
+    }
 
 
 def test_a_verdict_is_plain_json():

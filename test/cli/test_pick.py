@@ -21,7 +21,7 @@ from small_recordings import COUNT, frame_folder, frame_of, record
 from vehicle_pf_tracker.cli import pick, pick_page
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.pick_page import Editor, FrameStore
-from vehicle_pf_tracker.cli.picked_shapes import USES
+from vehicle_pf_tracker.cli.picked_shapes import SECTION_USES
 from vehicle_pf_tracker.image.compressed_image import jpeg
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
 from vehicle_pf_tracker.recordings.reader import StampedFrame
@@ -69,7 +69,7 @@ def answered(monkeypatch):
 def server(tmp_path):
     """A server that answers until the test is over."""
     source = open_source(record(tmp_path / "bag"))
-    with Editor(FrameStore(source), list(USES), 2, {}) as made:
+    with Editor(FrameStore(source), list(SECTION_USES), 2, {}) as made:
         thread = threading.Thread(target=made.serve_forever)
         thread.start()
         yield made
@@ -99,7 +99,7 @@ def refusal(url, body=None):
 def test_the_page_and_any_frame_are_served(server):
     assert b"<title>Pick</title>" in get(server.url)
     assert b"fetch(" in get(server.url + "pick.js")
-    facts = {"frames": COUNT, "frame": 2, "sections": list(USES), "document": {}}
+    facts = {"frames": COUNT, "frame": 2, "sections": list(SECTION_USES), "document": {}}
     assert json.loads(get(server.url + "info")) == facts
     for number in (5, 2, COUNT):
         assert get(f"{server.url}frame/{number}") == jpeg(frame_of(number - 1))

@@ -10,7 +10,7 @@ from small_recordings import COUNT, record
 
 from vehicle_pf_tracker.cli import pick
 from vehicle_pf_tracker.cli.pick_page import Editor, FrameStore
-from vehicle_pf_tracker.cli.picked_shapes import USES
+from vehicle_pf_tracker.cli.picked_shapes import SECTION_USES
 from vehicle_pf_tracker.recordings.source import open_source
 
 _HANDS = """
@@ -43,7 +43,7 @@ _HANDS = """
 """
 
 
-def driven(tmp_path, browse, script, sections=tuple(USES), first=1, document=None):
+def driven(tmp_path, browse, script, sections=tuple(SECTION_USES), first=1, document=None):
     """Let a browser run the page with `script`; returns what was drawn and the page's end."""
     page = Path(pick.__file__).with_name("pick.html").read_text(encoding="utf-8")
     script = f"(async () => {{ await until(() => is_shown({first})); {script} }})();"

@@ -9,7 +9,7 @@ from mcap.writer import CompressionType
 from small_recordings import COUNT, TARGET, box_of, record, record_two_cameras
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, read_estimates
+from vehicle_pf_tracker.results.estimates import REJECTED_MODE, WAITING_MODE, read_estimates
 from vehicle_pf_tracker.trackers.papers.apf import ApfTracker
 
 
@@ -90,7 +90,7 @@ def test_the_target_may_be_given_where_there_is_no_truth(run, tmp_path):
 
 def test_frames_before_the_first_truth_wait(run, tmp_path):
     rows, metrics, info = run(record(tmp_path / "bag", truths=range(3, COUNT)))
-    assert [row.mode for row in rows[:4]] == [WAITING] * 3 + ["TRACKING"]
+    assert [row.mode for row in rows[:4]] == [WAITING_MODE] * 3 + ["TRACKING"]
     assert (metrics["frames_waiting"], info["start_frame"]) == (3, 4)
 
 
@@ -155,6 +155,6 @@ def test_an_unexpected_error_costs_its_frame_alone(run, bag, monkeypatch):
     calls = itertools.count(1)
     monkeypatch.setattr(ApfTracker, "step", fail_once)
     rows, _, info = run(bag)
-    assert [row.frame for row in rows if row.mode == REJECTED] == [4]
+    assert [row.frame for row in rows if row.mode == REJECTED_MODE] == [4]
     assert len(rows) == COUNT
     assert "frame 4 was rejected: unexpected ZeroDivisionError: by zero" in info["notices"]

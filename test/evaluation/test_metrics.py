@@ -10,7 +10,7 @@ from scoring_samples import NONE, PARTIAL, PERIOD_NS, TOTAL, row, run_of, scored
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
-from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.results.estimates import REJECTED_MODE, WAITING_MODE, EstimateRow
 
 
 def metrics_of(*frames):
@@ -63,12 +63,12 @@ def test_modes_and_claims_of_an_occlusion_by_hand():
     assert metrics.visible_tracking == pytest.approx(2 / 6)
     assert metrics.hidden_not_tracking == 0.75
     assert metrics.frames_by_mode == {
-        "TRACKING": 3, "OCCLUDED": 4, "LOST": 3, WAITING: 0, REJECTED: 0,
+        "TRACKING": 3, "OCCLUDED": 4, "LOST": 3, WAITING_MODE: 0, REJECTED_MODE: 0,
     }  # fmt: skip
 
 
 def test_waiting_frames_and_frames_without_truth_are_counted_and_not_scored():
-    rows = [EstimateRow.without(1, PERIOD_NS, WAITING), row(2, 103.0), row(3, 500.0)]
+    rows = [EstimateRow.without(1, PERIOD_NS, WAITING_MODE), row(2, 103.0), row(3, 500.0)]
     metrics = measure(score_frames(rows, [truth(1), truth(2), truth(9)]))
     assert (metrics.frames, metrics.frames_scored) == (3, 1)
     assert (metrics.frames_waiting, metrics.frames_without_truth) == (1, 1)
@@ -78,11 +78,11 @@ def test_waiting_frames_and_frames_without_truth_are_counted_and_not_scored():
 
 
 def test_a_frame_without_an_estimate_is_a_miss_but_has_no_error():
-    metrics = metrics_of(scored(1, 4), scored(2, None, mode=REJECTED))
+    metrics = metrics_of(scored(1, 4), scored(2, None, mode=REJECTED_MODE))
     assert metrics.rmse_px == 4
     assert metrics.p_error_lt_15px == metrics.precision_20px == metrics.on_target == 0.5
     assert metrics.visible_tracking == 0.5
-    assert metrics.frames_by_mode[REJECTED] == 1
+    assert metrics.frames_by_mode[REJECTED_MODE] == 1
 
 
 def test_an_estimate_that_is_not_finite_is_a_miss():

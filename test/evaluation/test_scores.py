@@ -10,10 +10,10 @@ from scoring_samples import PERIOD_NS, row, truth
 
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.results.estimates import REJECTED_MODE, WAITING_MODE, EstimateRow
 
 
-def silent(frame, mode=REJECTED):
+def silent(frame, mode=REJECTED_MODE):
     return EstimateRow.without(frame, frame * PERIOD_NS, mode)
 
 
@@ -42,7 +42,7 @@ def test_before_the_first_estimate_nothing_stands():
 
 
 def test_a_new_wait_forgets_the_estimate_of_the_target_before():
-    rows = [row(1, 101.0), silent(2, WAITING), silent(3), row(4, 104.0)]
+    rows = [row(1, 101.0), silent(2, WAITING_MODE), silent(3), row(4, 104.0)]
     scores = score_frames(rows, [truth(n, centre=(100.0 + n, 100.0)) for n in (1, 3, 4)])
     assert [frame.error for frame in scores.frames] == [0, None, None, 0]
 

@@ -8,14 +8,16 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from vehicle_pf_tracker.filtering.resampling import (
-    SCHEMES,
+    RESAMPLING_SCHEMES,
     multinomial,
     residual,
     stratified,
     systematic,
 )
 
-every_scheme = pytest.mark.parametrize("scheme", SCHEMES.values(), ids=SCHEMES.keys())
+every_scheme = pytest.mark.parametrize(
+    "scheme", RESAMPLING_SCHEMES.values(), ids=RESAMPLING_SCHEMES.keys()
+)
 
 
 class HighestDraw:
@@ -111,11 +113,11 @@ def test_expected_counts_are_proportional_to_the_weights(scheme):
 @given(
     weights=hnp.arrays(np.float64, st.integers(1, 60), elements=st.floats(0, 1)),
     count=st.integers(1, 80),
-    name=st.sampled_from(sorted(SCHEMES)),
+    name=st.sampled_from(sorted(RESAMPLING_SCHEMES)),
     seed=st.integers(0, 2**32 - 1),
 )
 def test_every_draw_is_a_particle_with_weight(weights, count, name, seed):
-    ancestors = SCHEMES[name](weights, count, np.random.default_rng(seed))
+    ancestors = RESAMPLING_SCHEMES[name](weights, count, np.random.default_rng(seed))
     assert len(ancestors) == count
     assert np.issubdtype(ancestors.dtype, np.integer)
     assert ancestors.min() >= 0
@@ -151,12 +153,12 @@ class Given:
 
 def test_stratified_draws_a_number_in_each_stratum():
     # Eight equal weights in four strata of two each: the first or the second of the two.
-    drawn = SCHEMES["stratified"](np.full(8, 1 / 8), 4, Given(0.1, 0.9, 0.1, 0.9))
+    drawn = RESAMPLING_SCHEMES["stratified"](np.full(8, 1 / 8), 4, Given(0.1, 0.9, 0.1, 0.9))
     assert drawn.tolist() == [0, 3, 4, 7]
 
 
 @pytest.mark.parametrize(("point", "last"), [(0.1, 1), (0.5, 2)])
 def test_residual_draws_the_rest_by_what_is_left_of_the_expectations(point, last):
     # Expected 2, 1.2 and 0.8 of four: 2, 1 and 0 are certain, 0, 0.2 and 0.8 are left.
-    drawn = SCHEMES["residual"](np.array([0.5, 0.3, 0.2]), 4, Given(point))
+    drawn = RESAMPLING_SCHEMES["residual"](np.array([0.5, 0.3, 0.2]), 4, Given(point))
     assert sorted(drawn.tolist()) == [0, 0, 1, last]

@@ -13,7 +13,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.following.driver import OfflineTracker, with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
-from vehicle_pf_tracker.results.estimates import REJECTED, WAITING
+from vehicle_pf_tracker.results.estimates import REJECTED_MODE, WAITING_MODE
 from vehicle_pf_tracker.trackers.attempts import TrackerError
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
@@ -44,7 +44,7 @@ def test_a_tracker_that_fails_twice_starts_anew_and_the_run_goes_on(monkeypatch)
     monkeypatch.setattr(PF.tracker, "step", failing(PF.tracker.step, {4, 5}))
     made = tracker(TARGET)
     rows = list(made.rows(drive()))
-    assert modes(rows) == ["TRACKING"] * 5 + [REJECTED] + ["TRACKING"] * 14
+    assert modes(rows) == ["TRACKING"] * 5 + [REJECTED_MODE] + ["TRACKING"] * 14
     assert np.hypot(*np.subtract(rows[-1].position, box_of(19).centre)) < 5
     assert made.notices == [
         f"frame 6 was rejected: {ERROR}",
@@ -58,7 +58,7 @@ def test_a_broken_tracker_ends_the_run(monkeypatch):
     next(rows)
     monkeypatch.setattr(PF.tracker, "step", lambda *_: 1 / 0)
     monkeypatch.setattr(PF.tracker, "start", lambda *_: 1 / 0)
-    assert next(rows).mode == REJECTED
+    assert next(rows).mode == REJECTED_MODE
     with pytest.raises(TrackerError, match="division by zero"):
         next(rows)
 
@@ -75,7 +75,7 @@ def test_the_same_seed_gives_the_same_rows_and_another_seed_others():
 def test_frames_before_the_first_truth_are_waited_through():
     made = tracker(first_truth=truth_of(4))
     rows = list(made.rows(drive(8)))
-    assert modes(rows) == [WAITING] * 4 + ["TRACKING"] * 4
+    assert modes(rows) == [WAITING_MODE] * 4 + ["TRACKING"] * 4
     assert rows[3].position is None
     assert rows[4].position == box_of(4).centre
     assert made.start_frame == 5
@@ -115,7 +115,7 @@ def test_a_target_outside_the_image_is_an_error():
 
 def test_without_a_target_all_frames_wait():
     made = tracker()
-    assert modes(made.rows(drive(3))) == [WAITING] * 3
+    assert modes(made.rows(drive(3))) == [WAITING_MODE] * 3
     assert made.start_frame is None
 
 
@@ -124,7 +124,7 @@ def test_a_frame_that_cannot_be_used_is_rejected_and_the_track_goes_on():
     frames[6] = (stamp_of(6), np.zeros((5, 5), np.uint8))
     made = tracker(TARGET)
     rows = list(made.rows(frames))
-    assert modes(rows) == ["TRACKING"] * 6 + [REJECTED] + ["TRACKING"] * 5
+    assert modes(rows) == ["TRACKING"] * 6 + [REJECTED_MODE] + ["TRACKING"] * 5
     assert rows[6].position is None
     assert abs(rows[11].x - box_of(11).centre[0]) < 5
     assert made.notices == [
@@ -137,7 +137,7 @@ def test_time_that_jumps_back_starts_on_the_first_truth_again():
     frames = [*drive(6), *drive(6)]
     made = tracker(first_truth=truth_of(0))
     rows = list(made.rows(frames))
-    assert rows[6].mode == REJECTED  # one image alone might be a stray
+    assert rows[6].mode == REJECTED_MODE  # one image alone might be a stray
     assert [row.position for row in rows[1:6]] == [row.position for row in rows[7:]]
     assert made.notices[0].startswith("frame 7 was rejected: the image's stamp goes back by")
     assert made.notices[1:] == ["frame 8: time jumped back"]
@@ -147,7 +147,7 @@ def test_a_stray_before_the_start_is_rejected_too():
     frames = drive(4)
     frames[1] = (stamp_of(1), np.zeros((9, 9, 3), np.uint8))
     made = tracker(first_truth=truth_of(1))
-    assert modes(made.rows(frames)) == [WAITING, REJECTED, "TRACKING", "TRACKING"]
+    assert modes(made.rows(frames)) == [WAITING_MODE, REJECTED_MODE, "TRACKING", "TRACKING"]
 
 
 def test_frames_are_taken_one_by_one():

@@ -13,19 +13,19 @@ pytest.importorskip("pooch", reason="the extra [video] is not installed")
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.following import known_networks, model_files
-from vehicle_pf_tracker.following.known_networks import NETWORKS, KnownNetwork
+from vehicle_pf_tracker.following.known_networks import KNOWN_NETWORKS, KnownNetwork
 from vehicle_pf_tracker.following.model_files import cached, is_fetched, model_file
 
 
 @pytest.fixture(autouse=True)
 def _cache(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(known_networks, "PACKAGE", "no_such_package")
+    monkeypatch.setattr(known_networks, "DETECTOR_PACKAGE", "no_such_package")
 
 
-@pytest.mark.parametrize("name", NETWORKS)
+@pytest.mark.parametrize("name", KNOWN_NETWORKS)
 def test_a_name_says_where_from_how_large_and_whose(name):
-    network = NETWORKS[name]
+    network = KNOWN_NETWORKS[name]
     assert network.url.startswith("https://github.com/Megvii-BaseDetection/YOLOX/releases/")
     assert network.file == f"{name.replace('-', '_')}.onnx"
     assert re.fullmatch("[0-9a-f]{64}", network.sha256)
@@ -36,7 +36,7 @@ def test_a_name_says_where_from_how_large_and_whose(name):
 
 def test_offline_the_address_and_the_place_for_the_file_are_said(monkeypatch):
     away = KnownNetwork("http://127.0.0.1:9/yolox_nano.onnx", "0" * 64, 1, "Apache-2.0")
-    monkeypatch.setattr(model_files, "NETWORKS", {"yolox-nano": away})
+    monkeypatch.setattr(model_files, "KNOWN_NETWORKS", {"yolox-nano": away})
     place = cached(away.url)
     with pytest.raises(InputError) as caught:
         model_file("yolox-nano")
@@ -46,7 +46,7 @@ def test_offline_the_address_and_the_place_for_the_file_are_said(monkeypatch):
 def test_a_file_put_there_is_taken_if_it_is_the_makers(monkeypatch):
     content = b"\x08 a network"
     away = KnownNetwork("http://127.0.0.1:9/n.onnx", _sum(content), len(content), "Apache-2.0")
-    monkeypatch.setattr(model_files, "NETWORKS", {"yolox-nano": away})
+    monkeypatch.setattr(model_files, "KNOWN_NETWORKS", {"yolox-nano": away})
     place = cached(away.url)
     place.parent.mkdir(parents=True)
     place.write_bytes(content)
@@ -66,7 +66,7 @@ def test_a_package_of_an_organisation_brings_the_file(tmp_path, monkeypatch):
     (folder / "__init__.py").touch()
     (folder / "yolox_nano.onnx").write_bytes(b"\x08 a network")
     monkeypatch.syspath_prepend(str(tmp_path / "site"))
-    monkeypatch.setattr(known_networks, "PACKAGE", "an_organisations_detector")
+    monkeypatch.setattr(known_networks, "DETECTOR_PACKAGE", "an_organisations_detector")
     assert model_file("yolox-nano") == (folder / "yolox_nano.onnx", _sum(b"\x08 a network"))
     sys.modules.pop("an_organisations_detector", None)
 

@@ -17,7 +17,7 @@ from small_recordings import TARGET, record
 
 from vehicle_pf_tracker import Box, InputError, track
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.showing.drawing import COLOURS
+from vehicle_pf_tracker.showing.drawing import MODE_COLOURS
 
 NOTEBOOK = Path(__file__).parents[2] / "docs" / "example.ipynb"
 
@@ -69,7 +69,7 @@ def test_an_estimate_is_drawn_on_its_own_frame(rec):
     row = shown.row
     assert row.frame == 9
     right, bottom = int(row.x + row.width / 2), int(row.y + row.height / 2)
-    assert tuple(shown.picture[bottom, right]) == COLOURS["TRACKING"]
+    assert tuple(shown.picture[bottom, right]) == MODE_COLOURS["TRACKING"]
     png = base64.b64decode(re.search(r"base64,([^\"]+)", shown._repr_html_())[1])
     decoded = cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR)[:, :, ::-1]
     assert np.array_equal(decoded, shown.picture)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.image.stillness import PATIENCE, SENTENCE, Stillness
+from vehicle_pf_tracker.image.stillness import STILLNESS_PATIENCE, STILLNESS_SENTENCE, Stillness
 
 RATE = 10
 TARGET = Box(200.0, 100.0, 40.0, 30.0)
@@ -42,9 +42,9 @@ def shifted(way, growth=1.0):
 
 def test_a_target_that_stays_while_others_drive_is_suspect_after_some_seconds():
     suspect, said = watch(8, lambda seconds: shifted(np.sin(seconds)))
-    assert suspect.index(True) == PATIENCE * RATE
+    assert suspect.index(True) == STILLNESS_PATIENCE * RATE
     assert all(suspect[suspect.index(True) :])
-    assert said == [SENTENCE]
+    assert said == [STILLNESS_SENTENCE]
 
 
 def test_where_nothing_else_moves_nothing_is_suspected():
@@ -111,4 +111,4 @@ def test_a_target_at_the_border_is_judged_too(box):
     still.begin(Box(*box), 0)
     for index in range(8 * RATE):
         said += still.look(street(index / RATE), Box(*box), index * 10**9 // RATE)
-    assert said == [SENTENCE]
+    assert said == [STILLNESS_SENTENCE]

@@ -15,7 +15,7 @@ import setuptools
 
 import vehicle_pf_tracker
 from vehicle_pf_tracker.cli.missing_modules import EVALUATION_MODULES, EXTRAS
-from vehicle_pf_tracker.evaluation.baseline_process import LOCK
+from vehicle_pf_tracker.evaluation.baseline_process import BASELINES_LOCK
 from vehicle_pf_tracker.ros import executables
 from vehicle_pf_tracker.trackers.registry import NODES
 
@@ -121,7 +121,7 @@ def test_extras_bring_what_the_readme_shows(setup):
 
 
 @pytest.mark.parametrize(
-    "path", [*sorted((ROOT / "requirements").glob("*.txt")), LOCK], ids=lambda p: p.stem
+    "path", [*sorted((ROOT / "requirements").glob("*.txt")), BASELINES_LOCK], ids=lambda p: p.stem
 )
 def test_every_pin_has_hashes_and_no_lock_names_an_index(path):
     pins = re.findall(r"^\S+==.*(?:\n    .*)*", path.read_text(), re.M)

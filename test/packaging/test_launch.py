@@ -25,9 +25,9 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.ros.transport import PROFILE_VARIABLES
-from vehicle_pf_tracker.trackers.registry import TRAFFIC, plug_ins
+from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT, plug_ins
 
-TRAFFIC_NAMES = set(Configuration.of(TRAFFIC).specs())
+TRAFFIC_NAMES = set(Configuration.of(TRAFFIC_VARIANT).specs())
 ROOT = Path(__file__).resolve().parents[2]
 
 

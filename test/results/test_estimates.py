@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.results.estimates import (
-    COLUMNS,
-    REJECTED,
-    WAITING,
+    ESTIMATE_COLUMNS,
+    REJECTED_MODE,
+    WAITING_MODE,
     EstimateRow,
     read_estimates,
     write_estimates,
@@ -32,7 +32,7 @@ rows = st.builds(
     EstimateRow.without,
     st.integers(1, 10**6),
     st.integers(0, 2**63 - 1),
-    st.sampled_from([WAITING, REJECTED]),
+    st.sampled_from([WAITING_MODE, REJECTED_MODE]),
 )
 
 
@@ -46,7 +46,7 @@ def test_every_digit_survives_the_file(tmp_path_factory, written):
 def test_a_row_as_text(tmp_path):
     path = tmp_path / "estimates.csv"
     row = EstimateRow(1, 2, 0.1 + 0.2, 4.0, 5.0, 6.0, "LOST", 0.5, 100.0, 1.25)
-    write_estimates(path, [row, EstimateRow.without(2, 3, WAITING)])
+    write_estimates(path, [row, EstimateRow.without(2, 3, WAITING_MODE)])
     assert path.read_bytes().decode().splitlines() == [
         "frame,stamp_ns,x,y,width,height,mode,confidence,n_eff,step_ms",
         "1,2,0.30000000000000004,4.0,5.0,6.0,LOST,0.5,100.0,1.25",
@@ -64,7 +64,7 @@ def test_scalars_as_numbers_and_as_text_make_the_same_row():
 
 
 def test_a_waiting_row_has_no_numbers():
-    row = EstimateRow.from_scalars(1, 0, {"mode": WAITING, "x": ""})
+    row = EstimateRow.from_scalars(1, 0, {"mode": WAITING_MODE, "x": ""})
     assert (row.x, row.width, row.confidence, row.n_eff, row.step_ms, row.position) == (None,) * 6
 
 
@@ -78,9 +78,12 @@ def test_scalars_without_a_mode_are_refused():
     [
         ("", "must begin with the line frame,stamp_ns"),
         ("frame,x\n", "must begin with the line frame,stamp_ns"),
-        (",".join(COLUMNS) + "\n1,2,3\n", "line 2 .* is broken"),
-        (",".join(COLUMNS) + "\n1,2,a,4,5,6,LOST,8,9,10\n", "line 2 .* x is not a number: 'a'"),
-        (",".join(COLUMNS) + "\none,2,3,4,5,6,LOST,8,9,10\n", "line 2 .* is broken"),
+        (",".join(ESTIMATE_COLUMNS) + "\n1,2,3\n", "line 2 .* is broken"),
+        (
+            ",".join(ESTIMATE_COLUMNS) + "\n1,2,a,4,5,6,LOST,8,9,10\n",
+            "line 2 .* x is not a number: 'a'",
+        ),
+        (",".join(ESTIMATE_COLUMNS) + "\none,2,3,4,5,6,LOST,8,9,10\n", "line 2 .* is broken"),
     ],
 )
 def test_broken_files_are_named(tmp_path, text, message):

@@ -13,7 +13,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.results.traffic_results import track_files
-from vehicle_pf_tracker.trackers.traffic.estimate import SCENE, TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import SCENE_OCCLUDER, TrackEstimate, TrackMode
 
 SEEN = TrackEstimate(
     identity=7,
@@ -31,7 +31,7 @@ HIDDEN = replace(
     SEEN, identity=8, serial=8, mode=TrackMode.OCCLUDED, confidence=0.8, score=math.nan, hidden_by=7
 )
 TENTATIVE = replace(SEEN, identity=0, serial=9, mode=TrackMode.TENTATIVE)
-LOST = replace(SEEN, identity=10, serial=10, mode=TrackMode.LOST, hidden_by=SCENE)
+LOST = replace(SEEN, identity=10, serial=10, mode=TrackMode.LOST, hidden_by=SCENE_OCCLUDER)
 ALL = (SEEN, HIDDEN, TENTATIVE, LOST)
 
 
@@ -56,7 +56,10 @@ def test_a_vehicle_has_its_number_from_its_first_detection_on(tmp_path):
 
 
 def test_a_vehicle_found_again_has_the_boxes_of_the_track_that_it_was(tmp_path):
-    ghost, seen = replace(HIDDEN, hidden_by=SCENE), replace(TENTATIVE, box=Box(90, 20, 30, 40))
+    ghost, seen = (
+        replace(HIDDEN, hidden_by=SCENE_OCCLUDER),
+        replace(TENTATIVE, box=Box(90, 20, 30, 40)),
+    )
     with track_files(tmp_path) as files:
         files.write(1, 100, [HIDDEN])
         files.write(2, 200, [ghost, seen])

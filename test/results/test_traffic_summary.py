@@ -16,7 +16,7 @@ from vehicle_pf_tracker.showing import drawing
 from vehicle_pf_tracker.showing.heat_picture import HeatPicture
 from vehicle_pf_tracker.showing.path_picture import PathPicture
 from vehicle_pf_tracker.showing.traffic_drawing import identity_colour
-from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import BORDER_OCCLUDER, TrackEstimate, TrackMode
 
 MODES = {
     "t": TrackMode.TENTATIVE,
@@ -31,7 +31,7 @@ NOWHERE = Counter(CountingPlan())
 
 
 def estimate(identity, mode, box=None, label=""):
-    hider = BORDER if mode == "B" else None
+    hider = BORDER_OCCLUDER if mode == "B" else None
     box = box or Box(0, 0, 9, 9)
     return TrackEstimate(
         identity, box, (0, 0), MODES[mode], 0.9, label, 0.5, 1.0, hider, serial=identity

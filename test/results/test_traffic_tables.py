@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.results.traffic_results import COUNT_COLUMNS, COUNTS
+from vehicle_pf_tracker.results.traffic_results import COUNT_COLUMNS, COUNTS_FILE
 from vehicle_pf_tracker.results.traffic_tables import read_counts
 
 STAMP = 1_700_000_000_123_456_789
@@ -15,7 +15,7 @@ HEADER = ",".join(COUNT_COLUMNS)
 
 
 def counts(folder, *rows):
-    (folder / COUNTS).write_text("\n".join([HEADER, *rows]))
+    (folder / COUNTS_FILE).write_text("\n".join([HEADER, *rows]))
     return read_counts(folder)
 
 

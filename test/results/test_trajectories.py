@@ -9,7 +9,7 @@ import pytest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.results.estimates import WAITING, EstimateRow
+from vehicle_pf_tracker.results.estimates import WAITING_MODE, EstimateRow
 from vehicle_pf_tracker.results.trajectories import trajectory_files, write_trajectories
 
 STAMP_NS = 1_700_000_000_000_000_040
@@ -21,7 +21,7 @@ def row(stamp_ns, x, y, mode="TRACKING"):
 
 
 ROWS = [
-    EstimateRow.without(1, STAMP_NS - 1, WAITING),
+    EstimateRow.without(1, STAMP_NS - 1, WAITING_MODE),
     row(STAMP_NS, 1.5, 1 / 3),
     row(STAMP_NS + 10**9, np.float64(0.0), 2.0, "OCCLUDED"),
 ]

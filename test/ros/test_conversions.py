@@ -23,8 +23,8 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.messages import (
     LEVELS,
-    REJECTED,
-    WAITING,
+    REJECTED_MESSAGE,
+    WAITING_MESSAGE,
     box_message,
     image_message,
     particles_message,
@@ -91,7 +91,11 @@ def test_values_are_written_plainly(value, text):
 
 
 def test_every_mode_has_a_level():
-    assert set(LEVELS) == {*(mode.value for mode in (*Mode, *TrackMode)), WAITING, REJECTED}
+    assert set(LEVELS) == {
+        *(mode.value for mode in (*Mode, *TrackMode)),
+        WAITING_MESSAGE,
+        REJECTED_MESSAGE,
+    }
     assert [LEVELS[mode.value] for mode in Mode] == [b"\x00", b"\x01", b"\x02"]
 
 

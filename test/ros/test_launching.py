@@ -20,9 +20,9 @@ from vehicle_pf_tracker.cli.requests import request_of
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.ros.camera_file import read_cameras
-from vehicle_pf_tracker.ros.launching import ARGUMENTS as NODE
+from vehicle_pf_tracker.ros.launching import TRACKER_ARGUMENTS as NODE
 from vehicle_pf_tracker.ros.launching import parameter_file
-from vehicle_pf_tracker.ros.replay.launched_replay import ARGUMENTS as REPLAY
+from vehicle_pf_tracker.ros.replay.launched_replay import REPLAY_ARGUMENTS as REPLAY
 from vehicle_pf_tracker.ros.replay.launched_replay import queue_depth, replay_words
 from vehicle_pf_tracker.ros.replay.publishing import recorded_images
 

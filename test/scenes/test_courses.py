@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.courses import Pace, Pose, moving, straight, swaying, wave
 from vehicle_pf_tracker.scenes.models import Model
-from vehicle_pf_tracker.scenes.solids import ELEVATION
+from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION
 from vehicle_pf_tracker.scenes.vehicles import car
 
 BOX = Box(10, 20, 4, 3)
 START = Pose(100.0, 200.0, 0.0, 10.0)
-SLANT = math.sin(ELEVATION)
+SLANT = math.sin(VIEW_ELEVATION)
 
 
 def test_distance_is_the_area_under_the_speed():

@@ -9,12 +9,12 @@ from itertools import pairwise
 import pytest
 from drive_checks import check_room_to_recover, check_target, phases
 
-from laboratory.scenes import SCENES, make_scene
+from laboratory.scenes import LABORATORY_SCENES, make_scene
 from vehicle_pf_tracker.core.truth import Occlusion
 
 NONE, PARTIAL, TOTAL = Occlusion.NONE, Occlusion.PARTIAL, Occlusion.TOTAL
 SEEDS = [0, pytest.param(1, marks=pytest.mark.slow)]
-DRIVES = sorted(set(SCENES) - {"bar", "highway", "road"})
+DRIVES = sorted(set(LABORATORY_SCENES) - {"bar", "highway", "road"})
 
 TOTALS = {
     "bars": [(4, 9), (10, 15)],

@@ -12,7 +12,7 @@ import pytest
 from laboratory.scenes import make_scene
 from laboratory.scenes.drives import Cloud, CloudyCamera
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.cameras import MARGIN, Disturbance, OutdoorCamera
+from vehicle_pf_tracker.scenes.cameras import SHAKE_MARGIN, Disturbance, OutdoorCamera
 
 CALM = Disturbance(0.0, 0.0, 0.0)
 SHAKY = Disturbance(0.0, 3.0, 0.0)
@@ -26,7 +26,7 @@ def ramp(height=80, width=100):
 
 def test_a_calm_camera_shows_the_stage_without_its_margin():
     frame = OutdoorCamera(CALM, 0).capture(ramp(), 5)
-    expected = np.rint(ramp()[MARGIN:-MARGIN, MARGIN:-MARGIN])
+    expected = np.rint(ramp()[SHAKE_MARGIN:-SHAKE_MARGIN, SHAKE_MARGIN:-SHAKE_MARGIN])
     np.testing.assert_array_equal(frame, expected)
 
 
@@ -34,9 +34,9 @@ def test_a_calm_camera_shows_the_stage_without_its_margin():
 def test_a_shaken_picture_lies_where_the_offset_says(index):
     camera = OutdoorCamera(SHAKY, 4)
     x, y = camera.offset(index)
-    assert (x, y) != (MARGIN, MARGIN)
+    assert (x, y) != (SHAKE_MARGIN, SHAKE_MARGIN)
     frame = camera.capture(ramp(), index)
-    assert frame.shape == (80 - 2 * MARGIN, 100 - 2 * MARGIN, 3)
+    assert frame.shape == (80 - 2 * SHAKE_MARGIN, 100 - 2 * SHAKE_MARGIN, 3)
     rows, columns = np.indices(frame.shape[:2])
     expected = (columns + x + 2 * (rows + y)) / 2
     assert np.abs(frame[..., 0] - expected).max() <= 0.51
@@ -97,7 +97,8 @@ def test_truth_moves_with_the_shake(name):
         box, steady = (shots[True, kind][number].truth.box for kind in (True, False))
         assert np.abs(still - steady.centre).max() < 4
         np.testing.assert_allclose(
-            np.subtract(box.centre, steady.centre), np.subtract(MARGIN, shaky.offset(3 * number))
+            np.subtract(box.centre, steady.centre),
+            np.subtract(SHAKE_MARGIN, shaky.offset(3 * number)),
         )
         np.testing.assert_allclose(moved - still, np.subtract(box.centre, steady.centre), atol=0.3)
 

@@ -10,7 +10,7 @@ import pytest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import PixelWindow
-from vehicle_pf_tracker.scenes.solids import ELEVATION, draw, extent, shadow, side_panel
+from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION, draw, extent, shadow, side_panel
 from vehicle_pf_tracker.scenes.solids import strips as sweep
 from vehicle_pf_tracker.scenes.vehicles import car, coach, lorry, saloon, suv, truck, van
 
@@ -29,13 +29,13 @@ VEHICLES = {
 def test_an_upright_panel_is_foreshortened_by_the_view_from_above():
     box = extent([side_panel([(1, 0), (1, 2), (4, 2), (4, 0)], 0, GREY)])
     assert (box.x, box.y, box.width, box.height) == pytest.approx(
-        (1, -2 * math.cos(ELEVATION), 3, 2 * math.cos(ELEVATION))
+        (1, -2 * math.cos(VIEW_ELEVATION), 3, 2 * math.cos(VIEW_ELEVATION))
     )
 
 
 def test_a_flat_roof_is_as_high_as_its_depth_seen_from_above():
     box = extent(sweep([(0, 1), (3, 1)], 0, 2, GREY))
-    assert (box.width, box.height) == pytest.approx((3, 2 * math.sin(ELEVATION)))
+    assert (box.width, box.height) == pytest.approx((3, 2 * math.sin(VIEW_ELEVATION)))
 
 
 def test_a_shadow_lies_on_the_ground_and_falls_towards_the_viewer_and_to_the_left():

@@ -10,7 +10,7 @@ import pytest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.showing.contact_sheet import THUMB_WIDTH, ContactSheet
-from vehicle_pf_tracker.showing.drawing import COLOURS, Annotator, annotated, estimate_words
+from vehicle_pf_tracker.showing.drawing import MODE_COLOURS, Annotator, annotated, estimate_words
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 BLACK = np.zeros((120, 160, 3), np.uint8)
@@ -39,12 +39,12 @@ def share_of_outline(picture, colour):
 
 def test_a_tracked_vehicle_has_a_closed_box_in_its_colour():
     picture = drawn(Mode.TRACKING)
-    assert share_of_outline(picture, COLOURS["TRACKING"]) == 1.0
+    assert share_of_outline(picture, MODE_COLOURS["TRACKING"]) == 1.0
     assert not picture[100, 20].any()
 
 
 def test_a_predicted_position_is_dashed():
-    share = share_of_outline(drawn(Mode.OCCLUDED), COLOURS["OCCLUDED"])
+    share = share_of_outline(drawn(Mode.OCCLUDED), MODE_COLOURS["OCCLUDED"])
     assert 0.4 < share < 0.8
 
 

@@ -11,8 +11,8 @@ from vehicle_pf_tracker.recordings.messages import (
     deserialize,
     serialize,
 )
-from vehicle_pf_tracker.results.estimates import WAITING, EstimateRow
-from vehicle_pf_tracker.showing.drawing import COLOURS
+from vehicle_pf_tracker.results.estimates import WAITING_MODE, EstimateRow
+from vehicle_pf_tracker.showing.drawing import MODE_COLOURS
 from vehicle_pf_tracker.showing.estimates_recording import (
     LINE_LIST,
     LINE_LOOP,
@@ -45,17 +45,17 @@ def test_a_tracked_vehicle_has_its_box_and_words():
     (box,), (words,) = message.points, message.texts
     assert box.type == LINE_LOOP
     assert points(box) == [(40.0, 24.0), (60.0, 24.0), (60.0, 36.0), (40.0, 36.0)]
-    assert rgb(box.outline_color) == COLOURS["TRACKING"]
+    assert rgb(box.outline_color) == MODE_COLOURS["TRACKING"]
     assert (box.outline_color.a, box.fill_color.a) == (1.0, 0.0)
     assert words.text == "van TRACKING 0.50"
-    assert rgb(words.text_color) == COLOURS["TRACKING"]
+    assert rgb(words.text_color) == MODE_COLOURS["TRACKING"]
     assert (words.position.x, words.position.y) == (40.0, 22.0)  # on the box
 
 
 def test_a_predicted_box_is_dashed():
     (box,) = annotated(row("OCCLUDED")).points
     assert box.type == LINE_LIST
-    assert rgb(box.outline_color) == COLOURS["OCCLUDED"]
+    assert rgb(box.outline_color) == MODE_COLOURS["OCCLUDED"]
     ends = points(box)
     # sides of 20 and 12 px in dashes and gaps of 4 px: 3 and 2 dashes
     assert ends[:6] == [(40, 24), (44, 24), (48, 24), (52, 24), (56, 24), (60, 24)]
@@ -63,7 +63,7 @@ def test_a_predicted_box_is_dashed():
     assert len(ends) == 2 * (3 + 2 + 3 + 2)
 
 
-@pytest.mark.parametrize("one", [row("LOST"), EstimateRow.without(2, STAMP, WAITING)])
+@pytest.mark.parametrize("one", [row("LOST"), EstimateRow.without(2, STAMP, WAITING_MODE)])
 def test_without_a_claim_nothing_is_drawn(one):
     message = annotated(one)
     assert not (message.points or message.texts)

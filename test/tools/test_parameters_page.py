@@ -5,7 +5,7 @@ import re
 
 from tools.parameters_page import parameters_page
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.trackers.registry import NODES, TRAFFIC, VARIANTS
+from vehicle_pf_tracker.trackers.registry import NODES, TRAFFIC_VARIANT, VARIANTS
 
 
 def test_the_document_names_every_parameter_of_every_variant():
@@ -31,7 +31,7 @@ def test_the_document_names_every_parameter_of_every_variant():
 
 def test_the_document_says_how_traffic_differs_from_every_node():
     _, every, *_, last = parameters_page().split("\n## ")
-    present = Configuration.of(TRAFFIC).specs()
+    present = Configuration.of(TRAFFIC_VARIANT).specs()
     for name, spec in present.items():
         row = f"| `{name}` | {str(spec.default).lower() if spec.kind is bool else spec.default} |"
         assert (row in last) or (row in every), name

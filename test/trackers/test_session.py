@@ -12,7 +12,7 @@ from vehicle_pf_tracker.core.clock import StampEvent
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.continuity import PATIENCE, StrayImageError
+from vehicle_pf_tracker.trackers.continuity import ODD_STAMP_PATIENCE, StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.papers.apf import ApfParameters
 from vehicle_pf_tracker.trackers.registry import VARIANTS
@@ -256,7 +256,7 @@ def test_stamps_that_never_agree_are_counted_by_images():
     feed(at_work, street, range(3))
     # A recording played backwards.
     answers = [believes(at_work, street, t, -t * DAY_NS) for t in range(3, 40)]
-    assert answers == [False] * PATIENCE + [True] * (37 - PATIENCE)
+    assert answers == [False] * ODD_STAMP_PATIENCE + [True] * (37 - ODD_STAMP_PATIENCE)
     assert at_work.events == [StampEvent.UNUSABLE.value]
     # A stamp that continues the old ones is believed at once.
     estimate = feed(at_work, street, [40])[0]

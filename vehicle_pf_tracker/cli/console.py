@@ -16,12 +16,12 @@ from vehicle_pf_tracker.core.addresses import without_passwords
 if TYPE_CHECKING:
     from vehicle_pf_tracker.following.processes import OnProgress
 
-PROGRAM = "vehicle-pf-tracker"
+PROGRAM_NAME = "vehicle-pf-tracker"
 """Name of the program, as it is typed."""
 # Exit statuses: the first two by custom; the last two as shells have them for a program that
 # SIGINT (2) or SIGPIPE (13) ended, 128 more than the signal's number.
 FAILED = 1
-USAGE = 2
+USAGE_STATUS = 2
 INTERRUPTED = 130
 PIPE_CLOSED = 141
 _WIDE = 200
@@ -36,7 +36,7 @@ class UsageError(Exception):
     """Error in the command line itself; the program ends with status 2."""
 
 
-def tell_error(sentence: str, program: str = PROGRAM) -> None:
+def tell_error(sentence: str, program: str = PROGRAM_NAME) -> None:
     """Print an error as one line on stderr."""
     words = " ".join(without_passwords(sentence).split())
     print(f"{program}: error: {words}", file=sys.stderr, flush=True)
@@ -44,7 +44,7 @@ def tell_error(sentence: str, program: str = PROGRAM) -> None:
 
 def tell_notice(sentence: str) -> None:
     """Print a notice as one line on stderr."""
-    print(f"{PROGRAM}: note: {without_passwords(sentence)}", file=sys.stderr, flush=True)
+    print(f"{PROGRAM_NAME}: note: {without_passwords(sentence)}", file=sys.stderr, flush=True)
 
 
 def tell_notices(sentences: Iterable[str]) -> None:

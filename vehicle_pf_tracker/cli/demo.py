@@ -14,13 +14,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import PROGRAM, tell_notice
+from vehicle_pf_tracker.cli.console import PROGRAM_NAME, tell_notice
 from vehicle_pf_tracker.cli.missing_modules import EVALUATION_MODULES
 from vehicle_pf_tracker.cli.requests import OverwriteOption, option
-from vehicle_pf_tracker.cli.run import SHEET
+from vehicle_pf_tracker.cli.run import SHEET_FILE
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.results.estimates import EstimateRow, read_estimates
-from vehicle_pf_tracker.results.run_folder import ESTIMATES
+from vehicle_pf_tracker.results.run_folder import ESTIMATES_FILE
 
 # Programs of Python, not names of executables: those need not be on the path.
 _VERB = "from vehicle_pf_tracker.cli.main import main; raise SystemExit(main())"
@@ -73,13 +73,13 @@ def run(request: Request) -> int:
         print(f"errors over time are in {scores / 'figures' / 'errors_recording.png'}")
     else:
         tell_notice("nothing is scored without the extra [evaluation]")
-    print(f"the video is {video}, and {folder / 'offline' / SHEET} has its key frames")
+    print(f"the video is {video}, and {folder / 'offline' / SHEET_FILE} has its key frames")
     return 0 if same else 1
 
 
 def _verb(*words: str) -> None:
     """Run a verb as a process of its own, and show what one would type."""
-    print(f"+ {PROGRAM} {' '.join(words)}", flush=True)
+    print(f"+ {PROGRAM_NAME} {' '.join(words)}", flush=True)
     status = subprocess.run([sys.executable, "-c", _VERB, *words], check=False).returncode
     if status:
         raise InputError(f"the demo ends here: {words[0]} ended with status {status}")
@@ -102,4 +102,4 @@ def _node() -> Iterator[None]:
 
 def _numbers(folder: Path) -> Sequence[EstimateRow]:
     """Return the estimates without the one column that depends on the machine's speed."""
-    return [replace(row, step_ms=None) for row in read_estimates(folder / ESTIMATES)]
+    return [replace(row, step_ms=None) for row in read_estimates(folder / ESTIMATES_FILE)]

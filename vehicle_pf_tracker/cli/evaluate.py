@@ -26,8 +26,8 @@ from vehicle_pf_tracker.cli.requests import (
     switch,
 )
 from vehicle_pf_tracker.cli.system_options import (
+    DEFAULT_SEEDS,
     FEW_SEEDS,
-    SEEDS,
     EvaluationRequest,
     chosen,
     runner_of,
@@ -107,15 +107,15 @@ def run_traffic(request: Request) -> int:
     from vehicle_pf_tracker.evaluation.traffic.case_run import MOTION_SOURCE
     from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
     from vehicle_pf_tracker.parameters.configuration import Configuration
-    from vehicle_pf_tracker.trackers.registry import TRAFFIC
+    from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT
 
     sequences = [read_sequence(Path(source)) for source in request.sources]
     known = {MOTION_SOURCE, *(name for sequence in sequences for name in sequence.detections)}
     only = request.detections
     sources = None if only is None else names_in(only, known, "a file of det/")
     cases = comparison.cases_of(sequences, sources)
-    assigned = parse_assignments(specs(TRAFFIC.parameters), request.assignments)
-    parameters = Configuration.of(TRAFFIC).updated(assigned).tracker
+    assigned = parse_assignments(specs(TRAFFIC_VARIANT.parameters), request.assignments)
+    parameters = Configuration.of(TRAFFIC_VARIANT).updated(assigned).tracker
     seeds = request.some_seeds(FEW_SEEDS)
     with (
         TrafficWorker(request.baselines_python) as worker,
@@ -157,7 +157,7 @@ def _run_grid(request: Request, sources: Sequence[str]) -> int:
     with console.stages("evaluate") as on_stage:
         recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)
     console.tell_notices(notes)
-    seeds = request.some_seeds(SEEDS)
+    seeds = request.some_seeds(DEFAULT_SEEDS)
     command = list(request.command)
     part = request.part or ALL_CELLS
     plan = Plan(dict(recordings), systems, seeds, command, request.max_diff, part, request.restart)

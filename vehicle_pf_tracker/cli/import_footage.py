@@ -11,7 +11,7 @@ from pathlib import Path
 from vehicle_pf_tracker.cli.console import counting, tell_notices
 from vehicle_pf_tracker.cli.requests import OverwriteOption, TruthOptions, option, positional
 from vehicle_pf_tracker.core.outputs import claimed
-from vehicle_pf_tracker.recordings.importing import FORMATS, import_recording
+from vehicle_pf_tracker.recordings.importing import IMPORT_FORMATS, import_recording
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +25,7 @@ class Request(OverwriteOption, TruthOptions):
     out: Path = positional(metavar="OUT", help="rosbag2 folder to write")
     fps: float | None = option(metavar="HZ", help="frame rate, instead of the one that SRC states")
     format: str | None = option(
-        choices=FORMATS,
+        choices=IMPORT_FORMATS,
         help="how images are stored (default: JPEG files as they are, videos as JPEG, PNG raw)",
     )  # fmt: skip
 

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.cli import console
 from vehicle_pf_tracker.cli.missing_modules import check_extra, remedy
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
-from vehicle_pf_tracker.core.addresses import HIDDEN, shown
+from vehicle_pf_tracker.core.addresses import HIDDEN_MARK, shown
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 
 VERBS: Mapping[str, tuple[str, str]] = {
@@ -50,7 +50,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return SIGNALS_STATUS + ended.number  # not reached unless the signal is blocked
 
 
-def exit_status(action: Callable[[], int], program: str = console.PROGRAM) -> int:
+def exit_status(action: Callable[[], int], program: str = console.PROGRAM_NAME) -> int:
     """Return the status of `action`, or print the error that ended it in one line."""
     try:
         status = action()
@@ -58,7 +58,7 @@ def exit_status(action: Callable[[], int], program: str = console.PROGRAM) -> in
     except (InputError, console.UsageError, MemoryError) as error:
         is_full = isinstance(error, MemoryError)
         console.tell_error("there is not enough memory" if is_full else str(error), program)
-        return console.USAGE if isinstance(error, console.UsageError) else console.FAILED
+        return console.USAGE_STATUS if isinstance(error, console.UsageError) else console.FAILED
     except ModuleNotFoundError as error:
         if (error.name or "").startswith(__package__.partition(".")[0]):
             raise  # a fault of ours, not something that is left to install
@@ -86,7 +86,7 @@ def _run(words: list[str]) -> int:
     try:
         args = make_parser(words).parse_args(words)
     except SystemExit as ended:  # argparse has said all there is to say
-        return ended.code if isinstance(ended.code, int) else console.USAGE
+        return ended.code if isinstance(ended.code, int) else console.USAGE_STATUS
     check_extra(args.verb)
     status: int = args.module.run(request_of(args.module.Request, args))
     return status
@@ -97,9 +97,9 @@ def _without_secrets(words: Sequence[str]) -> list[str]:
     hidden = [shown(word) for word in words]
     for index, word in enumerate(words):
         if word.startswith("--token="):
-            hidden[index] = f"--token={HIDDEN}"
+            hidden[index] = f"--token={HIDDEN_MARK}"
         elif index and words[index - 1] == "--token":
-            hidden[index] = HIDDEN
+            hidden[index] = HIDDEN_MARK
     return hidden
 
 
@@ -116,11 +116,13 @@ def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
             f"{', '.join(VERBS)}"
         )
     parser = argparse.ArgumentParser(
-        prog=console.PROGRAM,
+        prog=console.PROGRAM_NAME,
         description="Follow vehicles in traffic video through occlusions.",
         epilog="`vehicle-pf-tracker VERB --help` has the options of a verb.",
     )
-    parser.add_argument("--version", action="version", version=f"{console.PROGRAM} {__version__}")
+    parser.add_argument(
+        "--version", action="version", version=f"{console.PROGRAM_NAME} {__version__}"
+    )
     verbs = parser.add_subparsers(metavar="VERB", required=True)
     for name, (module_name, line) in VERBS.items():
         description = f"{line[0].upper()}{line[1:]}."
@@ -128,6 +130,6 @@ def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
         if words is None or name == asked:
             module = importlib.import_module(f"vehicle_pf_tracker.cli.{module_name}")
             add_options(verb, module.Request)
-            command = [console.PROGRAM, *_without_secrets(words or ())]
+            command = [console.PROGRAM_NAME, *_without_secrets(words or ())]
             verb.set_defaults(verb=name, module=module, command=command)
     return parser

@@ -26,7 +26,7 @@ from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.cli.source_lists import (
     NOT_DECISIVE,
-    PLACES,
+    OUTPUT_OPTIONS,
     SeveralSources,
     requests_by_name,
 )
@@ -41,8 +41,8 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.recordings.recording_names import is_url
 from vehicle_pf_tracker.recordings.url_copies import fetched
 from vehicle_pf_tracker.results.output_files import make_folder, write_csv, write_json
-from vehicle_pf_tracker.results.run_folder import RUN
-from vehicle_pf_tracker.results.source_table import SOURCE, SourceTable, read_table
+from vehicle_pf_tracker.results.run_folder import RUN_FILE
+from vehicle_pf_tracker.results.source_table import SOURCE_FILE, SourceTable, read_table
 from vehicle_pf_tracker.trackers.registry import Variant
 
 _TABLE = "sources.csv"
@@ -191,7 +191,7 @@ def follow_job(job: Job) -> Outcome:
         folder = Path(scratch, "results")
         places = {
             name: folder / Path(place).name
-            for name in PLACES
+            for name in OUTPUT_OPTIONS
             if (place := getattr(job.request, name, None)) is not None
         }
         request = _with(job.request, output=folder, **places)
@@ -202,7 +202,7 @@ def follow_job(job: Job) -> Outcome:
         sentences = [
             line.partition(": ")[2].partition(": ")[2]
             for line in told.getvalue().splitlines()
-            if line.startswith(f"{console.PROGRAM}: ")
+            if line.startswith(f"{console.PROGRAM_NAME}: ")
         ]
         files = {
             path.relative_to(folder).as_posix(): path.read_bytes()
@@ -230,7 +230,7 @@ def _followed(follow: Follow, request: SeveralSources, scratch: Path) -> int:
     except Exception as error:  # a fault of ours must not cost the other sources
         raise InputError(f"it ended with an internal error: {error!r}") from error
     assert request.output is not None
-    for path in request.output.rglob(RUN):  # not the copy, which is gone
+    for path in request.output.rglob(RUN_FILE):  # not the copy, which is gone
         write_json(path, {**json.loads(path.read_text()), "recording": shown(source)})
     return status
 
@@ -242,13 +242,13 @@ def _store(job: Job, outcome: Outcome, folder: Path) -> None:
             (partial / name).parent.mkdir(parents=True, exist_ok=True)
             (partial / name).write_bytes(content)
         facts = {"source": shown(job.request.source), "key": job.key, "reason": outcome.reason}
-        write_json(partial / SOURCE, facts)
+        write_json(partial / SOURCE_FILE, facts)
 
 
 def _is_done(job: Job, folder: Path) -> bool:
     """Tell whether the folder has whole results of the job; a failed one is tried again."""
     try:
-        stored = read_document(folder / SOURCE)
+        stored = read_document(folder / SOURCE_FILE)
     except InputError:  # it is not there, or nothing that can be read
         return False
     return bool(stored.get("key") == job.key and not stored.get("reason"))

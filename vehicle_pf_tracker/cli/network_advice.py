@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.detection.parameters import MOTION
+from vehicle_pf_tracker.detection.parameters import MOTION_DETECTOR
 from vehicle_pf_tracker.evaluation.evaluation_folder import read_document
-from vehicle_pf_tracker.following.known_networks import NETWORKS
-from vehicle_pf_tracker.results.run_folder import RUN
+from vehicle_pf_tracker.following.known_networks import KNOWN_NETWORKS
+from vehicle_pf_tracker.results.run_folder import RUN_FILE
 from vehicle_pf_tracker.trackers.traffic.session import DetectionTotals
 
 _AMBIGUOUS = 0.35
@@ -68,10 +68,10 @@ def _is_ambiguous(found: DetectionTotals) -> bool:
 
 def _found_in(folder: Path) -> DetectionTotals:
     try:
-        document = read_document(folder / RUN)
+        document = read_document(folder / RUN_FILE)
     except InputError:  # it failed, and that was said
         return DetectionTotals()
-    if document.get("detector") != MOTION:
+    if document.get("detector") != MOTION_DETECTOR:
         return DetectionTotals()
     return DetectionTotals(
         images=document["images_with_detections"],
@@ -81,7 +81,7 @@ def _found_in(folder: Path) -> DetectionTotals:
 
 def _advice(command: Sequence[str], folder: Path) -> str:
     """Return the advice, with the line that repeats a command with a network."""
-    network = next(iter(NETWORKS))
+    network = next(iter(KNOWN_NETWORKS))
     words = [word for word in command if not word.startswith(f"{_OWN}=")]
     if _OWN in words:
         at = words.index(_OWN)

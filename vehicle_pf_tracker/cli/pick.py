@@ -12,7 +12,13 @@ import yaml
 
 from vehicle_pf_tracker.cli.console import counting
 from vehicle_pf_tracker.cli.pick_page import ask
-from vehicle_pf_tracker.cli.picked_shapes import PAIRS, TARGETS, USES, checked, words_of
+from vehicle_pf_tracker.cli.picked_shapes import (
+    PAIRS_SECTION,
+    SECTION_USES,
+    TARGETS_SECTION,
+    checked,
+    words_of,
+)
 from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, option, positive, switch
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.parameters.files import read_yaml_file
@@ -61,12 +67,14 @@ def _draw(request: Request, source: ImageSource, output: Path | None) -> int:
     if request.edit is not None:
         where = f"the file {request.edit}"
         before = checked(read_yaml_file(request.edit, "file"), where)
-    drawn = ask(source, (PAIRS,) if request.road else tuple(USES), request.frame, before)
+    drawn = ask(
+        source, (PAIRS_SECTION,) if request.road else tuple(SECTION_USES), request.frame, before
+    )
     text = yaml.safe_dump(drawn, sort_keys=False, default_flow_style=None, allow_unicode=True)
     if output is None:
-        print(words_of(drawn) if set(drawn) <= {TARGETS, PAIRS} else text)
+        print(words_of(drawn) if set(drawn) <= {TARGETS_SECTION, PAIRS_SECTION} else text)
         return 0
     write_text(output, text)
-    uses = " and ".join(dict.fromkeys(f"{USES[key]} {output}" for key in drawn))
+    uses = " and ".join(dict.fromkeys(f"{SECTION_USES[key]} {output}" for key in drawn))
     print(f"what was drawn is in {output}; use {uses}")
     return 0

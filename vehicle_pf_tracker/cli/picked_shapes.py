@@ -19,15 +19,15 @@ Document: TypeAlias = dict[str, Any]
 """Drawn shapes by section, as in a file of `pick`."""
 
 PAIR_FORM = "{pixel: [u, v], road: [x, y]}, …"
-"""Form of the entries of `PAIRS`, for errors."""
-TARGETS = "targets"
+"""Form of the entries of `PAIRS_SECTION`, for errors."""
+TARGETS_SECTION = "targets"
 """Section of the boxes that vehicles are in at first."""
-PAIRS = "pairs"
+PAIRS_SECTION = "pairs"
 """Section of pixels with the points of the road that they show."""
-USES: Mapping[str, str] = {
-    TARGETS: "run --targets",
+SECTION_USES: Mapping[str, str] = {
+    TARGETS_SECTION: "run --targets",
     **dict.fromkeys(("lines", "zones", "roi"), "traffic --lines"),
-    PAIRS: "road calibrate --pairs",
+    PAIRS_SECTION: "road calibrate --pairs",
 }
 """Verb and option that read a section of the file."""
 
@@ -48,13 +48,16 @@ def checked(document: Any, where: str) -> Document:
     InputError
         If one cannot be used.
     """
-    if not isinstance(document, dict) or not set(document) <= set(USES):
-        raise InputError(f"{where} has other sections than {', '.join(USES)}")
+    if not isinstance(document, dict) or not set(document) <= set(SECTION_USES):
+        raise InputError(f"{where} has other sections than {', '.join(SECTION_USES)}")
     found = {key: body for key, body in document.items() if body}
-    for key, form, read in ((TARGETS, TARGET_FORM, target_of), (PAIRS, PAIR_FORM, pair_of)):
+    for key, form, read in (
+        (TARGETS_SECTION, TARGET_FORM, target_of),
+        (PAIRS_SECTION, PAIR_FORM, pair_of),
+    ):
         if key in found:
             list_in(found, where, key, form, read)
-    plan = {key: body for key, body in found.items() if key not in {TARGETS, PAIRS}}
+    plan = {key: body for key, body in found.items() if key not in {TARGETS_SECTION, PAIRS_SECTION}}
     if plan:
         try:
             parse_counting_plan(plan)
@@ -67,7 +70,7 @@ def words_of(document: Document) -> str:
     """Write targets and pairs as words of a command."""
     words = [
         f"--target {one.name}@{one.frame}:{one.box}"
-        for one in map(target_of, document.get(TARGETS, ()))
+        for one in map(target_of, document.get(TARGETS_SECTION, ()))
     ]
-    pairs = [f"--pair {format_pairs((pair_of(one),))}" for one in document.get(PAIRS, ())]
+    pairs = [f"--pair {format_pairs((pair_of(one),))}" for one in document.get(PAIRS_SECTION, ())]
     return " ".join([*words, *pairs])

@@ -13,7 +13,7 @@ import numpy as np
 
 from vehicle_pf_tracker.cli.console import counting, tell_notices
 from vehicle_pf_tracker.cli.pick_page import ask
-from vehicle_pf_tracker.cli.picked_shapes import PAIR_FORM, PAIRS, pair_of
+from vehicle_pf_tracker.cli.picked_shapes import PAIR_FORM, PAIRS_SECTION, pair_of
 from vehicle_pf_tracker.cli.requests import (
     OverwriteOption,
     SourceOptions,
@@ -83,7 +83,7 @@ def run(request: Request) -> int:
     """Fit, print the residuals, and write parameters and picture."""
     pairs = parse_pairs(";".join(request.pairs))
     if request.file:
-        pairs += tuple(read_list(request.file, PAIRS, PAIR_FORM, pair_of))
+        pairs += tuple(read_list(request.file, PAIRS_SECTION, PAIR_FORM, pair_of))
     source = request.open_source()
     inputs = (request.source, request.file)
     with claimed((request.grid, request.output), inputs, overwrite=request.overwrite):
@@ -94,8 +94,8 @@ def _calibrate(request: Request, source: ImageSource, pairs: tuple[Pair, ...]) -
     with counting("read") as progress:
         frame = frame_at(source, request.frame, progress)
     if not pairs:
-        drawn = ask(source, [PAIRS], request.frame)
-        pairs = tuple(map(pair_of, drawn[PAIRS]))
+        drawn = ask(source, [PAIRS_SECTION], request.frame)
+        pairs = tuple(map(pair_of, drawn[PAIRS_SECTION]))
     session = _session(request, pairs)
     road = session.road
     plane = road.plane(road.lens, None)

@@ -10,7 +10,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle_pf_tracker.cli.console import PROGRAM, UsageError, counting, print_rows, tell_notices
+from vehicle_pf_tracker.cli.console import (
+    PROGRAM_NAME,
+    UsageError,
+    counting,
+    print_rows,
+    tell_notices,
+)
 from vehicle_pf_tracker.cli.many_sources import follow_each
 from vehicle_pf_tracker.cli.requests import MaxDiffOption, NameChoices, TruthOptions, option, switch
 from vehicle_pf_tracker.cli.serving import served
@@ -22,7 +28,7 @@ from vehicle_pf_tracker.cli.tracking_options import chosen
 from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.association import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.evaluation.columns import COLUMNS, number_text
+from vehicle_pf_tracker.evaluation.columns import METRIC_COLUMNS, number_text
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.following.driver import OfflineTracker, follow
@@ -30,17 +36,23 @@ from vehicle_pf_tracker.recordings.source import ImageSource, open_source
 from vehicle_pf_tracker.recordings.truth_files import Beside
 from vehicle_pf_tracker.results.estimates import EstimateRow, summary, write_tracks
 from vehicle_pf_tracker.results.output_files import write_json
-from vehicle_pf_tracker.results.run_folder import ESTIMATES, METRICS, RUN, describe_run, write_run
+from vehicle_pf_tracker.results.run_folder import (
+    ESTIMATES_FILE,
+    METRICS_FILE,
+    RUN_FILE,
+    describe_run,
+    write_run,
+)
 from vehicle_pf_tracker.results.trajectories import trajectory_files, write_trajectories
 from vehicle_pf_tracker.showing.estimates_recording import run_recording
 from vehicle_pf_tracker.showing.pictures import Pictures
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 
-SHEET = "summary.png"
+SHEET_FILE = "summary.png"
 """Picture of the key frames."""
 TRACKS = "tracks.csv"
-"""Table of several targets, instead of `ESTIMATES`."""
-PRODUCTS = (ESTIMATES, METRICS, RUN, SHEET, TRACKS)
+"""Table of several targets, instead of `ESTIMATES_FILE`."""
+PRODUCTS = (ESTIMATES_FILE, METRICS_FILE, RUN_FILE, SHEET_FILE, TRACKS)
 """Files of a run, which `--overwrite` replaces: no others in the folder are touched."""
 
 
@@ -101,7 +113,7 @@ def run_one(request: Request) -> int:
 def _track(
     request: Request, variant: Variant, source: ImageSource, folder: Path, stop: Stop
 ) -> int:
-    sheet = folder / SHEET
+    sheet = folder / SHEET_FILE
     pictures = Pictures(request.video, particles=request.particles, sheet=sheet)
     trackers, rows = _follow(request, variant, source, stop, pictures)
     ended = cut_short(stop, source, max(map(len, rows.values())))
@@ -130,7 +142,7 @@ def _track(
         size = trackers[name].session.size
         print(f"{name + ': ' if len(rows) > 1 else ''}{summary(of_target, size)}")
     has_sheet = sheet.exists()
-    print(f"results are in {folder}{f'; {SHEET} shows the key frames' if has_sheet else ''}")
+    print(f"results are in {folder}{f'; {SHEET_FILE} shows the key frames' if has_sheet else ''}")
     if pictures.has_video:
         print(f"the video is {request.video}")
     if request.recording and not side.failed(_recording_of(request)):
@@ -187,7 +199,7 @@ def _trackers(
             tell_notices(source.notices)  # they say which truth was seen and not read
             raise UsageError(
                 f"{request.source} has no truth to start on; draw a box around the vehicle with "
-                f"`{PROGRAM} pick {request.source}`, or give it with --target x,y,w,h"
+                f"`{PROGRAM_NAME} pick {request.source}`, or give it with --target x,y,w,h"
             )
     return {
         name: OfflineTracker(
@@ -208,13 +220,13 @@ def _score(
     """Write and print the metrics of the run of one target, where there is truth."""
     metrics = measure(score_frames(rows, source.truth(), request.max_diff))
     if metrics.frames_scored:
-        write_json(folder / METRICS, metrics.to_json())
+        write_json(folder / METRICS_FILE, metrics.to_json())
         print_rows(["", request.variant], run_rows(metrics))
 
 
 def run_rows(metrics: Metrics) -> list[list[str]]:
     """Return a row for each metric that the run has: its title, and its value."""
-    values = [(column, column.value(metrics)) for column in COLUMNS]
+    values = [(column, column.value(metrics)) for column in METRIC_COLUMNS]
     return [
         [column.title, number_text(value, column.decimals)]
         for column, value in values

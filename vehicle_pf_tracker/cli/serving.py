@@ -10,8 +10,8 @@ from contextlib import closing, contextmanager
 
 from vehicle_pf_tracker.cli.console import tell_notices
 from vehicle_pf_tracker.cli.tracking_options import ServeAddress
-from vehicle_pf_tracker.showing.live_page import PAGE, LivePage
-from vehicle_pf_tracker.showing.page_server import LOCAL
+from vehicle_pf_tracker.showing.live_page import PAGE_NAME, LivePage
+from vehicle_pf_tracker.showing.page_server import LOCAL_ADDRESS
 from vehicle_pf_tracker.showing.side_products import SideProducts
 
 
@@ -25,14 +25,14 @@ def served(
     """
     page = None
     if address is not None:
-        with side.attempt(PAGE):
+        with side.attempt(PAGE_NAME):
             page = LivePage(address.port, address.host, token or "")
     if page is None or address is None:
         tell_notices(side.notices)
         yield None
         return
     where = "on this machine"
-    if address.host != LOCAL:
+    if address.host != LOCAL_ADDRESS:
         where = "of any machine that reaches this one; it is not encrypted, so put a proxy with TLS"
         where += " before it where others listen"
     print(f"open {page.url} in a browser {where}", flush=True)

@@ -32,7 +32,7 @@ from vehicle_pf_tracker.recordings.recording_names import is_url
 
 LIST = ".txt"
 """Ending of a list; no source has it."""
-PLACES = ("video", "recording", "tum")
+OUTPUT_OPTIONS = ("video", "recording", "tum")
 """Options that name an output: with several sources, a name in each one's folder."""
 NOT_DECISIVE = {
     "command",
@@ -107,7 +107,9 @@ def _absolute(request: RequestT) -> RequestT:
     """Name files by whole paths, as workers may stand in other folders."""
     if request.source.isdecimal() and not Path(request.source).exists():
         raise UsageError(f"the camera {request.source} has no end; give it a command of its own")
-    names = [one.name for one in fields(request) if one.name not in {*NOT_DECISIVE, *PLACES}]
+    names = [
+        one.name for one in fields(request) if one.name not in {*NOT_DECISIVE, *OUTPUT_OPTIONS}
+    ]
     values = {"source": request.source, **{name: getattr(request, name) for name in names}}
     files = {name: value for name, value in values.items() if _is_file_name(name, value)}
     return replace(request, **{name: type(at)(Path(at).absolute()) for name, at in files.items()})

@@ -18,7 +18,7 @@ from vehicle_pf_tracker.recordings.writer import RecordingWriter
 from vehicle_pf_tracker.results.output_files import write_csv
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.scenes.scene import Scene
-from vehicle_pf_tracker.showing.video_file import SUFFIX, video_writer
+from vehicle_pf_tracker.showing.video_file import VIDEO_SUFFIX, video_writer
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +59,7 @@ def run(request: Request) -> int:
         f"{request.out}: {scene.frame_count} frames of {scene.width}x{scene.height} px "
         f"at {scene.frame_rate:g} frames/s"
     )
-    if request.out.suffix != SUFFIX:
+    if request.out.suffix != VIDEO_SUFFIX:
         with claimed([request.out], [], overwrite=request.overwrite):
             record_scene(scene, request.out, overwrite=request.overwrite)
         print(f"{facts}, all with truth")

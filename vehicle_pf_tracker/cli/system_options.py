@@ -22,7 +22,7 @@ from vehicle_pf_tracker.cli.requests import (
 from vehicle_pf_tracker.cli.tracking_options import configure
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines import BASELINE_MODELS, Baseline, unknown_baseline
-from vehicle_pf_tracker.evaluation.systems import BASELINE, System
+from vehicle_pf_tracker.evaluation.systems import BASELINE_PREFIX, System
 from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
 from vehicle_pf_tracker.parameters.table import (
     ParameterSpec,
@@ -36,7 +36,7 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant, find_variant
 if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.grid.running import Runner
 
-SEEDS = 5
+DEFAULT_SEEDS = 5
 """Runs of each system: enough to see a spread. An interval of the mean needs more."""
 FEW_SEEDS = 1
 """Runs of each system where the cases vary more than the seeds of one case do."""
@@ -101,15 +101,15 @@ class EvaluationRequest(WorkersOption):
     )  # fmt: skip
     seeds: int | None = option(
         type=positive, metavar="N",
-        help=f"runs of each variant that draws random numbers (default: {SEEDS}, or {FEW_SEEDS} "
-        "with --traffic)",
+        help=f"runs of each variant that draws random numbers (default: {DEFAULT_SEEDS}, or "
+        f"{FEW_SEEDS} with --traffic)",
     )  # fmt: skip
     first_seed: int = option(type=natural, default=0, metavar="S", help="the first of the seeds")
     variants: str = option(
         default=ALL, metavar="NAME,…",
-        help=f"what to compare: {', '.join(VARIANTS)}, or a plug-in; {BASELINE}NAME of OpenCV's "
-        f"{', '.join(BASELINE_MODELS)}; {ALL} (default) for all variants, {ALL_BASELINES} for "
-        f"{', '.join(_BASELINES_WITHOUT_MODELS)}",
+        help=f"what to compare: {', '.join(VARIANTS)}, or a plug-in; {BASELINE_PREFIX}NAME of "
+        f"OpenCV's {', '.join(BASELINE_MODELS)}; {ALL} (default) for all variants, "
+        f"{ALL_BASELINES} for {', '.join(_BASELINES_WITHOUT_MODELS)}",
     )  # fmt: skip
     params: Sequence[str] = option(
         action="append", default=[], metavar="[[VARIANT@]LABEL=]FILE",
@@ -146,7 +146,7 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
         If an option is malformed.
     """
     words = _words(request.variants)
-    variants = [find_variant(word) for word in words if not word.startswith(BASELINE)]
+    variants = [find_variant(word) for word in words if not word.startswith(BASELINE_PREFIX)]
     everywhere, sets = parameter_sets(request.params, request.assignments)
     known = {name for variant in variants for name in settable(variant)}
     for name in (word.partition("=")[0] for word in everywhere):
@@ -155,15 +155,17 @@ def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
     systems, notes = _with_sets(variants, everywhere, sets)
     models = _models(request.baseline_model)
     baselines = [
-        _baseline_system(word.removeprefix(BASELINE), request.baselines_python, models, notes)
+        _baseline_system(
+            word.removeprefix(BASELINE_PREFIX), request.baselines_python, models, notes
+        )
         for word in words
-        if word.startswith(BASELINE)
+        if word.startswith(BASELINE_PREFIX)
     ]
     return [*systems, *baselines], notes
 
 
 def _words(text: str) -> list[str]:
-    baselines = [f"{BASELINE}{name}" for name in _BASELINES_WITHOUT_MODELS]
+    baselines = [f"{BASELINE_PREFIX}{name}" for name in _BASELINES_WITHOUT_MODELS]
     several = {ALL: list(VARIANTS), ALL_BASELINES: baselines, "": []}
     words = [one for word in text.split(",") for one in several.get(word, [word])]
     if not words:
@@ -253,6 +255,6 @@ def _baseline_system(
         with Baseline(name, python, {key: Path(path) for key, path in own.items()}) as baseline:
             build = baseline.versions["opencv"]
     except InputError as error:
-        notes.append(f"{BASELINE}{name} cannot run: {error}")
+        notes.append(f"{BASELINE_PREFIX}{name} cannot run: {error}")
     interpreter = "" if python is None else str(python.absolute())
     return System.of_baseline(name, interpreter, tuple(sorted(own.items())), build)

@@ -23,7 +23,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration, SessionParameters
 from vehicle_pf_tracker.parameters.files import read_yaml
 from vehicle_pf_tracker.parameters.table import Value, parse_assignments, specs, unknown_name
-from vehicle_pf_tracker.showing.page_server import LOCAL
+from vehicle_pf_tracker.showing.page_server import LOCAL_ADDRESS
 from vehicle_pf_tracker.trackers.registry import VARIANTS, Variant
 
 # A node's parameter file may be given to `run`, which passes over what is ROS's alone.
@@ -116,7 +116,7 @@ class ServeAddress:
     """
 
     port: int = 0
-    host: str = LOCAL
+    host: str = LOCAL_ADDRESS
 
     @classmethod
     def parse(cls, text: str) -> ServeAddress:
@@ -130,7 +130,7 @@ class ServeAddress:
         host, _, port = text.rpartition(":")
         if not (port.isascii() and port.isdecimal() and int(port) <= _LAST_PORT):
             raise InputError(f"{text!r} is not [HOST:]PORT, with a port from 0 to {_LAST_PORT}")
-        return cls(int(port), host.strip("[]") or LOCAL)
+        return cls(int(port), host.strip("[]") or LOCAL_ADDRESS)
 
 
 def parse_token(text: str) -> str:

@@ -26,10 +26,15 @@ from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.counting.zone_occupancy import USUAL_INTERVAL_S
-from vehicle_pf_tracker.detection.parameters import MODEL, MOTION, NONE, TOPIC
+from vehicle_pf_tracker.detection.parameters import (
+    MODEL_DETECTOR,
+    MOTION_DETECTOR,
+    NO_DETECTOR,
+    TOPIC_DETECTOR,
+)
 from vehicle_pf_tracker.following.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.following.detection_file import DetectionFile
-from vehicle_pf_tracker.following.known_networks import NETWORKS
+from vehicle_pf_tracker.following.known_networks import KNOWN_NETWORKS
 from vehicle_pf_tracker.following.model_files import model_file
 from vehicle_pf_tracker.following.paced_detector import call
 from vehicle_pf_tracker.following.traffic_following import TrafficRun
@@ -37,19 +42,19 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.recordings.source import ImageSource
 from vehicle_pf_tracker.results.output_files import make_folder, write_json
-from vehicle_pf_tracker.results.run_folder import RUN, describe
+from vehicle_pf_tracker.results.run_folder import RUN_FILE, describe
 from vehicle_pf_tracker.results.traffic_results import (
-    COUNTS,
+    COUNTS_FILE,
     MOT_TRACKS,
-    TRACKS,
+    TRACKS_FILE,
     ZONES,
     track_files,
 )
 from vehicle_pf_tracker.showing.pictures import Pictures
-from vehicle_pf_tracker.showing.traffic_pictures import HEAT, PATHS, TrafficPictures
-from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.showing.traffic_pictures import HEAT_FILE, PATHS_FILE, TrafficPictures
+from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT
 
-PRODUCTS = (TRACKS, MOT_TRACKS, COUNTS, ZONES, RUN, PATHS, HEAT)
+PRODUCTS = (TRACKS_FILE, MOT_TRACKS, COUNTS_FILE, ZONES, RUN_FILE, PATHS_FILE, HEAT_FILE)
 """Files of a run, which `--overwrite` replaces: no others in the folder are touched."""
 
 
@@ -67,14 +72,14 @@ class Request(SeveralSources):
         help="detections as MOTChallenge has them, det.txt, instead of a detector",
     )  # fmt: skip
     detector: str | None = option(
-        choices=(MOTION, MODEL, NONE),
+        choices=(MOTION_DETECTOR, MODEL_DETECTOR, NO_DETECTOR),
         help="find what moves before a standing camera (the default), use a network of yours, or "
         "follow only the vehicles given with --target",
     )  # fmt: skip
     model: str | None = option(
         metavar="FILE",
         help="a network, YOLOX, YOLOv8 or SSD: an .onnx file, its URL, or one of the names "
-        f"{', '.join(NETWORKS)}, which are fetched once from their makers",
+        f"{', '.join(KNOWN_NETWORKS)}, which are fetched once from their makers",
     )
     classes: str | None = option(
         metavar="NAMES",
@@ -96,7 +101,7 @@ def run(request: Request) -> int:
     """Follow all vehicles of the source, or of each of several, and print a summary."""
     if not request.is_of_several:
         return run_one(request)
-    return follow_each(request, TRAFFIC, run_one, _configuration, advice_over_sources)
+    return follow_each(request, TRAFFIC_VARIANT, run_one, _configuration, advice_over_sources)
 
 
 def run_one(request: Request) -> int:
@@ -116,13 +121,13 @@ def run_one(request: Request) -> int:
         notices = [*source.notices, *tracking.notices, *pictures.side.notices, *ended]
         tell_notices(notices)
         document = _document(request, configuration, tracking, source.image_topic, notices)
-        write_json(folder / RUN, document)
+        write_json(folder / RUN_FILE, document)
     sentences = tracking.sentences(document["detector"])
-    if document["detector"] == MOTION:
+    if document["detector"] == MOTION_DETECTOR:
         sentences += network_advice(request.command, folder, tracking.session.found)
     for sentence in sentences:
         print(sentence)
-    print(f"results are in {folder}{f'; {PATHS} shows all paths' if has_paths else ''}")
+    print(f"results are in {folder}{f'; {PATHS_FILE} shows all paths' if has_paths else ''}")
     if pictures.has_video:
         print(f"the video is {request.video}")
     return stop.ended(stop.status if ended else int(bool(pictures.side.notices)))
@@ -131,14 +136,16 @@ def run_one(request: Request) -> int:
 def _tracking(request: Request, configuration: Configuration, stop: Stop) -> TrafficRun:
     """Make the run, and check all that the options name before the first frame is read."""
     parameters = configuration.tracker
-    if parameters.detector.kind == NONE and not (request.detections or request.given_targets()):
+    if parameters.detector.kind == NO_DETECTOR and not (
+        request.detections or request.given_targets()
+    ):
         raise UsageError(
             "without a detector nothing is followed; give vehicles with --target x,y,w,h, or "
             "--detections FILE"
         )
     detections = DetectionFile(request.detections) if request.detections else None
     # A network that does not end after a signal is left, with what was tracked.
-    run_it = stop.leaving if parameters.detector.kind == MODEL else call
+    run_it = stop.leaving if parameters.detector.kind == MODEL_DETECTOR else call
     with shown_progress() as show:
         both = session_and_counter(configuration, run_it, show)
     return TrafficRun(*both, detections, request.interval)
@@ -181,7 +188,7 @@ def _document(
     """Return the content of `run.json`; `topic` is that of the images."""
     kind = configuration.tracker.detector.kind
     facts = {
-        "variant": TRAFFIC.name,
+        "variant": TRAFFIC_VARIANT.name,
         "seed": tracking.session.tracker.seed,
         "parameters": {**to_mapping(configuration.tracker), **to_mapping(configuration.session)},
         "detector": str(request.detections or kind),
@@ -190,7 +197,7 @@ def _document(
         "summary": tracking.summary.to_json(),
     }
     document = describe(request.command, request.source, topic, notices, **facts)
-    if kind == MODEL:
+    if kind == MODEL_DETECTOR:
         document["versions"]["onnxruntime"] = metadata.version("onnxruntime")
         document["model_sha256"] = model_file(configuration.tracker.detector.model)[1]
     return document
@@ -198,14 +205,16 @@ def _document(
 
 def _configuration(request: Request) -> Configuration:
     """Return the parameters; the options of the detector go before files and ``--set``."""
-    configuration = chosen(TRAFFIC, request)
+    configuration = chosen(TRAFFIC_VARIANT, request)
     if configuration.session.target.box is not None:
         raise InputError("target.x to target.height are for one vehicle; give --target x,y,w,h")
     if request.detections and (request.detector or request.model):
         raise UsageError("give either --detections, or --detector and --model")
-    if request.model and request.detector not in {None, MODEL}:
+    if request.model and request.detector not in {None, MODEL_DETECTOR}:
         raise UsageError(f"--model is not used by --detector {request.detector}; leave one out")
-    kind = NONE if request.detections else MODEL if request.model else request.detector
+    kind = (
+        NO_DETECTOR if request.detections else MODEL_DETECTOR if request.model else request.detector
+    )
     given = {
         "lines": str(request.lines) if request.lines else None,
         "detector.kind": kind,
@@ -215,9 +224,9 @@ def _configuration(request: Request) -> Configuration:
     }
     changes = {name: value for name, value in given.items() if value is not None}
     configuration = configuration.updated(changes)
-    has_network = configuration.tracker.detector.kind == MODEL
+    has_network = configuration.tracker.detector.kind == MODEL_DETECTOR
     if not has_network and not (request.classes is None and request.conf is None):
         raise UsageError("--classes and --conf are for a network; give it with --model")
-    if configuration.tracker.detector.kind == TOPIC:
+    if configuration.tracker.detector.kind == TOPIC_DETECTOR:
         raise InputError("detector.kind topic is for nodes; offline, give --detections FILE")
     return configuration

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import (
-    PROGRAM,
+    PROGRAM_NAME,
     counting,
     print_rows,
     stages,
@@ -152,7 +152,9 @@ def _tune(
         )
     best = study.best_trial
     names = ", ".join(source.name for source in what.sources)
-    title = f"{variant}: tuned by `{PROGRAM} tune` on {names}; {what.objective} {best.value:.3f}."
+    title = (
+        f"{variant}: tuned by `{PROGRAM_NAME} tune` on {names}; {what.objective} {best.value:.3f}."
+    )
     values = configuration.updated(best.params).to_mapping()
     write_text(folder / BEST, to_yaml(configuration.specs(), values, title))
     first = "no" if trials[0].value is None else f"{trials[0].value:.3f}"
@@ -163,7 +165,7 @@ def _tune(
     if request.held_out:
         return _judge(request, what, best.params, recordings)
     print(
-        f"check them on recordings that the search has not seen: --held-out REC, or {PROGRAM} "
+        f"check them on recordings that the search has not seen: --held-out REC, or {PROGRAM_NAME} "
         f"evaluate REC --variants {variant} --params {folder / BEST} -o DIR"
     )
     return 0

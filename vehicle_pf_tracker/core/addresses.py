@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 from typing import Any
 from urllib.parse import unquote
 
-HIDDEN = "***"
+HIDDEN_MARK = "***"
 _SCHEME = r"[A-Za-z][A-Za-z0-9+.-]+:/{1,2}"  # a path has one of the two slashes
 _USERINFO = re.compile(
     # Up to the last @ before the path; a password may have another @ in it. Or one that has a
@@ -30,13 +30,13 @@ _ADDRESS = re.compile(rf"{_SCHEME}\S+")
 
 def without_passwords(text: str) -> str:
     """Replace the userinfo, and values called password or alike, of the addresses in a text."""
-    hidden = _USERINFO.sub(rf"\1{HIDDEN}@", text)
-    return _ADDRESS.sub(lambda found: _SECRET.sub(rf"\1{HIDDEN}", found[0]), hidden)
+    hidden = _USERINFO.sub(rf"\1{HIDDEN_MARK}@", text)
+    return _ADDRESS.sub(lambda found: _SECRET.sub(rf"\1{HIDDEN_MARK}", found[0]), hidden)
 
 
 def shown(source: object) -> str:
     """Return a source, which is a path or one address as a whole, as it may be shown."""
-    return without_passwords(_WHOLE_USERINFO.sub(rf"\1{HIDDEN}@", str(source)))
+    return without_passwords(_WHOLE_USERINFO.sub(rf"\1{HIDDEN_MARK}@", str(source)))
 
 
 def shown_values(document: Any) -> Any:

@@ -31,7 +31,7 @@ _PROMISING = 4
 """Detections of a track that was never confirmed by which it may have been a vehicle: by chance
 false alarms follow each other twice or three times."""
 
-CONFIRMED = (TrackMode.TRACKING, TrackMode.OCCLUDED)
+COUNTED_MODES = (TrackMode.TRACKING, TrackMode.OCCLUDED)
 """Modes of vehicles that count."""
 
 
@@ -290,7 +290,7 @@ class Counter:
         vehicle.last_ns = stamp_ns
         vehicle.label = estimate.label
         vehicle.life.add(foot, is_detected=not math.isnan(estimate.score))
-        vehicle.is_confirmed = vehicle.is_confirmed or estimate.mode in CONFIRMED
+        vehicle.is_confirmed = vehicle.is_confirmed or estimate.mode in COUNTED_MODES
         vehicle.waiting += _crossings(passages, vehicle.path, estimate)
         # 4. Only confirmed vehicles count; then also what they passed before.
         if not vehicle.is_confirmed:

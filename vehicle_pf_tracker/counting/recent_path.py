@@ -13,7 +13,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Position
 from vehicle_pf_tracker.counting.foot_point import FootPoint
-from vehicle_pf_tracker.road.motion import KMH
+from vehicle_pf_tracker.road.motion import KMH_PER_MS
 from vehicle_pf_tracker.road.plane import RoadPlane
 
 _STEADY_NS = 500_000_000
@@ -85,7 +85,7 @@ class RecentPath:
         if any(self._plane.objection(self._plane.ideal(point)) for point in points):
             return None
         speed = _speed(seconds, self._plane.to_road(points))
-        return None if speed is None else speed * KMH
+        return None if speed is None else speed * KMH_PER_MS
 
     def scatter(self, normal: Position) -> float:
         """Return the standard deviation along a unit vector around a steady drive, px.

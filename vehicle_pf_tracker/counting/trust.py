@@ -20,7 +20,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.counting.count_signs import Sign
 
-HELD = 0.9
+HELD_SHARE = 0.9
 """Share of lines whose interval is to hold the true count: a choice, which users read as "90 %"."""
 _MASS = 0.93
 """Probability in an interval: with .93 those of cameras that had no part in the fit hold 86 %."""

@@ -21,7 +21,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas
-from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED, MotionThresholds
+from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED_THRESHOLDS, MotionThresholds
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
 
@@ -65,7 +65,7 @@ _SIZES_NEEDED, MEMORY = 50, 0.998
 of those before each, or of earlier images: some minutes."""
 _RATE = 1 / _SIZES_NEEDED
 """Rate at which the usual shape follows blobs of one vehicle each: over as many as a size takes."""
-WIDEST = 400
+WIDEST_MASK = 400
 """Largest width of a mask in px: finer says nothing more about vehicles. At 640 HOTA / IDF1 are
 28.0 / 34.0, halving to at most 400 gives 27.5 / 34.5."""
 _SINGULAR = 1e-4
@@ -142,7 +142,9 @@ class UsualSize:
     def learn(self, piece: Piece) -> None:
         """Add the box of one vehicle; all count alike, near and far ones."""
         size = math.sqrt(math.prod(piece.sides))  # one number for width and height
-        place = np.array([(piece.left + piece.right) / 2 / WIDEST, piece.bottom / WIDEST, 1.0])
+        place = np.array(
+            [(piece.left + piece.right) / 2 / WIDEST_MASK, piece.bottom / WIDEST_MASK, 1.0]
+        )
         # Least squares of size, each row over its own size: relative errors count.
         self._squares = MEMORY * self._squares + np.outer(place, place) / size**2
         self._sums = MEMORY * self._sums + place / size
@@ -159,7 +161,9 @@ class UsualSize:
         if not self._slopes:
             return 0.0
         across, down, level = self._slopes
-        usual = ((piece.left + piece.right) / 2 * across + piece.bottom * down) / WIDEST + level
+        usual = (
+            (piece.left + piece.right) / 2 * across + piece.bottom * down
+        ) / WIDEST_MASK + level
         return math.log(math.sqrt(math.prod(piece.sides)) / max(usual, 1.0)) / _SPREAD
 
     def cost(self, piece: Piece) -> float:
@@ -177,7 +181,7 @@ class BlobReader:
         Thresholds.
     """
 
-    def __init__(self, thresholds: MotionThresholds = SHIPPED) -> None:
+    def __init__(self, thresholds: MotionThresholds = SHIPPED_THRESHOLDS) -> None:
         self._thresholds = thresholds
         self._fullness = math.log(_USUAL_FULLNESS)
         self._aspect = self._learnt_aspect = 0.0

@@ -16,10 +16,10 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.detection.background import Background, Colours, Pixels
-from vehicle_pf_tracker.detection.blobs import WIDEST, BlobReader
+from vehicle_pf_tracker.detection.blobs import WIDEST_MASK, BlobReader
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import FollowedVehicle
-from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED, MotionThresholds
+from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED_THRESHOLDS, MotionThresholds
 from vehicle_pf_tracker.detection.stabilising import Stabiliser
 
 _CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
@@ -50,7 +50,7 @@ class MotionDetector:
         the background is learnt from.
     """
 
-    def __init__(self, seed: int = 0, thresholds: MotionThresholds = SHIPPED) -> None:
+    def __init__(self, seed: int = 0, thresholds: MotionThresholds = SHIPPED_THRESHOLDS) -> None:
         self._seed = seed
         self._thresholds = thresholds
         self.disturbed = False
@@ -144,7 +144,7 @@ def _reduced(frame: Frame) -> tuple[npt.NDArray[np.uint8], float]:
     """Halve the image until it is narrow enough; also its scale."""
     small = np.ascontiguousarray(frame)
     zoom = 1.0
-    while small.shape[1] > WIDEST:
+    while small.shape[1] > WIDEST_MASK:
         half = (max(small.shape[1] // 2, 1), max(small.shape[0] // 2, 1))
         # Averages over areas: noise becomes less, and no pixel is left out.
         small = np.asarray(cv2.resize(small, half, interpolation=cv2.INTER_AREA), np.uint8)

@@ -33,5 +33,5 @@ class MotionThresholds:
     apart: float = 1.0
 
 
-SHIPPED = MotionThresholds()
+SHIPPED_THRESHOLDS = MotionThresholds()
 """Thresholds in use."""

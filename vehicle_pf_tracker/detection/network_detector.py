@@ -20,7 +20,7 @@ from vehicle_pf_tracker.detection import network_classes
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import FollowedVehicle
 from vehicle_pf_tracker.detection.network import Network
-from vehicle_pf_tracker.detection.network_input import PADDING, Fit, letterboxed, stretched
+from vehicle_pf_tracker.detection.network_input import PADDING_GREY, Fit, letterboxed, stretched
 from vehicle_pf_tracker.detection.network_outputs import (
     SSD,
     YOLOV8,
@@ -83,7 +83,7 @@ class NetworkDetector:
         self._input, self._type, self._is_planar, self._fixed = self._read_input()
         size = self._size(parameters.input_size, parameters.input_size)
         # One run on grey: many files leave the shapes of their outputs open.
-        outputs = self._run(np.full((size[1], size[0], 3), PADDING, np.uint8))
+        outputs = self._run(np.full((size[1], size[0], 3), PADDING_GREY, np.uint8))
         try:
             self.form = form_of(outputs, *size)
             self._names = self._class_names(class_count(self.form, outputs))

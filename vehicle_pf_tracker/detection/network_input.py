@@ -13,7 +13,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 
-PADDING = 114
+PADDING_GREY = 114
 """Grey of the borders, which YOLOX and YOLOv8 were trained with."""
 
 
@@ -58,7 +58,7 @@ def letterboxed(frame: Frame, width: int, height: int, *, centred: bool) -> tupl
     small, fit = stretched(frame, max(1, round(across * ratio)), max(1, round(down * ratio)))
     size = frame_size(small)
     left, top = ((width - size[0]) // 2, (height - size[1]) // 2) if centred else (0, 0)
-    picture: Frame = np.full((height, width, 3), PADDING, np.uint8)
+    picture: Frame = np.full((height, width, 3), PADDING_GREY, np.uint8)
     picture[top : top + size[1], left : left + size[0]] = small
     # The scale as it was rounded, not the ratio: boxes map back exactly.
     return picture, Fit(fit.scale, (float(left), float(top)))

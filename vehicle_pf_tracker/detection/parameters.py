@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import parameter
 
-MOTION, MODEL, TOPIC, NONE = "motion", "model", "topic", "none"
+MOTION_DETECTOR, MODEL_DETECTOR, TOPIC_DETECTOR, NO_DETECTOR = "motion", "model", "topic", "none"
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,10 +18,10 @@ class DetectorParameters:
     """Source of detections, and the network where it is one."""
 
     kind: str = parameter(
-        MOTION,
+        MOTION_DETECTOR,
         "Source of detections: what moves before a standing camera, a network of yours, a topic "
         "(of a node), or none (targets given by hand).",
-        choices=(MOTION, MODEL, TOPIC, NONE), read_only=True,
+        choices=(MOTION_DETECTOR, MODEL_DETECTOR, TOPIC_DETECTOR, NO_DETECTOR), read_only=True,
     )  # fmt: skip
     model: str = parameter(
         "",
@@ -81,5 +81,5 @@ class DetectorParameters:
 
     def validate(self) -> None:
         """Refuse a network without its file."""
-        if self.kind == MODEL and not self.model:
+        if self.kind == MODEL_DETECTOR and not self.model:
             raise InputError("detector.kind is model, and detector.model names no .onnx file")

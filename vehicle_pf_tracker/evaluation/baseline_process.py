@@ -19,13 +19,13 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.following.processes import wait_or_kill
 
-VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
+BASELINES_VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 """Environment variable that names the interpreter."""
 
-DEFAULT = Path(".venv-baselines/bin/python")
+DEFAULT_INTERPRETER = Path(".venv-baselines/bin/python")
 """Interpreter that `make baselines` builds in a clone, below the working directory."""
 
-LOCK = Path(__file__).with_name("baselines.txt")
+BASELINES_LOCK = Path(__file__).with_name("baselines.txt")
 """Lock file of their environment: exact versions, with hashes."""
 
 WORKER = Path(__file__).with_name("baseline_worker.py")
@@ -39,28 +39,29 @@ def baseline_python(chosen: Path | None = None) -> Path:
     Parameters
     ----------
     chosen : Path or None
-        The user's choice; None takes what `VARIABLE` names, else `DEFAULT`, else the one in the
-        user's cache, which the command in the error builds.
+        The user's choice; None takes what `BASELINES_VARIABLE` names, else
+        `DEFAULT_INTERPRETER`, else the one in the user's cache, which the command in the error
+        builds.
 
     Raises
     ------
     InputError
         If there is no such file.
     """
-    named = chosen or os.environ.get(VARIABLE)
+    named = chosen or os.environ.get(BASELINES_VARIABLE)
     cached = _cache() / "bin" / "python"
-    for python in [Path(named)] if named else [DEFAULT, cached]:
+    for python in [Path(named)] if named else [DEFAULT_INTERPRETER, cached]:
         if python.is_file():
             return python.absolute()  # not resolved: a link is what makes it the environment's
     raise InputError(
         f"there is no interpreter {named or cached} to run the baselines with; build it once with "
-        f"`{install_command()}`, or name one in the environment variable {VARIABLE}"
+        f"`{install_command()}`, or name one in the environment variable {BASELINES_VARIABLE}"
     )
 
 
 def install_command() -> str:
     """Return the one command that builds the environment of the baselines in the user's cache."""
-    folder, lock = (shlex.quote(str(path)) for path in (_cache(), LOCK))
+    folder, lock = (shlex.quote(str(path)) for path in (_cache(), BASELINES_LOCK))
     pip = f"{folder}/bin/python -m pip install --no-deps --requirement {lock}"
     return f"python3 -m venv {folder} && {pip}"
 

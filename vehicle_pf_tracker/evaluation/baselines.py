@@ -18,7 +18,7 @@ from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.baseline_process import Worker
-from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.results.estimates import REJECTED_MODE, WAITING_MODE, EstimateRow
 
 BASELINE_MODELS: Mapping[str, tuple[str, ...]] = {
     "csrt": (),
@@ -159,14 +159,14 @@ def baseline_rows(
     for number, (stamp, frame) in enumerate(frames, start=first):
         # An image that cannot be read goes to no tracker, as in a node.
         if frame is None:
-            yield EstimateRow.without(number, stamp, REJECTED)
+            yield EstimateRow.without(number, stamp, REJECTED_MODE)
         elif started:
             yield baseline_row(baseline.step(frame), number, stamp)
         elif abs(stamp - first_truth.stamp_ns) <= limit:
             started = True
             yield baseline_row(baseline.start(frame, first_truth.box), number, stamp)
         else:
-            yield EstimateRow.without(number, stamp, WAITING)
+            yield EstimateRow.without(number, stamp, WAITING_MODE)
     # Only now is it known that the first truth lies between the images, or beyond them.
     if not started:
         raise InputError(

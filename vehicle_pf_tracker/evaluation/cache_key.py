@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle_pf_tracker.results.run_folder import versions
-from vehicle_pf_tracker.trackers.registry import TRAFFIC, Variant
+from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT, Variant
 
 
 def result_key(facts: Mapping[str, Any], modules: Iterable[str]) -> str:
@@ -31,7 +31,11 @@ def result_key(facts: Mapping[str, Any], modules: Iterable[str]) -> str:
 def variant_modules(variant: Variant) -> set[str]:
     """Name the modules that a variant begins in."""
     # The tracker of many vehicles is none of the contract; its parameters lie beside it.
-    classes = [variant.parameters] if variant == TRAFFIC else [variant.tracker, variant.parameters]
+    classes = (
+        [variant.parameters]
+        if variant == TRAFFIC_VARIANT
+        else [variant.tracker, variant.parameters]
+    )
     return {kind.__module__ for kind in classes}
 
 

@@ -67,7 +67,7 @@ RUN = "Run"
 RESTARTS = "With restarts after failure"
 
 # The fields of a row are those of `Column`, in its order.
-COLUMNS = (
+METRIC_COLUMNS = (
     Column("success_auc", OVERLAP, "success AUC", "", 3, True,
            "Area under the success curve: share of frames whose overlap (intersection over union) "
            "is above thresholds from 0 to 1."),
@@ -114,18 +114,18 @@ COLUMNS = (
     Column("restart_robustness", RESTARTS, "robustness", "", 3, True,
            "Chance of no failure in 100 visible frames of that run."),
 )  # fmt: skip
-_BY_KEY = {column.key: column for column in COLUMNS}
+_BY_KEY = {column.key: column for column in METRIC_COLUMNS}
 SUCCESS, PRECISION, RMSE, RECOVERED, STEP = (
     _BY_KEY[key] for key in ("success_auc", "precision_20px", "rmse_px", "recovered", "step_ms_p50")
 )
 
-COMPARED = (SUCCESS, PRECISION, RMSE)
+COMPARED_METRICS = (SUCCESS, PRECISION, RMSE)
 """Metrics that systems are compared by; the first one orders the tables."""
-ONCE = tuple(column.key for column in COLUMNS if column.group != RESTARTS)
+ONCE = tuple(column.key for column in METRIC_COLUMNS if column.group != RESTARTS)
 """Metrics of the run without restarts."""
 BESIDE_RESTARTS = ("success_auc", "failures")
 """Metrics of that run which the table of the runs with restarts repeats."""
-PAPER = (SUCCESS, PRECISION, RMSE, RECOVERED, STEP)
+LATEX_METRICS = (SUCCESS, PRECISION, RMSE, RECOVERED, STEP)
 """Metrics of the LaTeX table."""
 
 

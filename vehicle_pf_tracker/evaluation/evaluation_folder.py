@@ -27,9 +27,9 @@ from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
 from vehicle_pf_tracker.results.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.results.output_files import read_csv, write_csv
-from vehicle_pf_tracker.results.run_folder import ESTIMATES, RUN
+from vehicle_pf_tracker.results.run_folder import ESTIMATES_FILE, RUN_FILE
 
-FORMAT = 2
+FOLDER_FORMAT = 2
 """Format of the folder; folders of another format are refused. Counted up when the layout
 changes."""
 
@@ -64,24 +64,24 @@ class Source:
     identity: int | None = None
 
 
-RESTART = "restart"
+RESTART_KEY = "restart"
 """Key, in the options of the plan and in a cell's `run.json`, of the frames from a failure to the
 next start."""
-PLAN = "evaluation.json"
+PLAN_FILE = "evaluation.json"
 """File of what is evaluated, which is there before the first result."""
 CELLS_FOLDER = "cells"
 """Folder of the results, with a folder of a run for each recording, system and seed."""
-FAILED = "failed.json"
+FAILED_FILE = "failed.json"
 """File in the folder of a run that failed, with the reason."""
-RESTARTED = "restarted.csv"
+RESTARTED_FILE = "restarted.csv"
 """File of the estimates with restarts after failure, in the columns of `estimates.csv`."""
 RECORDINGS_FOLDER = "recordings"
 """Folder of what the report needs of each recording, so that it can be written again without
 it."""
-TRUTH = "truth.csv"
+TRUTH_FILE = "truth.csv"
 """File of a recording's truth there."""
 COLUMNS = ("frame", "stamp_ns", "x", "y", "width", "height", "occlusion")
-"""Columns of `TRUTH`: x and y are the top-left corner, px."""
+"""Columns of `TRUTH_FILE`: x and y are the top-left corner, px."""
 
 
 def write_truth(path: Path, truths: Mapping[int, Truth]) -> None:
@@ -146,24 +146,24 @@ class EvaluationFolder:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        if not (path / PLAN).is_file():
-            raise InputError(f"{path} is not an evaluation folder: it has no {PLAN}")
-        self.plan: Mapping[str, Any] = read_document(path / PLAN)
-        if self.plan.get("format", FORMAT) != FORMAT:
+        if not (path / PLAN_FILE).is_file():
+            raise InputError(f"{path} is not an evaluation folder: it has no {PLAN_FILE}")
+        self.plan: Mapping[str, Any] = read_document(path / PLAN_FILE)
+        if self.plan.get("format", FOLDER_FORMAT) != FOLDER_FORMAT:
             raise InputError(
                 f"{path} is an evaluation of another version of this program (format "
-                f"{self.plan['format']}, not {FORMAT}): evaluate again into another folder"
+                f"{self.plan['format']}, not {FOLDER_FORMAT}): evaluate again into another folder"
             )
         try:
             self.recordings = tuple(Source(**entry) for entry in self.plan["recordings"])
             self.seeds = tuple(map(int, self.plan["seeds"]))
             self.systems = tuple(map(System.from_json, self.plan["systems"]))
         except (AttributeError, KeyError, TypeError, ValueError) as error:
-            raise InputError(f"the plan {path / PLAN} is broken: {error!r}") from error
+            raise InputError(f"the plan {path / PLAN_FILE} is broken: {error!r}") from error
 
     def truth(self, recording: str) -> dict[int, Truth]:
         """Return the truths of a recording by the number of their frame; empty without any."""
-        path = self.path / RECORDINGS_FOLDER / recording / TRUTH
+        path = self.path / RECORDINGS_FOLDER / recording / TRUTH_FILE
         return read_truth(path) if path.is_file() else {}
 
     def cell(
@@ -178,11 +178,13 @@ class EvaluationFolder:
         """
         folder = cell_folder(self.path, recording, system, seed)
         # First: a failed cell has no estimates, and its reason is worth more than "not run".
-        if (folder / FAILED).is_file():
-            raise InputError(read_document(folder / FAILED).get("reason", "no reason was given"))
-        if not (folder / ESTIMATES).is_file():
+        if (folder / FAILED_FILE).is_file():
+            raise InputError(
+                read_document(folder / FAILED_FILE).get("reason", "no reason was given")
+            )
+        if not (folder / ESTIMATES_FILE).is_file():
             raise InputError("it was not run")
-        return read_estimates(folder / ESTIMATES), read_document(folder / RUN)
+        return read_estimates(folder / ESTIMATES_FILE), read_document(folder / RUN_FILE)
 
     def restarted(self, recording: str, system: str, seed: int) -> list[EstimateRow]:
         """Read the rows of a cell with restarts; empty where the evaluation has none.
@@ -192,10 +194,10 @@ class EvaluationFolder:
         InputError
             If they cannot be read.
         """
-        path = cell_folder(self.path, recording, system, seed) / RESTARTED
-        wait = self.plan.get("options", {}).get(RESTART)
+        path = cell_folder(self.path, recording, system, seed) / RESTARTED_FILE
+        wait = self.plan.get("options", {}).get(RESTART_KEY)
         # What an earlier evaluation left there, with another wait, is none of this one.
-        if wait is None or read_document(path.parent / RUN).get(RESTART) != wait:
+        if wait is None or read_document(path.parent / RUN_FILE).get(RESTART_KEY) != wait:
             return []
         return read_estimates(path)
 

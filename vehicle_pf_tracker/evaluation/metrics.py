@@ -30,7 +30,7 @@ from vehicle_pf_tracker.evaluation.scores import (
     errors_of,
     score_occlusions,
 )
-from vehicle_pf_tracker.results.estimates import REJECTED, WAITING
+from vehicle_pf_tracker.results.estimates import REJECTED_MODE, WAITING_MODE
 from vehicle_pf_tracker.trackers.estimate import Mode
 
 PRECISION_PX = 20.0
@@ -45,7 +45,7 @@ SUCCESS_THRESHOLDS: Array = np.linspace(0.0, 1.0, 21)
 NORMALISED_THRESHOLDS: Array = np.linspace(0.0, 0.5, 51)
 """Errors of the centre in sizes of the true box: 0, 0.01, ... 0.5, as TrackingNet and LaSOT do."""
 # Modes whose frames are counted.
-_MODES = (*(mode.value for mode in Mode), WAITING, REJECTED)
+_MODES = (*(mode.value for mode in Mode), WAITING_MODE, REJECTED_MODE)
 
 
 @dataclass(frozen=True, slots=True)

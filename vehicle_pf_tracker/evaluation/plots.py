@@ -21,7 +21,7 @@ class Style(NamedTuple):
 
 
 # The colours are Okabe and Ito's. Lines tell series apart over time, markers on paths.
-STYLES = (
+LINE_STYLES = (
     Style("#0072B2", "-", "o"),
     Style("#D55E00", "--", "s"),
     Style("#009E73", "-.", "^"),

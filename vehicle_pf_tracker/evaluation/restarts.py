@@ -24,7 +24,7 @@ from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores, is_failure
-from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow
+from vehicle_pf_tracker.results.estimates import REJECTED_MODE, WAITING_MODE, EstimateRow
 
 BURN_IN = 10
 """Frames from each start that accuracy leaves out, VOT's number: they overlap with the truth
@@ -44,7 +44,7 @@ def with_restarts(
     size: tuple[int, int],
     start: Start,
 ) -> list[EstimateRow]:
-    """Return the rows of a run with restarts: one per frame, `WAITING` from failure to start.
+    """Return the rows of a run with restarts: one per frame, `WAITING_MODE` from failure to start.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def with_restarts(
         later = range(failed + wait, len(rows))
         next_start = next((i for i in later if _may_start(rows[i], known[i], size)), len(rows))
         found += (
-            EstimateRow.without(row.frame, row.stamp_ns, WAITING)
+            EstimateRow.without(row.frame, row.stamp_ns, WAITING_MODE)
             for row in rows[failed + 1 : next_start]
         )
         if next_start < len(rows) and (truth := known[next_start]):
@@ -94,7 +94,7 @@ def _until_failure(
 
 def _may_start(row: EstimateRow, truth: Truth | None, size: tuple[int, int]) -> bool:
     # What the run without restarts rejected is no image to start in.
-    if truth is None or truth.occlusion is Occlusion.TOTAL or row.mode == REJECTED:
+    if truth is None or truth.occlusion is Occlusion.TOTAL or row.mode == REJECTED_MODE:
         return False
     try:
         check_target(truth.box, *size)

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S, associate
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.results.estimates import WAITING, EstimateRow
+from vehicle_pf_tracker.results.estimates import WAITING_MODE, EstimateRow
 
 SETTLING_FRAMES = 15
 """Frames after the last hidden one before a track is judged: half a second at 30 Hz, in which a
@@ -57,7 +57,7 @@ class FrameScore:
     @property
     def waiting(self) -> bool:
         """True if there was no target yet."""
-        return self.row.mode == WAITING
+        return self.row.mode == WAITING_MODE
 
     @property
     def counts(self) -> bool:
@@ -164,7 +164,7 @@ def _standing(rows: Sequence[EstimateRow]) -> Iterator[EstimateRow | None]:
     last: EstimateRow | None = None
     for row in rows:
         # A new start: the estimate for the target before is no estimate of the next one.
-        if row.mode == WAITING:
+        if row.mode == WAITING_MODE:
             last = None
         # Before it is replaced: what stands in a frame is from an earlier one.
         yield last

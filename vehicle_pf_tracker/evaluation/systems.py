@@ -15,7 +15,7 @@ from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs
 from vehicle_pf_tracker.trackers.parameters import ParticleParameters
 from vehicle_pf_tracker.trackers.registry import find_variant
 
-BASELINE = "baseline:"
+BASELINE_PREFIX = "baseline:"
 """Beginning of the names of baselines where they stand among those of variants."""
 Settings = tuple[tuple[str, Value], ...]
 """Names of parameters with their values, in order, so that equal ones are equal."""
@@ -68,7 +68,7 @@ class System:
         cls, name: str, python: str = "", models: Settings = (), build: str = ""
     ) -> System:
         """Make the system of a baseline; `build` is the version of its OpenCV."""
-        label = f"{BASELINE}{name}"
+        label = f"{BASELINE_PREFIX}{name}"
         # A part of the cache key: a baseline of another OpenCV is run again.
         parameters = (*models, ("opencv", build))
         return cls(label, label, True, "", models, parameters, python)
@@ -78,7 +78,7 @@ class System:
         """Read what `to_json` makes."""
         return cls(
             label=str(entry["label"]),
-            kind=str(entry.get("variant") or f"{BASELINE}{entry['baseline']}"),
+            kind=str(entry.get("variant") or f"{BASELINE_PREFIX}{entry['baseline']}"),
             is_deterministic=bool(entry["deterministic"]),
             parameter_set=str(entry["parameter_set"]),
             overrides=tuple(entry["overrides"].items()),
@@ -90,7 +90,7 @@ class System:
         role = "baseline" if self.is_baseline else "variant"
         return {
             "label": self.label,
-            role: self.kind.removeprefix(BASELINE),
+            role: self.kind.removeprefix(BASELINE_PREFIX),
             "parameter_set": self.parameter_set,
             "overrides": dict(self.overrides),
             "parameters": dict(self.parameters),
@@ -100,7 +100,7 @@ class System:
     @property
     def is_baseline(self) -> bool:
         """True for one of OpenCV's trackers."""
-        return self.kind.startswith(BASELINE)
+        return self.kind.startswith(BASELINE_PREFIX)
 
     @property
     def effective(self) -> dict[str, Value]:

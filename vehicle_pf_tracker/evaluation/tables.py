@@ -13,8 +13,8 @@ from typing import TypeAlias
 
 from vehicle_pf_tracker.evaluation.columns import (
     BESIDE_RESTARTS,
-    COLUMNS,
-    COMPARED,
+    COMPARED_METRICS,
+    METRIC_COLUMNS,
     NO_VALUE,
     RECOVERED,
     RESTARTS,
@@ -127,8 +127,8 @@ def overall_table(aggregates: Aggregates, keys: Collection[str] | None = None) -
         is_count = column is RECOVERED and judged
         return f"{recovered} of {judged}" if is_count else mean_text(summary, column)
 
-    # In the order of `COLUMNS`, whatever that of the keys.
-    columns = [column for column in COLUMNS if keys is None or column.key in keys]
+    # In the order of `METRIC_COLUMNS`, whatever that of the keys.
+    columns = [column for column in METRIC_COLUMNS if keys is None or column.key in keys]
     return _metrics_table(aggregates.overall, columns, text)
 
 
@@ -136,7 +136,7 @@ def restarts_table(aggregates: Aggregates) -> Table | None:
     """Show the metrics of the runs with restarts beside two of those without; None without any."""
     if not any(found["restart_failures"] for found in aggregates.overall.values()):
         return None
-    keys = {column.key for column in COLUMNS if column.group == RESTARTS}
+    keys = {column.key for column in METRIC_COLUMNS if column.group == RESTARTS}
     return overall_table(aggregates, keys.union(BESIDE_RESTARTS))
 
 
@@ -153,13 +153,13 @@ def behind_table(aggregates: Aggregates) -> Table:
     """Show the means with their intervals, and how far each system is behind the first."""
     headers = [
         Header(words, column.unit)
-        for column in COMPARED
+        for column in COMPARED_METRICS
         for words in (column.label, f"{column.label}: difference")
     ]
     rows = {
         label: [
             _with_interval(found.get(column.key), column, sign)
-            for column in COMPARED
+            for column in COMPARED_METRICS
             for found, sign in ((means, ""), (aggregates.behind.get(label, {}), "+"))
         ]
         for label, means in aggregates.overall.items()
@@ -169,7 +169,7 @@ def behind_table(aggregates: Aggregates) -> Table:
 
 def pairs_table(aggregates: Aggregates) -> Table:
     """Show how far each system is from each other one, with the interval, in the first metric."""
-    column = COMPARED[0]
+    column = COMPARED_METRICS[0]
     rows = {
         label: [
             TableCell("") if other == label else _with_interval(found[other], column, "+")
@@ -246,7 +246,7 @@ def _metrics_table(
         note = f"95 % interval of the mean: {within}" if within else ""
         return TableCell(text(label, summary, column), value, is_best, note)
 
-    # Columns of a group stand beside each other in `COLUMNS`, which groupby needs.
+    # Columns of a group stand beside each other in `METRIC_COLUMNS`, which groupby needs.
     grouped = itertools.groupby(kept, lambda column: column.group)
     return Table(
         [Header(column.label, column.unit, column.help) for column in kept],

@@ -71,7 +71,7 @@ def _search(weights: Weights, points: npt.NDArray[np.float64]) -> Ancestors:
     return np.asarray(np.minimum(cumulative.searchsorted(points * total, side="right"), last))
 
 
-SCHEMES: Mapping[str, Scheme] = {
+RESAMPLING_SCHEMES: Mapping[str, Scheme] = {
     "multinomial": multinomial,
     "residual": residual,
     "systematic": systematic,

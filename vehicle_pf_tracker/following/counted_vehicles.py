@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
+from vehicle_pf_tracker.counting.counter import COUNTED_MODES, Counter
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.counting.vehicle_class import VehicleClasses
 from vehicle_pf_tracker.detection.detections import Detections
@@ -109,7 +109,7 @@ class CountedVehicles:
         """Return a copy of the last image with vehicles, counts, `head` and their number."""
         modes = Tally(one.mode for one in self.estimates if self.counter.is_vehicle(one.label))
         hidden = f", {modes[TrackMode.OCCLUDED]} hidden" if modes[TrackMode.OCCLUDED] else ""
-        count = f"{sum(modes[mode] for mode in CONFIRMED)} vehicles{hidden}"
+        count = f"{sum(modes[mode] for mode in COUNTED_MODES)} vehicles{hidden}"
         words = f"{head}{_LEARNING if self.is_learning else count}"
         return annotated(frame, words, self.estimates, self.counter, self.trails)
 
@@ -122,7 +122,8 @@ class CountedVehicles:
         counter = self.counter
         return {
             "vehicles": sum(
-                one.mode in CONFIRMED and counter.is_vehicle(one.label) for one in self.estimates
+                one.mode in COUNTED_MODES and counter.is_vehicle(one.label)
+                for one in self.estimates
             ),
             **{f"{zone}: inside": there for zone, there in counter.occupancy.items()},
             **{

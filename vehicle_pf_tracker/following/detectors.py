@@ -11,7 +11,11 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.detection.detector import Detector
 from vehicle_pf_tracker.detection.motion_detector import MotionDetector
 from vehicle_pf_tracker.detection.network_detector import NetworkDetector
-from vehicle_pf_tracker.detection.parameters import MODEL, MOTION, DetectorParameters
+from vehicle_pf_tracker.detection.parameters import (
+    MODEL_DETECTOR,
+    MOTION_DETECTOR,
+    DetectorParameters,
+)
 from vehicle_pf_tracker.following.fetching import Progress, silent
 from vehicle_pf_tracker.following.opened_network import open_network
 
@@ -37,9 +41,9 @@ def detector_maker(
         If the network cannot be used.
     """
     # It learns a background, and so is made anew for each stream; a network keeps nothing.
-    if parameters.kind == MOTION:
+    if parameters.kind == MOTION_DETECTOR:
         return MotionDetector
-    if parameters.kind == MODEL:
+    if parameters.kind == MODEL_DETECTOR:
         model = parameters.model
         return _Same(NetworkDetector(open_network(model, progress), model, parameters))
     return None

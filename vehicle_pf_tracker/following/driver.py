@@ -24,14 +24,14 @@ from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.results.estimates import (
-    REJECTED,
-    WAITING,
+    REJECTED_MODE,
+    WAITING_MODE,
     EstimateRow,
     start_of_clock,
 )
 from vehicle_pf_tracker.showing.drawing import Annotator, annotated
 from vehicle_pf_tracker.showing.estimates_recording import OnFrame
-from vehicle_pf_tracker.showing.live_page import PAGE, LivePage
+from vehicle_pf_tracker.showing.live_page import PAGE_NAME, LivePage
 from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
 from vehicle_pf_tracker.trackers.attempts import TrackerError
 from vehicle_pf_tracker.trackers.continuity import StrayImageError
@@ -174,17 +174,17 @@ class OfflineTracker:
     def _estimated(self, number: int, stamp_ns: int, frame: Frame | None) -> EstimateRow:
         self.estimate = None
         if frame is None:
-            return EstimateRow.without(number, stamp_ns, REJECTED)
+            return EstimateRow.without(number, stamp_ns, REJECTED_MODE)
         try:
             self.estimate = estimate = self.session.feed(frame, stamp_ns)
         except (InputError, TrackerError) as error:
             if self._ends_run(error):
                 raise
             self._notices.append(f"frame {number} was rejected: {error}")
-            return EstimateRow.without(number, stamp_ns, REJECTED)
+            return EstimateRow.without(number, stamp_ns, REJECTED_MODE)
         self._notices += [f"frame {number}: {event}" for event in self.session.events]
         if estimate is None:
-            return EstimateRow.without(number, stamp_ns, WAITING)
+            return EstimateRow.without(number, stamp_ns, WAITING_MODE)
         # The first only: a later target goes on with the same table.
         if self.start_frame is None:
             self.start_frame = number
@@ -276,9 +276,9 @@ def follow(
                 draw = partial(annotated, found.frame, found.stamp_ns - start_ns, states)
                 modes = tuple(row.mode for row in of_frame.values())
                 take(modes, draw, found.frame, found.stamp_ns)
-                if page is not None and not pictures.side.failed(PAGE):
+                if page is not None and not pictures.side.failed(PAGE_NAME):
                     facts = partial(target_facts, of_frame, found.stamp_ns - start_ns)
-                    with pictures.side.attempt(PAGE):
+                    with pictures.side.attempt(PAGE_NAME):
                         page.show(partial(annotated, found.frame, None, states), facts)
     for tracker in trackers.values():
         tracker.check_started()

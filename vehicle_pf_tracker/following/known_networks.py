@@ -19,7 +19,7 @@ from types import MappingProxyType
 
 _RELEASE = "https://github.com/Megvii-BaseDetection/YOLOX/releases/download/0.1.1rc0"
 """The makers' release that their own list of networks for ONNX names."""
-PACKAGE = "vehicle_pf_detector"
+DETECTOR_PACKAGE = "vehicle_pf_detector"
 """A package that an organisation may build of a network, and install from an index of its own."""
 
 
@@ -55,7 +55,7 @@ class KnownNetwork:
         return f"{self.url}#sha256={self.sha256}"
 
 
-NETWORKS: Mapping[str, KnownNetwork] = MappingProxyType({
+KNOWN_NETWORKS: Mapping[str, KnownNetwork] = MappingProxyType({
     "yolox-nano": KnownNetwork(
         f"{_RELEASE}/yolox_nano.onnx",
         "c789161ed43c8269fcd4e67c67eeeb4e80c622da2eb296a20bc6007bd18a0b7d",
@@ -76,8 +76,8 @@ NETWORKS: Mapping[str, KnownNetwork] = MappingProxyType({
 
 def installed(name: str) -> Path | None:
     """Return the file of a network that a package brought; None where there is none."""
-    if importlib.util.find_spec(PACKAGE) is None:
+    if importlib.util.find_spec(DETECTOR_PACKAGE) is None:
         return None
-    file = resources.files(PACKAGE).joinpath(NETWORKS[name].file)
+    file = resources.files(DETECTOR_PACKAGE).joinpath(KNOWN_NETWORKS[name].file)
     path = Path(str(file))
     return path if path.is_file() else None

@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Iterable, Mapping
 from statistics import fmean
 
-from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
+from vehicle_pf_tracker.counting.counter import COUNTED_MODES, Counter
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.results.estimates import EstimateRow, clock_words
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -54,7 +54,7 @@ def traffic_facts(
         Time of the image, and words about it.
     """
     # 1. Vehicles in view, and a table of their classes.
-    confirmed = [one for one in estimates if one.mode in CONFIRMED]
+    confirmed = [one for one in estimates if one.mode in COUNTED_MODES]
     # What is counted apart, as bicycles are, is in none of the summary's numbers.
     vehicles = [one for one in confirmed if counter.is_vehicle(one.label)]
     hidden = sum(one.mode is TrackMode.OCCLUDED for one in vehicles)

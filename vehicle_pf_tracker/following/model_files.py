@@ -13,7 +13,7 @@ from urllib.parse import unquote, urldefrag, urlsplit
 
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.following.fetching import Progress, fetch, silent, sum_of
-from vehicle_pf_tracker.following.known_networks import NETWORKS, installed
+from vehicle_pf_tracker.following.known_networks import KNOWN_NETWORKS, installed
 from vehicle_pf_tracker.recordings.recording_names import is_url
 
 _UNSAFE = re.compile(r"[^A-Za-z0-9._-]")
@@ -28,8 +28,8 @@ def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
     Parameters
     ----------
     model : str
-        A path; a name of `NETWORKS`; or a URL, at whose end ``#sha256=`` may stand with the sum
-        that the file must have. What a name or a URL means is fetched unless the cache has it.
+        A path; a name of `KNOWN_NETWORKS`; or a URL, at whose end ``#sha256=`` may stand with the
+        sum that the file must have. What a name or a URL means is fetched unless the cache has it.
     progress : Progress
         Shows the transfer.
 
@@ -38,11 +38,11 @@ def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
     InputError
         If there is none, it cannot be fetched or kept, or has another sum.
     """
-    if model in NETWORKS:
+    if model in KNOWN_NETWORKS:
         brought = installed(model)
         if brought is not None:
             return brought, _sum_of(brought)
-        model = NETWORKS[model].address
+        model = KNOWN_NETWORKS[model].address
     if not is_url(model):
         return Path(model), _sum_of(Path(model))
     url, demand = urldefrag(model)
@@ -65,7 +65,7 @@ def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
 
 def is_fetched(model: str) -> bool:
     """Tell whether a network is one that is fetched, by a URL or a name."""
-    return model in NETWORKS or is_url(model)
+    return model in KNOWN_NETWORKS or is_url(model)
 
 
 def discard(model: str) -> str:
@@ -111,8 +111,8 @@ def _sum_of(path: Path) -> str:
     try:
         return sum_of(path)
     except OSError:
-        meant = suggestion(str(path), NETWORKS) if path.suffix != ".onnx" else ""
+        meant = suggestion(str(path), KNOWN_NETWORKS) if path.suffix != ".onnx" else ""
         raise InputError(
             f"there is no network {path}{meant}; give a file, its URL, or one of the names "
-            f"{', '.join(NETWORKS)}"
+            f"{', '.join(KNOWN_NETWORKS)}"
         ) from None

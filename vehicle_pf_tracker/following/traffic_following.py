@@ -15,7 +15,7 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.counting.counter import Counter
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.counting.zone_occupancy import USUAL_INTERVAL_S
-from vehicle_pf_tracker.detection.parameters import MODEL, MOTION
+from vehicle_pf_tracker.detection.parameters import MODEL_DETECTOR, MOTION_DETECTOR
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles
 from vehicle_pf_tracker.following.detection_file import DetectionFile
 from vehicle_pf_tracker.following.driver import unreached
@@ -23,7 +23,7 @@ from vehicle_pf_tracker.recordings.reader import StampedFrame
 from vehicle_pf_tracker.results.estimates import clock_words, start_of_clock
 from vehicle_pf_tracker.results.traffic_results import TrackFiles
 from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
-from vehicle_pf_tracker.showing.live_page import PAGE, LivePage
+from vehicle_pf_tracker.showing.live_page import PAGE_NAME, LivePage
 from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
 from vehicle_pf_tracker.showing.traffic_pictures import TrafficPictures
 from vehicle_pf_tracker.trackers.attempts import TrackerError
@@ -138,8 +138,8 @@ class TrafficRun(CountedVehicles):
                 elapsed = clock_words(found.stamp_ns - start_ns)
                 draw = partial(self.drawn, found.frame, f"{elapsed}  frame {number}  ")
                 take((), draw, found.frame, found.stamp_ns)
-                if page is not None and not pictures.side.failed(PAGE):
-                    with pictures.side.attempt(PAGE):
+                if page is not None and not pictures.side.failed(PAGE_NAME):
+                    with pictures.side.attempt(PAGE_NAME):
                         when = f"{elapsed}, frame {number}"
                         page.show(partial(self.shown, found.frame), partial(self.page_facts, when))
 
@@ -167,8 +167,8 @@ class TrafficRun(CountedVehicles):
             why = "they are too few to learn what stands, which takes a second; give a longer clip"
         elif not found.boxes:
             why = {
-                MOTION: "nothing moves in them",
-                MODEL: "the network finds no vehicle; try --set detector.min_score=0.1",
+                MOTION_DETECTOR: "nothing moves in them",
+                MODEL_DETECTOR: "the network finds no vehicle; try --set detector.min_score=0.1",
             }.get(detector, f"{detector} has no box in them")
         elif self._misfit:
             why = self._misfit

@@ -20,7 +20,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.detection.parameters import MODEL
+from vehicle_pf_tracker.detection.parameters import MODEL_DETECTOR
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import unknown_name
@@ -28,7 +28,7 @@ from vehicle_pf_tracker.recordings.box_sizes import misfit
 from vehicle_pf_tracker.recordings.footage import check_fps
 from vehicle_pf_tracker.results.traffic_results import mot_numbers
 from vehicle_pf_tracker.trackers.image_stream import checked_stamp
-from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 DetectionsT = TypeVar("DetectionsT")
@@ -88,9 +88,9 @@ class TrafficTracker(CountedVehicles):
         colour: str = _RGB,
     ) -> None:
         self._is_bgr = _chosen(colour, "colour", (_RGB, _BGR)) == _BGR
-        named = {"detector.kind": MODEL, "detector.model": str(model)} if model else {}
+        named = {"detector.kind": MODEL_DETECTOR, "detector.model": str(model)} if model else {}
         given = {"frame_rate": frame_rate, "lines": str(lines), **named, **parameters}
-        known = (configuration := Configuration.of(TRAFFIC)).specs()
+        known = (configuration := Configuration.of(TRAFFIC_VARIANT)).specs()
         if unknown := [unknown_name(one, known) for one in given if one not in known]:
             raise InputError("; ".join(unknown))
         super().__init__(*session_and_counter(configuration.updated(given)))

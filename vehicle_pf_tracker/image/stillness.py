@@ -14,12 +14,12 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 
-PATIENCE = 5.0
+STILLNESS_PATIENCE = 5.0
 """Seconds without a movement before a target is doubted: a vehicle in traffic that other vehicles
 pass rarely stands longer, but for a red light; then the warning is true, and ends as it drives."""
-SENTENCE = (
-    f"the target has not moved for {PATIENCE:g} s while other things did: it stands, or it is no "
-    "vehicle"
+STILLNESS_SENTENCE = (
+    f"the target has not moved for {STILLNESS_PATIENCE:g} s while other things did: it stands, "
+    "or it is no vehicle"
 )
 _DRIVEN = 0.5
 """Way from the first position, in widths of the box, that only a vehicle drives: that of a box on
@@ -45,8 +45,8 @@ class Stillness:
     Attributes
     ----------
     is_suspect : bool
-        True while the target has not moved for `PATIENCE` seconds since its start, and other things
-        have.
+        True while the target has not moved for `STILLNESS_PATIENCE` seconds since its start,
+        and other things have.
     """
 
     def __init__(self) -> None:
@@ -79,8 +79,8 @@ class Stillness:
             self._others_move = self._compare(frame, box) or self._others_move
         waited = (stamp_ns - self._began_ns) * 1e-9
         was_suspect = self.is_suspect
-        self.is_suspect = self._others_move and waited >= PATIENCE
-        return [SENTENCE] if self.is_suspect and not was_suspect else []
+        self.is_suspect = self._others_move and waited >= STILLNESS_PATIENCE
+        return [STILLNESS_SENTENCE] if self.is_suspect and not was_suspect else []
 
     def _is_elsewhere(self, box: Box) -> bool:
         distance = math.dist(self._first.centre, box.centre)

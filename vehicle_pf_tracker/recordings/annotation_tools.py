@@ -19,7 +19,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.recordings.text_tables import number_of
 from vehicle_pf_tracker.recordings.truth_labels import (
-    ABSENT,
+    ABSENT_SIDES,
     OTHER_SHAPES,
     Images,
     Label,
@@ -71,7 +71,7 @@ def _cvat_label(
     top = values["ytl"]
     sides = (left, top, values["xbr"] - left, values["ybr"] - top)
     if is_absent := values["outside"] == 1:
-        sides = ABSENT
+        sides = ABSENT_SIDES
     return Label(
         where,
         math.nan if number is None else number,
@@ -114,7 +114,7 @@ def _studio_labels(path: Path, document: Any, images: Images) -> Iterator[Label]
             kind = next((shape for shape in _STUDIO_SHAPES if shape in region["type"]), None)
             if kind is not None:
                 fault = _fault(kind, math.nan)
-                yield Label(where, math.nan, ABSENT, identity=OTHER_SHAPES, fault=fault)
+                yield Label(where, math.nan, ABSENT_SIDES, identity=OTHER_SHAPES, fault=fault)
         rectangles = [one for one in regions if "rectangle" in one["type"]]
         for identity, region in enumerate(rectangles, start=1):
             where = f"region {identity} of the truth {path}"

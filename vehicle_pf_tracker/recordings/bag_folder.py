@@ -17,7 +17,7 @@ import yaml
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.messages import type_hash
-from vehicle_pf_tracker.recordings.recording_names import CONVERSION, MCAP, SQLITE
+from vehicle_pf_tracker.recordings.recording_names import CONVERSION, MCAP_SUFFIX, SQLITE_SUFFIX
 
 VERSION = 9
 """Version of metadata.yaml that is written: that of rosbag2 in Jazzy."""
@@ -73,7 +73,7 @@ def _folder_files(folder: Path) -> tuple[list[Path], list[str]]:
         _check_storage(folder, information)
         return _listed_files(folder, information)
     state = "damaged" if metadata.exists() else "missing"
-    for suffix in (MCAP, SQLITE):
+    for suffix in (MCAP_SUFFIX, SQLITE_SUFFIX):
         present = [path for path in folder.glob(f"[!.]*{suffix}") if path.is_file()]
         if present:
             notice = f"{metadata} is {state}; the *{suffix} files beside it are used"

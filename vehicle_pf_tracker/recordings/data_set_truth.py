@@ -14,7 +14,7 @@ from pathlib import Path
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.recordings.text_tables import cells_of, number_of, numbers_in, table_rows
-from vehicle_pf_tracker.recordings.truth_labels import ABSENT, Images, Label
+from vehicle_pf_tracker.recordings.truth_labels import ABSENT_SIDES, Images, Label
 
 _REQUIRED = ("frame", "x", "y", "w", "h")
 _PRESENCE: Mapping[float, Occlusion | None] = {1.0: None}
@@ -95,7 +95,7 @@ def in_order(path: Path, text: str, images: Images) -> Iterator[Label]:
         if len(values) not in (1, 4, 8):
             raise InputError(f"{where} has {len(values)} numbers; a box has 4, a polygon 8")
         if state is None or len(values) == 1:  # a single number is VOT's code for no box
-            sides = ABSENT
+            sides = ABSENT_SIDES
         elif len(values) == 4:
             sides = (values[0] - first_px, values[1] - first_px, values[2], values[3])
         else:

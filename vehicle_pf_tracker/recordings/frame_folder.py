@@ -31,7 +31,7 @@ from vehicle_pf_tracker.recordings.image_names import NamedImages, natural_key, 
 from vehicle_pf_tracker.recordings.truth_files import Beside, read_truth, truth_beside
 from vehicle_pf_tracker.recordings.truth_labels import Images
 
-FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
+IMAGE_FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
 """The image files that are read, and what a CompressedImage calls them."""
 
 IMAGE_FOLDERS = ("img", "img1", "color", "images", ".")
@@ -150,7 +150,9 @@ def image_files(folder: Path) -> list[Path]:
     Names that begin with a dot are no images: macOS keeps attributes of ``a.jpg`` in ``._a.jpg``.
     """
     for name in IMAGE_FOLDERS:
-        paths = [path for path in (folder / name).glob("[!.]*") if path.suffix.lower() in FORMATS]
+        paths = [
+            path for path in (folder / name).glob("[!.]*") if path.suffix.lower() in IMAGE_FORMATS
+        ]
         if paths:
             return sorted(paths, key=lambda path: (natural_key(path.stem), path.name))
     return []
@@ -234,7 +236,7 @@ def read_picture(path: Path, stamp_ns: int = 0, truth: Truth | None = None) -> P
     InputError
         If it cannot be read.
     """
-    coded_format = FORMATS[path.suffix.lower()]
+    coded_format = IMAGE_FORMATS[path.suffix.lower()]
     try:
         coded = path.read_bytes()
         frame = decode_compressed(coded_format, coded)

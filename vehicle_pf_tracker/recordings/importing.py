@@ -16,7 +16,7 @@ from vehicle_pf_tracker.recordings.recording_names import is_recording
 from vehicle_pf_tracker.recordings.video import open_footage
 from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
-FORMATS = ("compressed", "raw")
+IMPORT_FORMATS = ("compressed", "raw")
 
 
 def import_recording(  # noqa: PLR0913 - one for each option of the command
@@ -80,8 +80,10 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
 
 
 def _check_request(source: Path, format: str | None) -> None:  # noqa: A002 (as the option)
-    if format is not None and format not in FORMATS:
-        raise InputError(f"the format {format!r} is unknown; choose from {', '.join(FORMATS)}")
+    if format is not None and format not in IMPORT_FORMATS:
+        raise InputError(
+            f"the format {format!r} is unknown; choose from {', '.join(IMPORT_FORMATS)}"
+        )
     if not source.exists():
         raise InputError(f"there is no file or folder {source} to import")
     if is_recording(source):

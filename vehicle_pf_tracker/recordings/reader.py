@@ -22,7 +22,7 @@ from vehicle_pf_tracker.recordings.mcap_index import McapIndex, read_index
 from vehicle_pf_tracker.recordings.merged_messages import merged_messages
 from vehicle_pf_tracker.recordings.messages import deserialize
 from vehicle_pf_tracker.recordings.read_notices import ReadNotices
-from vehicle_pf_tracker.recordings.recording_names import SQLITE
+from vehicle_pf_tracker.recordings.recording_names import SQLITE_SUFFIX
 from vehicle_pf_tracker.recordings.sqlite_index import read_sqlite_index
 from vehicle_pf_tracker.recordings.topic_table import TopicInfo, choose_image_topic, list_topics
 
@@ -93,7 +93,8 @@ class Recording:
         self.path = Path(path)
         files, irregularities = recording_files(self.path)
         self.files = [
-            read_sqlite_index(file) if file.suffix == SQLITE else read_index(file) for file in files
+            read_sqlite_index(file) if file.suffix == SQLITE_SUFFIX else read_index(file)
+            for file in files
         ]
         # Before the topics: a recording without a message has none to choose from.
         self._check_readable()

@@ -11,9 +11,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-MCAP = ".mcap"
+MCAP_SUFFIX = ".mcap"
 """Suffix of MCAP files."""
-SQLITE = ".db3"
+SQLITE_SUFFIX = ".db3"
 """Suffix of rosbag2's SQLite files."""
 CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
 """Command that converts a bag; it comes with `rosbags`, and so with this package."""
@@ -21,7 +21,7 @@ CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
 
 def is_recording(path: Path) -> bool:
     """Return whether `path` is a rosbag2 folder or a file of one, by its name and content."""
-    return path.suffix in {MCAP, SQLITE} or (path / "metadata.yaml").exists()
+    return path.suffix in {MCAP_SUFFIX, SQLITE_SUFFIX} or (path / "metadata.yaml").exists()
 
 
 def is_url(source: Path | str) -> bool:

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.core.truth import Occlusion
 
 Sides: TypeAlias = tuple[float, float, float, float]
 """Left, top, width and height, px."""
-ABSENT: Sides = (math.nan, math.nan, math.nan, math.nan)
+ABSENT_SIDES: Sides = (math.nan, math.nan, math.nan, math.nan)
 OTHER_SHAPES = -(2**31)
 """Identity of shapes that have no number in their file: no target's."""
 

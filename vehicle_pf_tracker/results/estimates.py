@@ -36,7 +36,7 @@ class EstimateRow:
     width, height : float or None
         Size of its box in px.
     mode : str
-        ``TRACKING``, ``OCCLUDED``, ``LOST``, or `WAITING` or `REJECTED`.
+        ``TRACKING``, ``OCCLUDED``, ``LOST``, or `WAITING_MODE` or `REJECTED_MODE`.
     confidence : float or None
         Confidence of the estimate, 0 to 1.
     n_eff : float or None
@@ -92,12 +92,12 @@ class EstimateRow:
         return Box.around(self.position, self.width, self.height)
 
 
-WAITING = "WAITING"
+WAITING_MODE = "WAITING"
 """Mode of a frame before there is a target; all numbers are empty."""
-REJECTED = "REJECTED"
+REJECTED_MODE = "REJECTED"
 """Mode of a frame that the tracker could not use; all numbers are empty."""
 
-COLUMNS = tuple(field.name for field in fields(EstimateRow))
+ESTIMATE_COLUMNS = tuple(field.name for field in fields(EstimateRow))
 """Columns of `estimates.csv`."""
 _NUMBERS = ("x", "y", "width", "height", "confidence", "n_eff", "step_ms")
 """Columns that are empty where there is no estimate."""
@@ -117,7 +117,7 @@ def write_estimates(
     """
     found = zip(rows, *extra.values(), strict=True)
     cells = ((*astuple(row), *more) for row, *more in found)
-    write_csv(path, [*COLUMNS, *extra], cells)
+    write_csv(path, [*ESTIMATE_COLUMNS, *extra], cells)
 
 
 def write_tracks(path: Path, rows: Mapping[str, Sequence[EstimateRow]]) -> None:
@@ -135,7 +135,7 @@ def write_tracks(path: Path, rows: Mapping[str, Sequence[EstimateRow]]) -> None:
         for of_frame in zip(*rows.values(), strict=True)
         for name, row in zip(rows, of_frame, strict=True)
     )
-    write_csv(path, ["target", *COLUMNS], cells)
+    write_csv(path, ["target", *ESTIMATE_COLUMNS], cells)
 
 
 def read_estimates(path: Path) -> list[EstimateRow]:
@@ -146,7 +146,7 @@ def read_estimates(path: Path) -> list[EstimateRow]:
     InputError
         If there is no such file, or a line of it is not as `write_estimates` writes it.
     """
-    return read_csv(path, "the estimates", COLUMNS, _row)
+    return read_csv(path, "the estimates", ESTIMATE_COLUMNS, _row)
 
 
 def _row(line: Mapping[str, str]) -> EstimateRow:

@@ -91,11 +91,11 @@ def versions() -> dict[str, str | None]:
     }
 
 
-ESTIMATES = "estimates.csv"
+ESTIMATES_FILE = "estimates.csv"
 """File of the estimates, a row for each frame."""
-METRICS = "metrics.json"
+METRICS_FILE = "metrics.json"
 """File of the scores, where there is truth."""
-RUN = "run.json"
+RUN_FILE = "run.json"
 """File of what ran: source, parameters, seed, versions."""
 
 
@@ -115,8 +115,8 @@ def write_run(
         If nothing can be written there.
     """
     make_folder(folder)
-    for name in (ESTIMATES, METRICS, RUN):
+    for name in (ESTIMATES_FILE, METRICS_FILE, RUN_FILE):
         with output_errors(folder / name):
             (folder / name).unlink(missing_ok=True)
-    write_estimates(folder / ESTIMATES, rows, extra)
-    write_json(folder / RUN, description)
+    write_estimates(folder / ESTIMATES_FILE, rows, extra)
+    write_json(folder / RUN_FILE, description)

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from vehicle_pf_tracker.results.estimates import read_estimates
-from vehicle_pf_tracker.results.run_folder import ESTIMATES, METRICS, RUN
+from vehicle_pf_tracker.results.run_folder import ESTIMATES_FILE, METRICS_FILE, RUN_FILE
 
-SOURCE = "source.json"
+SOURCE_FILE = "source.json"
 """File in the folder of a source: its name, the key of its results, and why they are not whole."""
 NAME = "source"
 """First column."""
@@ -74,7 +74,7 @@ def read_table(folder: Path, names: Sequence[str]) -> SourceTable:
     found: list[dict[str, Cell]] = []
     failures = {}
     for name in names:
-        facts = _document(folder / name / SOURCE)
+        facts = _document(folder / name / SOURCE_FILE)
         if facts is None:
             continue
         if facts["reason"]:
@@ -91,16 +91,16 @@ def read_table(folder: Path, names: Sequence[str]) -> SourceTable:
 
 def _values(folder: Path) -> Iterator[tuple[str, dict[str, Cell]]]:
     """Give what is shown of each run in a folder, by the name of the vehicle if it has several."""
-    for path in sorted(folder.rglob(RUN)):
+    for path in sorted(folder.rglob(RUN_FILE)):
         at = path.parent
         document = _document(path) or {}
         part = "" if at == folder else at.relative_to(folder).as_posix()
         if "summary" in document:
             yield part, _of_traffic(document["summary"])
-        elif (at / ESTIMATES).exists():
-            modes = Counter(row.mode.lower() for row in read_estimates(at / ESTIMATES))
+        elif (at / ESTIMATES_FILE).exists():
+            modes = Counter(row.mode.lower() for row in read_estimates(at / ESTIMATES_FILE))
             tallies = modes.total(), modes["tracking"], modes["occluded"], modes["lost"]
-            metrics = _document(at / METRICS) or {}
+            metrics = _document(at / METRICS_FILE) or {}
             scores = {name: metrics[name] for name in _SCORES if name in metrics}
             yield part, {**dict(zip(_FOLLOWED, tallies, strict=True)), **scores}
 

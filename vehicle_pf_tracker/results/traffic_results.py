@@ -13,18 +13,18 @@ from dataclasses import astuple
 from pathlib import Path
 from typing import Any, TextIO
 
-from vehicle_pf_tracker.counting.counter import CONFIRMED
+from vehicle_pf_tracker.counting.counter import COUNTED_MODES
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.counting.zone_occupancy import ZoneInterval
 from vehicle_pf_tracker.results.backdating import Backdating, Frames
 from vehicle_pf_tracker.results.output_files import replacing
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
-TRACKS = "tracks.csv"
+TRACKS_FILE = "tracks.csv"
 """File of all vehicles, a row for each in each frame."""
 MOT_TRACKS = "tracks.txt"
 """The same in the format of MOTChallenge, which tools for scoring read."""
-COUNTS = "counts.csv"
+COUNTS_FILE = "counts.csv"
 """File of the crossings, a row for each."""
 ZONES = "zones.csv"
 """File of the occupancy of zones, a row for each zone and interval."""
@@ -70,7 +70,7 @@ _HIDDEN_CONFIDENCE = 0.5
 threshold of a half leaves no predicted box."""
 _MOT_ROW = "{},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.4f},{},{},{}\n"
 """Row of `tracks.txt`, of `mot_numbers`."""
-IN_TRACKS = frozenset({TrackMode.TENTATIVE, *CONFIRMED})
+IN_TRACKS = frozenset({TrackMode.TENTATIVE, *COUNTED_MODES})
 """Modes of numbered vehicles that `tracks.txt` has."""
 
 
@@ -147,7 +147,7 @@ def track_files(
     InputError
         If they cannot be written.
     """
-    asked = {TRACKS: True, MOT_TRACKS: True, COUNTS: counting or zones, ZONES: zones}
+    asked = {TRACKS_FILE: True, MOT_TRACKS: True, COUNTS_FILE: counting or zones, ZONES: zones}
     names = [name for name, is_asked in asked.items() if is_asked]
     with ExitStack() as stack:
         partials = [stack.enter_context(replacing(folder / name)) for name in names]

@@ -12,8 +12,8 @@ from statistics import median
 from typing import Any
 
 from vehicle_pf_tracker.core.box import Position
-from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
-from vehicle_pf_tracker.counting.trust import HELD
+from vehicle_pf_tracker.counting.counter import COUNTED_MODES, Counter
+from vehicle_pf_tracker.counting.trust import HELD_SHARE
 from vehicle_pf_tracker.counting.zone_occupancy import (
     USUAL_INTERVAL_S,
     Occupancy,
@@ -63,7 +63,7 @@ class TrafficSummary:
     def add(self, estimates: Iterable[TrackEstimate]) -> None:
         """Take the next frame."""
         self.frames += 1
-        confirmed = [one for one in estimates if one.mode in (*CONFIRMED, TrackMode.LOST)]
+        confirmed = [one for one in estimates if one.mode in (*COUNTED_MODES, TrackMode.LOST)]
         for one in confirmed:
             self._follow(one)
         followed = {one.identity for one in confirmed} & self.vehicles.keys()
@@ -205,7 +205,7 @@ def _intervals(counter: Counter, place: str, direction: str) -> Iterator[dict[st
     """Return the intervals of the true count: of vehicles, and of each class that crossed."""
     for label in (None, *sorted(filter(None, counter.by_class(place, direction)))):
         low, high = counter.interval(place, direction, label)
-        yield {"class": label, "low": low, "high": high, "probability": HELD}
+        yield {"class": label, "low": low, "high": high, "probability": HELD_SHARE}
 
 
 def _listed(classes: Tally[str]) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from vehicle_pf_tracker.core.errors import InputError, read_text
-from vehicle_pf_tracker.results.traffic_results import COUNTS, TRACKS, ZONES
+from vehicle_pf_tracker.results.traffic_results import COUNTS_FILE, TRACKS_FILE, ZONES
 
 _INTEGERS = {"frame", "stamp_ns", "id", "max"}
 """Columns that are read as integers: a stamp in ns has more digits than a float."""
@@ -40,12 +40,12 @@ def read_tracks(folder: str | Path, *, pandas: bool = False) -> Any:
     InputError
         If it cannot be read, or pandas is not installed.
     """
-    return _read(Path(folder) / TRACKS, pandas)
+    return _read(Path(folder) / TRACKS_FILE, pandas)
 
 
 def read_counts(folder: str | Path, *, pandas: bool = False) -> Any:
     """Read ``counts.csv``, a row for each crossing; see `read_tracks`."""
-    return _read(Path(folder) / COUNTS, pandas)
+    return _read(Path(folder) / COUNTS_FILE, pandas)
 
 
 def read_zones(folder: str | Path, *, pandas: bool = False) -> Any:

@@ -9,7 +9,7 @@ from collections import Counter as Tally
 from dataclasses import dataclass, field
 from enum import Enum
 
-from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, TrackEstimate
+from vehicle_pf_tracker.trackers.traffic.estimate import BORDER_OCCLUDER, TrackEstimate
 
 _SMALLEST_NEAR = 32.0
 """Longer side in px above which a vehicle is not too far: four of the finest cells of a network,
@@ -80,7 +80,7 @@ class VehicleLog:
         """Take a frame in which it is predicted, or lost, in or out of the regions of interest."""
         if self.whereabouts in (Whereabouts.HIDDEN, Whereabouts.FAR):
             return  # where it is predicted to have gone since is not known
-        if one.hidden_by == BORDER:
+        if one.hidden_by == BORDER_OCCLUDER:
             self.whereabouts = Whereabouts.BORDER
         elif self.is_at_edge or is_outside:
             self.whereabouts = Whereabouts.ROI

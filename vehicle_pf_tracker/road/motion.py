@@ -11,7 +11,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 
-KMH = 3.6
+KMH_PER_MS = 3.6
 """km/h in a m/s."""
 _SPEED_SIGMA = 40.0
 """Standard deviation of each part of the velocity before anything is known, m/s: 140 km/h."""

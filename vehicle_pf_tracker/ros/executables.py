@@ -110,9 +110,9 @@ def _run_cameras(words: Sequence[str]) -> int:
 
 def _maker(found: Variant) -> Callable[..., Node]:
     """Return what makes the node of a variant, from the options of `rclpy.node.Node`."""
-    from vehicle_pf_tracker.trackers.registry import TRAFFIC  # noqa: PLC0415
+    from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT  # noqa: PLC0415
 
-    if found is TRAFFIC:
+    if found is TRAFFIC_VARIANT:
         from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode  # noqa: PLC0415
 
         return TrafficNode

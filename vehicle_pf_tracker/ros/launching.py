@@ -22,7 +22,7 @@ from vehicle_pf_tracker.ros.transport import PROFILE_VARIABLES
 from vehicle_pf_tracker.trackers.registry import find_node
 
 # Defaults are constants: a default made of another argument would stay for the next inclusion.
-ARGUMENTS = {
+TRACKER_ARGUMENTS = {
     "variant": ("apf", "Tracker to run"),
     "params_file": ("", "Parameter YAML; empty takes that of the variant"),
     "image_topic": ("/camera/image_raw", "Images; compressed ones are below it, in /compressed"),
@@ -70,7 +70,7 @@ def included_tracker(given: Mapping[str, Any]) -> Any:
     from launch_ros.substitutions import FindPackageShare  # noqa: PLC0415
 
     path = [FindPackageShare("vehicle_pf_tracker"), "launch", "tracker.launch.py"]
-    arguments = {**{name: default for name, (default, _) in ARGUMENTS.items()}, **given}
+    arguments = {**{name: default for name, (default, _) in TRACKER_ARGUMENTS.items()}, **given}
     return IncludeLaunchDescription(
         PythonLaunchDescriptionSource(PathJoinSubstitution(path)),
         launch_arguments=arguments.items(),

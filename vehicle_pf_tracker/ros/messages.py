@@ -41,13 +41,13 @@ try:
 except ImportError:  # an optional package: the nodes work without its topics
     Detection2D = Detection2DArray = ObjectHypothesisWithPose = None
 
-WAITING = "WAITING"
+WAITING_MESSAGE = "WAITING"
 """Message of `~/mode` while there is no target."""
 
 NOT_READY = "loading kernels"
 """Beginning of every answer that a node gives only until its kernels are loaded."""
 
-REJECTED = "REJECTED"
+REJECTED_MESSAGE = "REJECTED"
 """Message of `~/mode` for an image that could not be used."""
 
 TENTATIVE = "TENTATIVE"
@@ -58,8 +58,8 @@ LEVELS: Mapping[str, bytes] = {
     Mode.TRACKING.value: DiagnosticStatus.OK,
     Mode.OCCLUDED.value: DiagnosticStatus.WARN,
     Mode.LOST.value: DiagnosticStatus.ERROR,
-    WAITING: DiagnosticStatus.OK,
-    REJECTED: DiagnosticStatus.ERROR,
+    WAITING_MESSAGE: DiagnosticStatus.OK,
+    REJECTED_MESSAGE: DiagnosticStatus.ERROR,
 }
 """Level of each message of `~/mode`: an operator has to look at errors, and may at warnings."""
 

@@ -17,7 +17,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.scenes.compositing import Colour, Image
 from vehicle_pf_tracker.scenes.random_streams import stream
 
-MARGIN = 12
+SHAKE_MARGIN = 12
 """Stage around the image, px on each side: room for the camera to shake."""
 
 
@@ -94,12 +94,12 @@ class OutdoorCamera:
         """
         shake = self.disturbance.shake
         if shake == 0:
-            return float(MARGIN), float(MARGIN)
+            return float(SHAKE_MARGIN), float(SHAKE_MARGIN)
         # Two rates without a common period, as a mast swings: no frame repeats another.
         phases = stream(self.seed, "mast").uniform(0, 2 * math.pi, (2, 2))
         tremble = stream(self.seed, "tremble", index).uniform(-0.2, 0.2, 2)
         x, y = (
-            MARGIN
+            SHAKE_MARGIN
             + shake * (0.55 * math.sin(index / 3.1 + slow) + 0.25 * math.sin(index + fast) + jump)
             for (slow, fast), jump in zip(phases.tolist(), tremble.tolist(), strict=True)
         )
@@ -121,7 +121,7 @@ class OutdoorCamera:
 
 def _shown(picture: Image, offset: tuple[float, float]) -> Image:
     """Cut the image whose corner is at `offset` (x, y; px) out of the stage, bilinearly."""
-    height, width = (size - 2 * MARGIN for size in picture.shape[:2])
+    height, width = (size - 2 * SHAKE_MARGIN for size in picture.shape[:2])
     left, top = (math.floor(value) for value in offset)
     right, down = (np.float32(value - math.floor(value)) for value in offset)
     image: Image = picture[top : top + height + 1, left : left + width + 1]

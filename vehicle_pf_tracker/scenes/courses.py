@@ -13,7 +13,7 @@ from typing import TypeAlias, TypeVar
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.scene import Path
-from vehicle_pf_tracker.scenes.solids import ELEVATION
+from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION
 
 
 def standing(box: Box) -> Path:
@@ -104,7 +104,7 @@ def straight(start: Pose, pace: Pace) -> Course:
     def course(frame: float) -> Pose:
         gone = pace(frame)
         # The ground is seen from above at an angle: ways into the depth are foreshortened.
-        y = start.y - gone * north * math.sin(ELEVATION)
+        y = start.y - gone * north * math.sin(VIEW_ELEVATION)
         return replace(start, x=start.x + gone * east, y=y)
 
     return course

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.parameters.table import parameter
-from vehicle_pf_tracker.scenes.cameras import DISTURBANCES, MARGIN, OutdoorCamera
+from vehicle_pf_tracker.scenes.cameras import DISTURBANCES, SHAKE_MARGIN, OutdoorCamera
 from vehicle_pf_tracker.scenes.compositing import Colour, Image
 from vehicle_pf_tracker.scenes.courses import (
     Course,
@@ -30,14 +30,14 @@ from vehicle_pf_tracker.scenes.scene import Actor, Scene, stamps_parameter
 from vehicle_pf_tracker.scenes.solids import Face
 from vehicle_pf_tracker.scenes.vehicles import car, suv, truck
 
-SIZES = {"640x480": (640, 480), "768x576": (768, 576)}
+PAPER_SIZES = {"640x480": (640, 480), "768x576": (768, 576)}
 """Width and height in px of the papers' videos, by the word that the parameter takes."""
-FREE = 10
+FREE_PX = 10
 """Free pixels between the vehicle and the image's sides in the first and the last frame."""
-LANE = 1
+TARGET_LANE = 1
 """The target's lane, counted from the far side; there is one farther and one nearer."""
 
-PAINTS: tuple[Colour, ...] = (
+TARGET_PAINTS: tuple[Colour, ...] = (
     (176, 180, 184),
     (58, 62, 68),
     (214, 212, 204),
@@ -69,7 +69,7 @@ class DriveParameters:
         "country", "meadows and hedges, or pavements beside the road", choices=("country", "town")
     )
     resolution: str = parameter(
-        "640x480", "larger images show vehicles a little larger, for longer", choices=SIZES,
+        "640x480", "larger images show vehicles a little larger, for longer", choices=PAPER_SIZES,
         unit="px", source="Scharcanski 2011, table I",
     )  # fmt: skip
     disturbance: str = parameter(
@@ -96,14 +96,14 @@ class Drive:
     def __init__(self, parameters: DriveParameters, seed: int, pace: Pace | None = None) -> None:
         self.parameters = parameters
         self.seed = seed
-        self.image_size = SIZES[parameters.resolution]
-        self.width, self.height = (size + 2 * MARGIN for size in self.image_size)
+        self.image_size = PAPER_SIZES[parameters.resolution]
+        self.width, self.height = (size + 2 * SHAKE_MARGIN for size in self.image_size)
         self.road, self.opposite = self._roads()
         # Drawn in a fixed order below: another number here would change every scene.
         self.rng = stream(seed, "drive")
         self.faces = target_faces(parameters.vehicle, self.rng)
         self.target = Model(self.faces, self.scale)
-        self.start = MARGIN + FREE + self.target.size[0] / 2 + self.rng.uniform(2, 6)
+        self.start = SHAKE_MARGIN + FREE_PX + self.target.size[0] / 2 + self.rng.uniform(2, 6)
         self.pace = pace or Pace.steady(parameters.speed)
 
     @property
@@ -124,12 +124,12 @@ class Drive:
     @property
     def _end(self) -> float:
         """Place of the target's middle in the last frame; another where the drive has a turn."""
-        return self.width - MARGIN - FREE - self.target.size[0] / 2 - 2
+        return self.width - SHAKE_MARGIN - FREE_PX - self.target.size[0] / 2 - 2
 
     @property
     def row(self) -> float:
         """Row of the ground under the target's middle."""
-        return self.road.middle(LANE)
+        return self.road.middle(TARGET_LANE)
 
     def x(self, s: float) -> float:
         """Column of the place `s`."""
@@ -137,13 +137,13 @@ class Drive:
 
     def along(self, share: float) -> float:
         """Place at a share of the image's width: 0 where the target enters, 1 where it leaves."""
-        return MARGIN + share * self.image_size[0]
+        return SHAKE_MARGIN + share * self.image_size[0]
 
     def frame_at(self, s: float) -> float:
         """Frame in which the target's middle is at `s`, but for the driver's swaying."""
         return self.pace.arrival(s - self.start)
 
-    def course(self, s: float, pace: Pace, lane: int = LANE) -> Course:
+    def course(self, s: float, pace: Pace, lane: int = TARGET_LANE) -> Course:
         """Make the course along `lane` of a vehicle whose middle is at `s` when `pace` starts."""
         heading = 0.0 if self.rightward else math.pi
         return straight(Pose(self.x(s), self.road.middle(lane), heading, self.scale), pace)
@@ -154,7 +154,7 @@ class Drive:
         return swaying(course, wave(1.5, 90, phases[0]), wave(0.5, 130, phases[1]))
 
     def meeting(
-        self, faces: Sequence[Face], s: float, speed: float, lane: int = LANE + 1
+        self, faces: Sequence[Face], s: float, speed: float, lane: int = TARGET_LANE + 1
     ) -> list[Actor]:
         """Make a vehicle level with the target when that is at `s`; `speed` in px/frame."""
         pace = Pace(((self.frame_at(s), speed),))
@@ -216,7 +216,7 @@ class Drive:
 
 def target_faces(kind: str, rng: np.random.Generator) -> list[Face]:
     """Make a vehicle of a `kind` of `DriveParameters.vehicle`, its colour left to chance."""
-    paint = PAINTS[rng.integers(len(PAINTS))]
+    paint = TARGET_PAINTS[rng.integers(len(TARGET_PAINTS))]
     if kind == "truck":
         return truck(paint, (216, 214, 206))
     return suv(paint) if kind == "suv" else car(paint)

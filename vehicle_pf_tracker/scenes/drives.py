@@ -12,7 +12,7 @@ from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import Sprite
 from vehicle_pf_tracker.scenes.courses import Pace, moving, standing
-from vehicle_pf_tracker.scenes.drive import LANE, Drive, DriveParameters
+from vehicle_pf_tracker.scenes.drive import TARGET_LANE, Drive, DriveParameters
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene, noise_parameter, stamps_parameter
 from vehicle_pf_tracker.scenes.scenery import bridge as make_bridge
@@ -177,7 +177,9 @@ def bus(parameters: HidingParameters, seed: int) -> Scene:
 def twin(parameters: DriveParameters, seed: int) -> Scene:
     """Make the scene: a vehicle of the same make and colour overtakes slowly in the far lane."""
     drive = Drive(parameters, seed)
-    other = drive.meeting(drive.faces, drive.along(0.5), 1.1 * parameters.speed, lane=LANE - 1)
+    other = drive.meeting(
+        drive.faces, drive.along(0.5), 1.1 * parameters.speed, lane=TARGET_LANE - 1
+    )
     return drive.scene(drive.opposite_traffic(), behind=other)
 
 

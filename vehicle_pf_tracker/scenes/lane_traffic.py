@@ -20,7 +20,7 @@ from vehicle_pf_tracker.scenes.scene import Actor, Path
 from vehicle_pf_tracker.scenes.solids import Face, draw, extent, mirrored, shadow
 from vehicle_pf_tracker.scenes.vehicles import car, saloon, tinted, van
 
-PAINTS: tuple[Colour, ...] = (
+CAR_PAINTS: tuple[Colour, ...] = (
     (222, 222, 220),
     (168, 172, 176),
     (44, 46, 50),
@@ -114,7 +114,7 @@ def any_car(
     lane: Lane, rng: np.random.Generator, kinds: Kinds = (car, saloon, saloon, van)
 ) -> Vehicle:
     """Draw a vehicle of a kind and colour left to chance."""
-    paint = tinted(PAINTS[rng.integers(len(PAINTS))], rng.uniform(0.9, 1.08))
+    paint = tinted(CAR_PAINTS[rng.integers(len(CAR_PAINTS))], rng.uniform(0.9, 1.08))
     return Vehicle(kinds[rng.integers(len(kinds))](paint), lane)
 
 

@@ -14,8 +14,15 @@ import numpy as np
 
 from vehicle_pf_tracker.scenes.compositing import Colour, Image
 from vehicle_pf_tracker.scenes.lane_traffic import Lane
-from vehicle_pf_tracker.scenes.scenery import PAINT, asphalt, concrete, foliage, grass, value_noise
-from vehicle_pf_tracker.scenes.solids import ELEVATION
+from vehicle_pf_tracker.scenes.scenery import (
+    MARKING_PAINT,
+    asphalt,
+    concrete,
+    foliage,
+    grass,
+    value_noise,
+)
+from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION
 
 LANE_WIDTH = 3.25
 """Width of a lane, m: between those of a city (3.0) and a motorway (3.75)."""
@@ -88,7 +95,7 @@ def _stripe(picture: Image, top: int, left: int, right: int, rng: np.random.Gene
         return
     worn = rng.uniform(0.55, 0.9, (2, right - left, 1)).astype(np.float32)
     region = picture[top : top + 2, left:right]
-    region += worn * (np.asarray(PAINT, np.float32) - region)
+    region += worn * (np.asarray(MARKING_PAINT, np.float32) - region)
 
 
 def guard_rail(picture: Image, top: int) -> None:
@@ -122,7 +129,7 @@ class Carriageway:
     @property
     def pitch(self) -> float:
         """Height of one lane in the image, px."""
-        return LANE_WIDTH * self.scale * math.sin(ELEVATION)
+        return LANE_WIDTH * self.scale * math.sin(VIEW_ELEVATION)
 
     @property
     def rows(self) -> slice:

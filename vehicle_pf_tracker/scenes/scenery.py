@@ -15,9 +15,9 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite, interpolate
 from vehicle_pf_tracker.scenes.courses import standing
 from vehicle_pf_tracker.scenes.scene import Actor
-from vehicle_pf_tracker.scenes.solids import SHADE
+from vehicle_pf_tracker.scenes.solids import SHADOW_TINT
 
-PAINT: Colour = (214, 214, 206)
+MARKING_PAINT: Colour = (214, 214, 206)
 """Colour of markings."""
 STEEL: Colour = (128, 132, 134)
 """Lamp posts and poles, weathered."""
@@ -199,7 +199,7 @@ def _deck(width: int, height: int, rng: np.random.Generator) -> Sprite:
         colour[:, side.stop - 2 : side.stop] *= np.float32(0.6)
     colour[:, width - PARAPET - 8 : width - PARAPET] *= np.float32(0.7)
     for top in range(int(rng.integers(-20, 0)), height, 44):
-        colour[max(top, 0) : max(top + 18, 0), width // 2 - 1 : width // 2 + 1] = PAINT
+        colour[max(top, 0) : max(top + 18, 0), width // 2 - 1 : width // 2 + 1] = MARKING_PAINT
     return Sprite(colour.clip(0, 255), np.ones((height, width)))
 
 
@@ -207,4 +207,4 @@ def _soft_band(width: int) -> Sprite:
     """Make a shadow with a penumbra of 4 px."""
     from_edge = np.minimum(np.arange(width) + 0.5, width - np.arange(width) - 0.5)
     opacity = 0.4 * np.clip(from_edge / 4, 0, 1)
-    return Sprite(np.tile(SHADE, (1, width, 1)), opacity[np.newaxis])
+    return Sprite(np.tile(SHADOW_TINT, (1, width, 1)), opacity[np.newaxis])

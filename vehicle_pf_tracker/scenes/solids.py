@@ -21,18 +21,18 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
 from vehicle_pf_tracker.scenes.polygons import cells_inside
 
-ELEVATION = math.radians(35)
+VIEW_ELEVATION = math.radians(35)
 """Angle of the view above the horizon: that of a camera on a bridge or a mast near the road."""
-SHADE: Colour = (12, 14, 20)
+SHADOW_TINT: Colour = (12, 14, 20)
 """Colour that shadows are tinted with."""
 OVERSAMPLING = 6
 """Cells drawn per pixel and axis: 36 levels of coverage at an edge, finer than the noise."""
 SAME_PLACE = 0.08
 """A face no more than this behind another (m) is taken as painted on it, if drawn later."""
 
-_VIEW = np.array([0.0, -math.cos(ELEVATION), math.sin(ELEVATION)])
+_VIEW = np.array([0.0, -math.cos(VIEW_ELEVATION), math.sin(VIEW_ELEVATION)])
 """Unit vector towards the viewer."""
-_DOWN = np.array([0.0, -math.sin(ELEVATION), -math.cos(ELEVATION)])
+_DOWN = np.array([0.0, -math.sin(VIEW_ELEVATION), -math.cos(VIEW_ELEVATION)])
 """Unit vector that points down in the image."""
 _SUN = np.array([0.35, 0.4, 0.85])
 """Direction of the sun, nearly of length 1: high, so that shadows stay beside their vehicles."""
@@ -88,7 +88,7 @@ def shadow(faces: Iterable[Face]) -> list[Face]:
     cast = [
         face.moved(lambda x, y, z: (x - z * east / up, y - z * away / up, 0.0)) for face in faces
     ]
-    return [replace(face, colour=SHADE, glow=True) for face in cast]
+    return [replace(face, colour=SHADOW_TINT, glow=True) for face in cast]
 
 
 def extent(faces: Iterable[Face]) -> Box:
@@ -144,7 +144,7 @@ def _nearness(face: Face, x: Array, y: Array) -> tuple[Array, float]:
 
 def _project(face: Face) -> Array:
     x, y, z = np.transpose(face.points)
-    return np.stack([x, -z * math.cos(ELEVATION) - y * math.sin(ELEVATION)], axis=1)
+    return np.stack([x, -z * math.cos(VIEW_ELEVATION) - y * math.sin(VIEW_ELEVATION)], axis=1)
 
 
 def lit(colour: Colour, normal: Array) -> Colour:

@@ -164,7 +164,7 @@ def dashes(corners: Sequence[Position], dash: float) -> Iterator[Array]:
             yield start + (end - start) / length * np.array([[along], [min(along + dash, length)]])
 
 
-COLOURS: dict[str, Colour] = {
+MODE_COLOURS: dict[str, Colour] = {
     Mode.TRACKING.value: (64, 220, 64),
     Mode.OCCLUDED.value: (255, 176, 0),
     Mode.LOST.value: (255, 48, 48),
@@ -203,7 +203,7 @@ class Annotator:
         """
         if estimate is None or estimate.mode is Mode.LOST:
             return False
-        colour = COLOURS[estimate.mode.value]
+        colour = MODE_COLOURS[estimate.mode.value]
         width = line_width(picture)
         if self._shows_particles:
             for centre in pixels_at(estimate.particles):
@@ -225,7 +225,7 @@ def draw_target(
     """
     if annotator.draw(picture, estimate, words):
         return False
-    write_line(picture, words, COLOURS.get(mode, NEUTRAL), row)
+    write_line(picture, words, MODE_COLOURS.get(mode, NEUTRAL), row)
     return True
 
 

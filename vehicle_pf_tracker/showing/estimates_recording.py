@@ -56,7 +56,7 @@ def image_annotations(name: str, row: EstimateRow, size: tuple[int, int]) -> Any
     width = drawing.line_width_of(size)
     stamp = messages.header(row.stamp_ns).stamp
     height = float(_LETTERS * width)
-    colour = _colour(drawing.COLOURS[row.mode])
+    colour = _colour(drawing.MODE_COLOURS[row.mode])
     is_dashed = row.mode == Mode.OCCLUDED
     dashes = drawing.dashes(box.corners, _DASH * width)
     ends = np.concatenate(list(dashes)) if is_dashed else box.corners

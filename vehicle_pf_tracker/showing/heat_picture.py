@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.counting.counter import CONFIRMED
+from vehicle_pf_tracker.counting.counter import COUNTED_MODES
 from vehicle_pf_tracker.results.output_files import write_picture
 from vehicle_pf_tracker.showing import drawing
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
@@ -61,7 +61,7 @@ class HeatPicture:
             self._seconds = np.zeros((2, *frame.shape[:2]), np.float32)
         width, height = frame_size(frame)
         for one in estimates:
-            if one.mode in CONFIRMED:
+            if one.mode in COUNTED_MODES:
                 box = one.box
                 speed = float(np.hypot(*one.velocity)) / period
                 left, _ = box.corners[0]

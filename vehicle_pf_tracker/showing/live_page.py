@@ -13,9 +13,9 @@ from importlib import resources
 
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import jpeg
-from vehicle_pf_tracker.showing.page_server import LOCAL, Content, PageHandler, PageServer
+from vehicle_pf_tracker.showing.page_server import LOCAL_ADDRESS, Content, PageHandler, PageServer
 
-PAGE = "the live page"
+PAGE_NAME = "the live page"
 """Name of the page in messages."""
 _SECONDS = 2.0
 """Longest wait for the next image, after which the one before is shown: cameras of less than one
@@ -45,7 +45,7 @@ class LivePage(PageServer):
         If the port cannot be had.
     """
 
-    def __init__(self, port: int, host: str = LOCAL, token: str = "") -> None:
+    def __init__(self, port: int, host: str = LOCAL_ADDRESS, token: str = "") -> None:
         super().__init__(PageHandler, port, host, token)
         self._shown = threading.Condition()
         self._is_wanted = False

@@ -29,7 +29,7 @@ _MOST_STRANGERS = 64
 """Connections that have not asked under the secret path yet, which cost a thread each."""
 
 
-LOCAL = "127.0.0.1"
+LOCAL_ADDRESS = "127.0.0.1"
 """Address of this machine alone."""
 _EVERYWHERE = frozenset({"0.0.0.0", "::"})  # noqa: S104 - only where it is asked for
 """Addresses at which a server listens on every network."""
@@ -69,7 +69,7 @@ class PageServer(ThreadingHTTPServer):
     block_on_close = False
 
     def __init__(
-        self, handler: type[PageHandler], port: int = 0, host: str = LOCAL, token: str = ""
+        self, handler: type[PageHandler], port: int = 0, host: str = LOCAL_ADDRESS, token: str = ""
     ) -> None:
         self.address_family = socket.AF_INET6 if ":" in host else socket.AF_INET
         try:

@@ -15,7 +15,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
+from vehicle_pf_tracker.counting.counter import COUNTED_MODES, Counter
 from vehicle_pf_tracker.results.output_files import write_picture
 from vehicle_pf_tracker.showing import drawing
 from vehicle_pf_tracker.showing.drawing import Labels
@@ -113,7 +113,7 @@ class PathPicture:
             self.ground = frame.copy()
             self._on_ground = visible
         for one in estimates:
-            if one.mode in CONFIRMED:
+            if one.mode in COUNTED_MODES:
                 (end,) = drawing.pixels_at(np.array([one.box.centre]) * self._scale)
                 begin = self._ends.get(one.identity, end)
                 self._ends[one.identity] = end

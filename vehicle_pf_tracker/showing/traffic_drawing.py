@@ -14,7 +14,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
+from vehicle_pf_tracker.counting.counter import COUNTED_MODES, Counter
 from vehicle_pf_tracker.counting.foot_point import foot_of
 from vehicle_pf_tracker.counting.zone_watch import ZONE_ENTRY, ZONE_EXIT
 from vehicle_pf_tracker.showing import drawing
@@ -49,7 +49,7 @@ class Trails:
         before = self.of
         self.of = {}
         for one in estimates:
-            if one.mode in CONFIRMED:
+            if one.mode in COUNTED_MODES:
                 self.of[one.serial] = before.get(one.serial) or deque(maxlen=_TRAIL)
                 self.of[one.serial].append(foot_of(one.box))
 
@@ -62,7 +62,7 @@ def draw_vehicle(
     The box is in the colour of its number, and dashed where it is predicted; a vehicle that is
     tentative or lost has none.
     """
-    if estimate.mode not in CONFIRMED:
+    if estimate.mode not in COUNTED_MODES:
         return
     width = drawing.line_width(picture)
     colour = identity_colour(estimate.identity)

@@ -15,9 +15,9 @@ from vehicle_pf_tracker.showing.path_picture import PathPicture
 from vehicle_pf_tracker.showing.side_products import SideProducts
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 
-PATHS = "summary.png"
+PATHS_FILE = "summary.png"
 """Picture of the vehicles' paths."""
-HEAT = "heat.png"
+HEAT_FILE = "heat.png"
 """Picture of where vehicles drove and stood."""
 
 
@@ -39,9 +39,9 @@ class TrafficPictures:
         self, frame: Frame, estimates: Sequence[TrackEstimate], stamp_ns: int, period: float
     ) -> None:
         """Take the next frame and the nominal period in s."""
-        with self._side.attempt(PATHS):
+        with self._side.attempt(PATHS_FILE):
             self._paths.add(frame, estimates)
-        with self._side.attempt(HEAT):
+        with self._side.attempt(HEAT_FILE):
             self._heat.add(frame, estimates, stamp_ns, period)
 
     def write(self, folder: Path, counter: Counter) -> bool:
@@ -50,15 +50,15 @@ class TrafficPictures:
         Without a frame there is none, and none of an earlier run is left.
         """
         ground = self._paths.ground
-        for name in (PATHS, HEAT):
+        for name in (PATHS_FILE, HEAT_FILE):
             with self._side.attempt(name):
                 (folder / name).unlink(missing_ok=True)
         if ground is None:
             return False
-        if not self._side.failed(PATHS):
-            with self._side.attempt(PATHS):
-                self._paths.write(folder / PATHS, counter)
-        if not self._side.failed(HEAT):
-            with self._side.attempt(HEAT):
-                self._heat.write(folder / HEAT, ground)
-        return not self._side.failed(PATHS)
+        if not self._side.failed(PATHS_FILE):
+            with self._side.attempt(PATHS_FILE):
+                self._paths.write(folder / PATHS_FILE, counter)
+        if not self._side.failed(HEAT_FILE):
+            with self._side.attempt(HEAT_FILE):
+                self._heat.write(folder / HEAT_FILE, ground)
+        return not self._side.failed(PATHS_FILE)

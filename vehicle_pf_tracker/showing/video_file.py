@@ -18,7 +18,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.results.output_files import make_folder, replacing
 
-SUFFIX = ".mp4"
+VIDEO_SUFFIX = ".mp4"
 """Ending of a video: the container that browsers play everywhere."""
 _TICKS = 90_000
 """Ticks of an H.264 video's clock per second, those of MPEG: whole for every usual frame rate."""
@@ -45,8 +45,8 @@ def check_video(path: Path) -> None:
     ModuleNotFoundError
         If PyAV is not installed: OpenCV's wheels have no encoder that browsers play.
     """
-    if path.suffix != SUFFIX:
-        raise InputError(f"the video {path} must end in {SUFFIX}")
+    if path.suffix != VIDEO_SUFFIX:
+        raise InputError(f"the video {path} must end in {VIDEO_SUFFIX}")
     importlib.import_module("av")
 
 

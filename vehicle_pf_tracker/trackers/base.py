@@ -21,7 +21,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
-from vehicle_pf_tracker.filtering.resampling import SCHEMES, Ancestors
+from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES, Ancestors
 from vehicle_pf_tracker.filtering.weights import Weights, effective_sample_size
 from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.kernels.interface import load_kernels
@@ -328,7 +328,7 @@ class ParticleTracker(BaseTracker[ParticleParametersT]):
 
     def _draw(self, weights: Weights, scheme: str) -> Ancestors:
         """Draw the particles that the next ones come from by a named scheme, as indices."""
-        return SCHEMES[scheme](weights, self.parameters.num_particles, self._rng)
+        return RESAMPLING_SCHEMES[scheme](weights, self.parameters.num_particles, self._rng)
 
 
 def drawn_seed(seed: int) -> int:

@@ -29,7 +29,7 @@ _LATE = 1.5
 comes two intervals after the image before, is at least two late; half a one allows for jitter."""
 _REMEMBERED = 10
 """Intervals whose smallest is the usual one: it survives a run of dropped images."""
-PATIENCE = 10
+ODD_STAMP_PATIENCE = 10
 """Odd stamps in a row after which a camera is taken to have no usable clock."""
 _AGREED = "; rejected unless the next image agrees with it"
 
@@ -107,7 +107,7 @@ class Continuity:
         self._doubted = image
         self._odd += 1
         # A clock that never agrees is no reason to lose the target: frames count one period each.
-        if self._odd > PATIENCE and size == self.size:
+        if self._odd > ODD_STAMP_PATIENCE and size == self.size:
             return Continuation.UNTIMED
         raise StrayImageError(reason + _AGREED)
 

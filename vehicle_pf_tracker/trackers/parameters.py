@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.image.kernels.interface import CHOICES, load_kernels
+from vehicle_pf_tracker.image.kernels.interface import KERNEL_CHOICES, load_kernels
 from vehicle_pf_tracker.parameters.table import group, parameter
 
 share = functools.partial(parameter, bounds=(0.0, 1.0))
@@ -90,7 +90,7 @@ class CommonParameters:
         "auto",
         "Code that measures windows: numba is several times faster, opencv always available; "
         "auto takes numba where it is installed. Estimates may differ in their last digits.",
-        choices=CHOICES,
+        choices=KERNEL_CHOICES,
     )
     window: WindowParameters = group(WindowParameters)
     evidence: EvidenceParameters = group(EvidenceParameters)

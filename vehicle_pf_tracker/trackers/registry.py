@@ -151,7 +151,7 @@ _ENTRIES = (
 VARIANTS: Mapping[str, Variant] = MappingProxyType({entry.name: entry for entry in _ENTRIES})
 """Every variant by name."""
 
-TRAFFIC = Variant(
+TRAFFIC_VARIANT = Variant(
     "traffic",
     ".traffic.tracker:Traffic",
     "every vehicle in view, with identities (this package)",
@@ -160,7 +160,7 @@ TRAFFIC = Variant(
 """Tracker of many vehicles. It has parameters and a node as variants do, but takes no target and
 gives no `Estimate`, so that what runs variants cannot run it."""
 
-NODES: Mapping[str, Variant] = MappingProxyType({**VARIANTS, TRAFFIC.name: TRAFFIC})
+NODES: Mapping[str, Variant] = MappingProxyType({**VARIANTS, TRAFFIC_VARIANT.name: TRAFFIC_VARIANT})
 """Everything that has a node, by name."""
 
 
@@ -181,7 +181,7 @@ def find_variant(name: str, own: Mapping[str, Variant] = VARIANTS) -> Variant:
 
 
 def find_node(name: str) -> Variant:
-    """Look up a variant, or `TRAFFIC`.
+    """Look up a variant, or `TRAFFIC_VARIANT`.
 
     Raises
     ------

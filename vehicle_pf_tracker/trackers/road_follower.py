@@ -12,7 +12,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.road.motion import KMH, RoadMotion
+from vehicle_pf_tracker.road.motion import KMH_PER_MS, RoadMotion
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
@@ -171,7 +171,11 @@ class RoadFollower:
             self.objection = "the vehicle was not visible on the road yet"
             return None
         return RoadEstimate(
-            position, on_road, motion.velocity, motion.speed * KMH, motion.speed_deviation * KMH
+            position,
+            on_road,
+            motion.velocity,
+            motion.speed * KMH_PER_MS,
+            motion.speed_deviation * KMH_PER_MS,
         )
 
     def _object(self, estimate: Estimate, contact: Array) -> str:

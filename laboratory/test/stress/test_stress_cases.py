@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stress_samples import COUNT, FPS, RED, WIDTH, box_of, red_share, write_sequence
 
-from laboratory.stress import KINDS, find_sequences, list_cases
+from laboratory.stress import STRESS_KINDS, find_sequences, list_cases
 from laboratory.stress.changes import Brightness, Gamma, Noise, Reduction, Shake
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -140,7 +140,7 @@ def test_reduced_truth_is_where_the_reduced_vehicle_is():
 
 
 def test_every_kind_is_described_and_plays(battery):
-    for kind in KINDS.values():
+    for kind in STRESS_KINDS.values():
         cases = [case for case in battery if case.kind == kind.name]
         assert cases, kind.name
         frame, elapsed, first = next(cases[0].play())

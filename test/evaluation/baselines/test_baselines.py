@@ -19,8 +19,8 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation import baseline_process as client
 from vehicle_pf_tracker.evaluation import baseline_worker as worker
 from vehicle_pf_tracker.evaluation.baseline_process import (
-    DEFAULT,
-    VARIABLE,
+    BASELINES_VARIABLE,
+    DEFAULT_INTERPRETER,
     baseline_python,
     install_command,
 )
@@ -132,25 +132,25 @@ def test_the_interpreter_is_the_chosen_one_else_the_variables_else_the_default_e
     tmp_path, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.delenv(BASELINES_VARIABLE, raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "my cache"))
     environment = "my cache/vehicle_pf_tracker/baselines"
-    with pytest.raises(InputError, match=rf"no interpreter .*{VARIABLE}") as caught:
+    with pytest.raises(InputError, match=rf"no interpreter .*{BASELINES_VARIABLE}") as caught:
         baseline_python()
     assert f"`{install_command()}`" in str(caught.value)
     assert shlex.split(install_command())[3] == str(tmp_path / environment)
     assert Path(shlex.split(install_command())[-1]).is_file()
-    monkeypatch.setenv(VARIABLE, "missing")
+    monkeypatch.setenv(BASELINES_VARIABLE, "missing")
     with pytest.raises(InputError, match="no interpreter missing to run"):
         baseline_python()
-    monkeypatch.delenv(VARIABLE)
-    for name in (f"{environment}/bin/python", str(DEFAULT), "named", "chosen"):
+    monkeypatch.delenv(BASELINES_VARIABLE)
+    for name in (f"{environment}/bin/python", str(DEFAULT_INTERPRETER), "named", "chosen"):
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.symlink_to(sys.executable)
         if name not in ("named", "chosen"):
             assert baseline_python() == path  # and not what it links to
-    monkeypatch.setenv(VARIABLE, "named")
+    monkeypatch.setenv(BASELINES_VARIABLE, "named")
     assert baseline_python() == tmp_path / "named"
     assert baseline_python(Path("chosen")) == tmp_path / "chosen"
 

@@ -10,7 +10,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.plots import stretches
 from vehicle_pf_tracker.evaluation.report.figures import (
-    COLOURS,
+    FIGURE_COLOURS,
     LEAST_ERROR,
     Drawn,
     draw_errors,
@@ -45,9 +45,9 @@ def test_no_two_figures_of_a_page_share_an_id():
     ids = []
     for number in range(2):
         figure = Figure()
-        figure.add_subplot().plot([1, 2], [3, 4], color=COLOURS["s1"])
+        figure.add_subplot().plot([1, 2], [3, 4], color=FIGURE_COLOURS["s1"])
         svg = svg_element(Drawn(figure, "", 'a "b" & c'), number)
         assert 'aria-label="a &quot;b&quot; &amp; c"' in svg
-        assert "var(--s1)" in svg and COLOURS["s1"] not in svg
+        assert "var(--s1)" in svg and FIGURE_COLOURS["s1"] not in svg
         ids += [part.split('"')[0] for part in svg.split(' id="')[1:]]
     assert len(ids) == len(set(ids)) > 4

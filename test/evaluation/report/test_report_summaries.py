@@ -11,7 +11,7 @@ import pytest
 from evaluation_samples import ALONE, HIDDEN, SEEDS, VARIANTS
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.evaluation.columns import COLUMNS
+from vehicle_pf_tracker.evaluation.columns import METRIC_COLUMNS
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     EvaluationFolder,
     cell_folder,
@@ -121,7 +121,7 @@ def test_csv_has_a_line_for_each_mean(evaluation, aggregates):
     assert (one["unit"], one["count"]) == ("px", str(len(SEEDS)))
     overall = [r for r in rows if r["recording"] == writing.ALL_RECORDINGS]
     assert {r["system"] for r in overall} == set(VARIANTS)
-    assert {r["metric"] for r in overall} <= {column.key for column in COLUMNS}
+    assert {r["metric"] for r in overall} <= {column.key for column in METRIC_COLUMNS}
 
 
 def test_results_of_different_versions_are_told(evaluation_copy, capsys):

@@ -14,7 +14,7 @@ from scored_scenes import scene
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation import baseline_process as client
-from vehicle_pf_tracker.evaluation.baseline_process import DEFAULT, VARIABLE
+from vehicle_pf_tracker.evaluation.baseline_process import BASELINES_VARIABLE, DEFAULT_INTERPRETER
 from vehicle_pf_tracker.evaluation.traffic.baselines import TRAFFIC_BASELINES, TrafficWorker
 
 PYTHON = Path(sys.executable)
@@ -23,7 +23,7 @@ FRAMES, SIZE = 30, (200, 120)
 
 def environment():
     """The interpreter that `make baselines` builds, if it has what is needed."""
-    python = Path(os.environ.get(VARIABLE) or DEFAULT)
+    python = Path(os.environ.get(BASELINES_VARIABLE) or DEFAULT_INTERPRETER)
     probe = [str(python), "-c", "import trackers, trackeval"]
     if not python.is_file() or subprocess.run(probe, capture_output=True, check=False).returncode:
         pytest.skip("needs TrackEval and trackers: `make baselines`")

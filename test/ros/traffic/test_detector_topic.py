@@ -34,7 +34,7 @@ from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 from vehicle_pf_tracker.ros.traffic import traffic_node
 from vehicle_pf_tracker.ros.traffic.traffic_node import TrafficNode
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
-from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
@@ -124,7 +124,7 @@ def rig(bench, vision, monkeypatch):
 
 
 def test_vehicles_are_followed_as_offline_with_the_same_detections(rig):
-    tracker = TrafficSession(MultiVehicleTracker(TRAFFIC.parameters()))
+    tracker = TrafficSession(MultiVehicleTracker(TRAFFIC_VARIANT.parameters()))
     out = rig.bench.collect(rig.vision.Detection2DArray, f"{NODE}/detections", QUEUE)
     for index in range(COUNT):
         rig.answered(index)
@@ -157,7 +157,7 @@ def test_a_detector_that_stops_is_told_once_and_vehicles_stay(bench, vision, mon
 
 def test_a_detector_may_answer_every_third_image(bench, vision, monkeypatch):
     rig = DetectorRig(bench, vision, monkeypatch, detector__every=3)
-    tracker = TrafficSession(MultiVehicleTracker(TRAFFIC.parameters()))
+    tracker = TrafficSession(MultiVehicleTracker(TRAFFIC_VARIANT.parameters()))
     for index in range(COUNT - 1):
         found = None
         if index % 3:
@@ -173,7 +173,7 @@ def test_a_detector_may_answer_every_third_image(bench, vision, monkeypatch):
 
 
 def test_a_lockstep_replay_waits_for_the_detector(rig, start_process, tmp_path):
-    tracker, expected = TrafficSession(MultiVehicleTracker(TRAFFIC.parameters())), []
+    tracker, expected = TrafficSession(MultiVehicleTracker(TRAFFIC_VARIANT.parameters())), []
     with RecordingWriter(tmp_path / "bag") as writer:
         for index, frame in enumerate(rig.frames[:COUNT]):
             writer.write_image(FIRST_NS + index * PERIOD_NS, frame)

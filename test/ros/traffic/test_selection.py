@@ -8,7 +8,7 @@ import pytest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.node.notices import Notices
-from vehicle_pf_tracker.ros.traffic.vehicles import NONE, Selection
+from vehicle_pf_tracker.ros.traffic.vehicles import NO_VEHICLE, Selection
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 
@@ -60,14 +60,14 @@ def test_a_number_that_no_vehicle_has_is_refused_with_those_there_are():
     many = [vehicle(number, 0, 0) for number in range(1, 21)]
     with pytest.raises(InputError, match=r"8, 9, 10, …$"):
         selection.choose(-1, many)
-    assert selection.identity == NONE
+    assert selection.identity == NO_VEHICLE
 
 
 def test_a_selected_vehicle_that_is_gone_has_no_estimate():
     selection = Selection()
     selection.choose(3, VEHICLES)
     assert selection.of(VEHICLES[1:]) is None
-    selection.choose(NONE, ())
+    selection.choose(NO_VEHICLE, ())
     assert selection.of(VEHICLES) is None
 
 

@@ -35,8 +35,8 @@ from vehicle_pf_tracker.following.detectors import detector_maker
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
 from vehicle_pf_tracker.ros.messages import image_message
-from vehicle_pf_tracker.ros.traffic.messages import CODES
-from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.ros.traffic.messages import MODE_CODES
+from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
@@ -54,7 +54,7 @@ def rig(bench):
 
 def offline(frames):
     """What the session says of the same frames without ROS."""
-    parameters = TRAFFIC.parameters()
+    parameters = TRAFFIC_VARIANT.parameters()
     session = TrafficSession(MultiVehicleTracker(parameters), detector_maker(parameters.detector))
     return [session.feed(frame, i * PERIOD_NS + 10**9) for i, frame in enumerate(frames)]
 
@@ -103,11 +103,11 @@ def test_tracks_have_a_point_for_each_vehicle(rig):
     found = points(cloud)
     assert len(found) == cloud.width == len(estimates) >= 2
     for point, one in zip(found, estimates, strict=True):
-        assert (point["id"], point["mode"]) == (one.identity, CODES[one.mode])
+        assert (point["id"], point["mode"]) == (one.identity, MODE_CODES[one.mode])
         assert point["x"] == np.float32(one.position[0])
         assert point["height"] == np.float32(one.box.height)
         assert point["vx"] == pytest.approx(one.velocity[0] / (PERIOD_NS * 1e-9), rel=1e-5)
-    assert CODES == {
+    assert MODE_CODES == {
         TrackMode.TENTATIVE: 0, TrackMode.TRACKING: 1, TrackMode.OCCLUDED: 2, TrackMode.LOST: 3,
     }  # fmt: skip
 
@@ -364,7 +364,7 @@ def test_pixels_may_have_a_frame_of_their_own(bench):
 
 
 def test_every_parameter_of_its_tables_is_declared(rig):
-    for name, spec in Configuration.of(TRAFFIC).specs().items():
+    for name, spec in Configuration.of(TRAFFIC_VARIANT).specs().items():
         if name == "queue_depth":  # the rig's
             continue
         found = rig.node.get_parameter(name).value

@@ -12,11 +12,11 @@ from traffic_samples import changed, step_of, together, track
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import birth_odds
 from vehicle_pf_tracker.trackers.traffic.candidates import weighed
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, PLACES
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, PLACE_COUNT
 from vehicle_pf_tracker.trackers.traffic.ending import end
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.existence import (
-    CERTAIN,
+    CERTAIN_LOG_ODDS,
     believed,
     doubt,
     fits_of_known,
@@ -225,7 +225,7 @@ def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
 def vanish(experience, left, *, given=False):
     """Return a vehicle that the detector missed several times in plain sight."""
     facts = {"confirmed": True, "has_driven": True, "given": given}
-    state = State(track(1, left, **facts, log_odds=CERTAIN, undetected=1.0), experience)
+    state = State(track(1, left, **facts, log_odds=CERTAIN_LOG_ODDS, undetected=1.0), experience)
     for _ in range(4):
         state = end(doubt(state, STEP), STEP)
     return state.tracks
@@ -265,7 +265,7 @@ def test_the_share_of_a_place_is_a_beta_binomial_estimate():
     come_back(experience, 200.0)
     usual = (1 + 1) / (3 + 2)
     places = [vanish(experience, left).sights.absences.vanished[0] for left in (20.0, 200.0)]
-    assert all(0 <= place < PLACES for place in places)
+    assert all(0 <= place < PLACE_COUNT for place in places)
     shares = [experience.reappearances.share(int(place)) for place in places]
     assert shares == pytest.approx([2 * usual / 4, (1 + 2 * usual) / 3])
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.parameters import IGNORE, TrafficParameters
+from vehicle_pf_tracker.trackers.traffic.parameters import IGNORE_STANDING, TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 GROUND = np.random.default_rng(0).integers(90, 130, (240, 640, 3)).astype(np.uint8)
 IGNORED = TrafficParameters()
-IGNORED = replace(IGNORED, birth=replace(IGNORED.birth, standing=IGNORE))
+IGNORED = replace(IGNORED, birth=replace(IGNORED.birth, standing=IGNORE_STANDING))
 
 
 def reported(score, *, stands=0, drives=0.0, parameters=None, shape=False, images=240, seed=None):

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from traffic_samples import changed, together, track
 
-from vehicle_pf_tracker.trackers.traffic.colours import BINS
+from vehicle_pf_tracker.trackers.traffic.colours import COLOUR_BINS
 from vehicle_pf_tracker.trackers.traffic.identity import former, resumed
 from vehicle_pf_tracker.trackers.traffic.report import estimates_of
 from vehicle_pf_tracker.trackers.traffic.state import Experience
 
-RED, BLUE = np.eye(BINS)[:2]
+RED, BLUE = np.eye(COLOUR_BINS)[:2]
 
 
 def confirmed(number, left, colours=RED, **facts):

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.detections import MOST_DETECTIONS, Detections
-from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import BORDER_OCCLUDER, SCENE_OCCLUDER, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Gaussians
@@ -81,7 +81,7 @@ def test_a_vehicle_behind_something_is_occluded_and_comes_back_under_its_number(
         if hidden:
             modes += [(one.mode, one.hidden_by) for one in estimates]
     assert set(numbers) == {1}
-    assert set(modes) == {(TrackMode.OCCLUDED, SCENE)}
+    assert set(modes) == {(TrackMode.OCCLUDED, SCENE_OCCLUDER)}
     assert estimates[0].mode is TrackMode.TRACKING
 
 
@@ -115,7 +115,7 @@ def test_a_vehicle_that_leaves_is_lost_and_the_border_hides_it():
         seen = [(max(place, 0), 100, 40 + min(place, 0), 30)] if place > left else []
         estimates = tracker.step(GROUND, Detections.make(np.reshape(seen, (-1, 4))))
         modes += [(one.mode, one.hidden_by) for one in estimates if one.identity]
-    assert modes[-1] == (TrackMode.LOST, BORDER)
+    assert modes[-1] == (TrackMode.LOST, BORDER_OCCLUDER)
     assert {mode for mode, _ in modes} == {TrackMode.TRACKING, TrackMode.LOST}
     assert not estimates
 

@@ -16,11 +16,11 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.cache_key import result_key, variant_modules
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
-    FORMAT,
-    PLAN,
+    FOLDER_FORMAT,
+    PLAN_FILE,
     RECORDINGS_FOLDER,
-    RESTART,
-    TRUTH,
+    RESTART_KEY,
+    TRUTH_FILE,
     Source,
     cell_folder,
     safe_name,
@@ -62,7 +62,7 @@ class GridCell:
             "recording": self.source.digest,
             "topic": self.source.topic,
             "max_diff": self.max_diff,
-            RESTART: self.restart,
+            RESTART_KEY: self.restart,
             **self.system.facts(self.seed),
         }
         # A baseline runs none of our trackers: their changes leave its results valid.
@@ -159,12 +159,12 @@ class Plan:
     def write(self, folder: Path) -> None:
         """Write `evaluation.json` and the truth of every recording."""
         for source, truths in self.recordings.items():
-            write_truth(make_folder(folder / RECORDINGS_FOLDER / source.name) / TRUTH, truths)
+            write_truth(make_folder(folder / RECORDINGS_FOLDER / source.name) / TRUTH_FILE, truths)
         # The seeds of each system, too: a reader of the folder need not know which are
         # deterministic.
-        restart = {} if self.restart is None else {RESTART: self.restart}
+        restart = {} if self.restart is None else {RESTART_KEY: self.restart}
         plan = {
-            "format": FORMAT,
+            "format": FOLDER_FORMAT,
             "command": self.command,
             "recordings": [asdict(source) for source in self.recordings],
             "systems": [
@@ -175,4 +175,4 @@ class Plan:
             "versions": versions(),
             "options": {"max_diff": self.max_diff, **restart},
         }
-        write_json(folder / PLAN, plan)
+        write_json(folder / PLAN_FILE, plan)

@@ -14,12 +14,12 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
     CELLS_FOLDER,
-    PLAN,
+    PLAN_FILE,
     RECORDINGS_FOLDER,
     read_document,
 )
 from vehicle_pf_tracker.results.output_files import make_folder, write_json
-from vehicle_pf_tracker.results.run_folder import METRICS
+from vehicle_pf_tracker.results.run_folder import METRICS_FILE
 
 _PLANNED = ("format", "systems", "seeds", "options")
 """Keys of the plan that are equal in all parts of one evaluation, as their recordings are."""
@@ -36,12 +36,12 @@ def merge(parts: Sequence[Path], output: Path) -> int:
         If a folder is none of an evaluation, two are not of one evaluation, or nothing can be
         written.
     """
-    plans = {part: read_document(part / PLAN) for part in parts}
+    plans = {part: read_document(part / PLAN_FILE) for part in parts}
     first = parts[0]
     for part, plan in plans.items():
         _check_alike(first, plans[first], part, plan)
     make_folder(output)
-    write_json(output / PLAN, plans[first])
+    write_json(output / PLAN_FILE, plans[first])
     with output_errors(output):
         for part in parts:
             _copy(part / RECORDINGS_FOLDER, output / RECORDINGS_FOLDER)
@@ -74,9 +74,9 @@ def _copy(folder: Path, target: Path) -> None:
 
 
 def _copy_cell(cell: Path, target: Path) -> None:
-    has_result = (cell / METRICS).is_file()
+    has_result = (cell / METRICS_FILE).is_file()
     # Only a failed cell gives way, and only to a result.
-    if target.exists() and (not has_result or (target / METRICS).is_file()):
+    if target.exists() and (not has_result or (target / METRICS_FILE).is_file()):
         return
     target.parent.mkdir(parents=True, exist_ok=True)
     # At its place only when it is whole: a copy that is broken off is no cell.

@@ -19,9 +19,9 @@ from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
-    FAILED,
-    RESTART,
-    RESTARTED,
+    FAILED_FILE,
+    RESTART_KEY,
+    RESTARTED_FILE,
     read_document,
 )
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell, Plan
@@ -29,12 +29,17 @@ from vehicle_pf_tracker.evaluation.grid.sources import SourceFootage, footage
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.restarts import measure_restarts, with_restarts
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.evaluation.systems import BASELINE, System
+from vehicle_pf_tracker.evaluation.systems import BASELINE_PREFIX, System
 from vehicle_pf_tracker.following.cluster import run_on_cluster
 from vehicle_pf_tracker.following.driver import OfflineTracker
 from vehicle_pf_tracker.following.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.results import run_folder
-from vehicle_pf_tracker.results.estimates import REJECTED, WAITING, EstimateRow, write_estimates
+from vehicle_pf_tracker.results.estimates import (
+    REJECTED_MODE,
+    WAITING_MODE,
+    EstimateRow,
+    write_estimates,
+)
 from vehicle_pf_tracker.results.output_files import flush, make_folder, write_json
 from vehicle_pf_tracker.trackers.registry import find_variant
 
@@ -76,7 +81,7 @@ def run_cell(cell: GridCell) -> CellResult:
             return CellResult(rows, run, metrics)
         restarted = _restarted(cell, seen, rows, cell.restart)
         scores = measure_restarts(score_frames(restarted, seen.truth, cell.max_diff))
-        run = {**run, RESTART: cell.restart}
+        run = {**run, RESTART_KEY: cell.restart}
         return CellResult(rows, run, replace(metrics, restarts=scores), restarted=restarted)
     except InputError as error:
         return CellResult(reason=str(error))
@@ -110,7 +115,7 @@ def _run_baseline(cell: GridCell, seen: SourceFootage) -> tuple[list[EstimateRow
     with _baseline(system) as baseline:
         rows = list(baseline_rows(baseline, seen.frames(), seen.truth[0]))
         opencv = baseline.versions["opencv"]
-    started = (row.frame for row in rows if row.mode not in {WAITING, REJECTED})
+    started = (row.frame for row in rows if row.mode not in {WAITING_MODE, REJECTED_MODE})
     description = run_folder.describe(
         [],
         cell.source.path,
@@ -128,7 +133,7 @@ def _run_baseline(cell: GridCell, seen: SourceFootage) -> tuple[list[EstimateRow
 
 def _baseline(system: System) -> Baseline:
     python = Path(system.python) if system.python else None
-    return Baseline(system.kind.removeprefix(BASELINE), python, system.model_files())
+    return Baseline(system.kind.removeprefix(BASELINE_PREFIX), python, system.model_files())
 
 
 def _restarted(
@@ -214,7 +219,7 @@ def _is_stored(cell: GridCell, folder: Path) -> bool:
     """Return whether the folder has the result of the cell; one that failed is tried again."""
     try:
         # By the key, not the name: a result of other code or parameters is none.
-        return bool(read_document(folder / run_folder.RUN).get("key") == cell.key())
+        return bool(read_document(folder / run_folder.RUN_FILE).get("key") == cell.key())
     except InputError:  # it is not there, or nothing that can be read
         return False
 
@@ -223,12 +228,12 @@ def _store(cell: GridCell, outcome: CellResult, folder: Path, command: list[str]
     """Store the outcome of a cell, replacing that of an earlier run."""
     with output_errors(folder), whole_folder(folder) as partial:
         if outcome.metrics is None:
-            write_json(partial / FAILED, {"reason": outcome.reason})
+            write_json(partial / FAILED_FILE, {"reason": outcome.reason})
         else:
             keys = {"command": command, "key": cell.key()}
             run_folder.write_run(partial, outcome.rows, {**outcome.run, **keys})
-            write_json(partial / run_folder.METRICS, outcome.metrics.to_json())
+            write_json(partial / run_folder.METRICS_FILE, outcome.metrics.to_json())
             if outcome.restarted:
-                write_estimates(partial / RESTARTED, outcome.restarted)
+                write_estimates(partial / RESTARTED_FILE, outcome.restarted)
     # The rename, too, has to reach the disk.
     flush(folder.parent)

@@ -10,7 +10,7 @@ import statistics
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, Column
+from vehicle_pf_tracker.evaluation.columns import COMPARED_METRICS, METRIC_COLUMNS, Column
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.statistics import Summary, summarise
 
@@ -52,7 +52,7 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     labels = [system.label for system in evaluation.folder.systems]
     runs = {label: some for label in labels if (some := evaluation.of(system=label))}
     values = {
-        label: {column.key: _values(some, column) for column in COLUMNS}
+        label: {column.key: _values(some, column) for column in METRIC_COLUMNS}
         for label, some in runs.items()
     }
     means = {
@@ -62,7 +62,7 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
         }
         for label, columns in values.items()
     }
-    main = COMPARED[0].key
+    main = COMPARED_METRICS[0].key
 
     def mean(label: str) -> float:
         # A system without a score goes last.
@@ -87,7 +87,7 @@ def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
         behind={
             label: {
                 column.key: _differences(means[label][column.key], means[order[0]][column.key])
-                for column in COMPARED
+                for column in COMPARED_METRICS
             }
             for label in order[1:]
         },

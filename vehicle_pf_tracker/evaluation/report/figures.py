@@ -21,27 +21,27 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
 from vehicle_pf_tracker.evaluation.metrics import Curve
-from vehicle_pf_tracker.evaluation.plots import STYLES, stretches
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 from vehicle_pf_tracker.results.output_files import make_folder, replacing
 
-COLOURS: Mapping[str, str] = {
+FIGURE_COLOURS: Mapping[str, str] = {
     "ink": "#010101",
     "muted": "#404040",
     "rule": "#b0b0b0",
     "total": "#c9ced4",
     "partial": "#e9ecef",
     "accent": "#0a5c9e",
-    **{f"s{slot}": style.colour.lower() for slot, style in enumerate(STYLES)},
+    **{f"s{slot}": style.colour.lower() for slot, style in enumerate(LINE_STYLES)},
 }
 """Colours of figures in files. On the page, which has schemes, each is ``var(--name)``: so no two
 are the same, and none is a black that SVG leaves out."""
-INK = COLOURS["ink"]
-MUTED = COLOURS["muted"]
-RULE = COLOURS["rule"]
-ACCENT = COLOURS["accent"]
+INK = FIGURE_COLOURS["ink"]
+MUTED = FIGURE_COLOURS["muted"]
+RULE = FIGURE_COLOURS["rule"]
+ACCENT = FIGURE_COLOURS["accent"]
 _LETTERS = 8.0
 """Size of the letters, points: as large as captions; the smallest that IEEE advises is 8."""
 _NARROW = 3.9
@@ -85,7 +85,7 @@ CURVES = {
     "normalised": ("Normalised precision", "error threshold, box sizes", "share of frames below"),
 }
 """Title and names of the axes of each curve."""
-ERRORS = "errors_"
+ERRORS_PREFIX = "errors_"
 """Beginning of the names of figures of errors over time; the recording follows."""
 LEAST_ERROR = 0.5
 """Errors below this, in px, are drawn at the foot of the logarithmic scale: truth that was drawn by
@@ -106,7 +106,7 @@ class Drawn(NamedTuple):
 
 def styled(aggregates: Aggregates) -> dict[str, int]:
     """Assign styles, by their number, to the first systems."""
-    return {label: slot for slot, label in enumerate(aggregates.order[: len(STYLES)])}
+    return {label: slot for slot, label in enumerate(aggregates.order[: len(LINE_STYLES)])}
 
 
 def draw_all(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, Drawn]:
@@ -116,7 +116,7 @@ def draw_all(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[str, 
         for entry in evaluation.folder.recordings:
             runs = evaluation.by_system(entry.name, aggregates.order)
             truths = evaluation.truths[entry.name]
-            found[ERRORS + safe_name(entry.name)] = _errors(runs, truths)
+            found[ERRORS_PREFIX + safe_name(entry.name)] = _errors(runs, truths)
     return {name: drawn for name, drawn in found.items() if drawn is not None}
 
 
@@ -174,8 +174,8 @@ def _curves(evaluation: ScoredEvaluation, aggregates: Aggregates, name: str) -> 
         if label in slots:
             slot = slots[label]
             style = {
-                "color": COLOURS[f"s{slot}"],
-                "ls": STYLES[slot].line,
+                "color": FIGURE_COLOURS[f"s{slot}"],
+                "ls": LINE_STYLES[slot].line,
                 "lw": 1.7,
                 "label": label,
             }
@@ -243,7 +243,7 @@ def _errors(runs: Mapping[str, Sequence[ScoredRun]], truths: Mapping[int, Truth]
     for axes, (label, table) in zip(panels, tables.items(), strict=False):
         for kind in (Occlusion.PARTIAL, Occlusion.TOTAL):
             for first, last in stretches(truths, {kind}):
-                axes.axvspan(first - 0.5, last + 0.5, color=COLOURS[kind.name.lower()], lw=0)
+                axes.axvspan(first - 0.5, last + 0.5, color=FIGURE_COLOURS[kind.name.lower()], lw=0)
         draw_errors(axes, table)
         # At least to 100 px, so that good systems do not look bad by their scale; room above the
         # peak.
@@ -270,7 +270,7 @@ def svg_element(drawn: Drawn, number: int) -> str:
     element = re.sub(r"(<metadata>.*?</metadata>|<!--.*?-->)\s*", "", element, flags=re.DOTALL)
     # Figures share a page, where each id may occur once.
     element = re.sub(r' id="|href="#|url\(#', rf"\g<0>f{number}-", element)
-    for name, colour in COLOURS.items():
+    for name, colour in FIGURE_COLOURS.items():
         element = element.replace(colour, f"var(--{name})")
     size = re.search(r'viewBox="[^"]*"', element)
     assert size is not None

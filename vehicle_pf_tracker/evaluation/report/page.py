@@ -13,10 +13,15 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from vehicle_pf_tracker.evaluation import tables
-from vehicle_pf_tracker.evaluation.columns import COLUMNS, COMPARED, ONCE
+from vehicle_pf_tracker.evaluation.columns import COMPARED_METRICS, METRIC_COLUMNS, ONCE
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder, Source, safe_name
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
-from vehicle_pf_tracker.evaluation.report.figures import ERRORS, draw_all, styled, svg_element
+from vehicle_pf_tracker.evaluation.report.figures import (
+    ERRORS_PREFIX,
+    draw_all,
+    styled,
+    svg_element,
+)
 from vehicle_pf_tracker.evaluation.report.scored_runs import FailedCell, ScoredEvaluation
 from vehicle_pf_tracker.evaluation.report.stills import embedded_stills
 
@@ -45,9 +50,9 @@ def make_page(evaluation: ScoredEvaluation, aggregates: Aggregates) -> str:
         figures=figures,
         behind=tables.behind_table(aggregates),
         pairs=tables.pairs_table(aggregates),
-        ordered_by=COMPARED[0].label,
+        ordered_by=COMPARED_METRICS[0].label,
         stills=embedded_stills(evaluation, aggregates),
-        curves=[name for name in figures if not name.startswith(ERRORS)],
+        curves=[name for name in figures if not name.startswith(ERRORS_PREFIX)],
         recordings=[_section(evaluation, aggregates, entry) for entry in folder.recordings],
         systems=folder.systems,
         sources=folder.recordings,
@@ -78,13 +83,13 @@ def _section(evaluation: ScoredEvaluation, aggregates: Aggregates, entry: Source
     facts += [f"{kinds['partial']} partly occluded"] if kinds["partial"] else []
     facts += [f"{kinds['total']} totally occluded"] if kinds["total"] else []
     runs = evaluation.by_system(entry.name, aggregates.order)
-    shown = [column for column in COLUMNS if column.by_recording]
+    shown = [column for column in METRIC_COLUMNS if column.by_recording]
     return {
         "name": entry.name,
         "facts": ", ".join(facts),
         "table": tables.recording_table(aggregates, entry.name, shown),
         "occlusions": tables.occlusions_table(runs),
-        "figure": ERRORS + safe_name(entry.name),
+        "figure": ERRORS_PREFIX + safe_name(entry.name),
     }
 
 

@@ -23,7 +23,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.plots import STYLES
+from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.figures import styled
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
@@ -43,7 +43,7 @@ _WIDTH = 480
 _QUALITY = 80
 """Quality of JPEG: a choice between blocks around the drawn edges and the size of the page."""
 _TRUTH = (255, 255, 255)
-"""Colour of the true box: white, which no system has (`plots.STYLES`)."""
+"""Colour of the true box: white, which no system has (`plots.LINE_STYLES`)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +176,7 @@ def _drawn(frame: Frame, moment: Moment, slots: dict[str, int]) -> Frame:
     picture: Frame = np.ascontiguousarray(scaled, np.uint8)
     width = 2 * line_width(picture)
     for label, box in reversed(moment.boxes):  # the first on top
-        code = STYLES[slots[label]].colour
+        code = LINE_STYLES[slots[label]].colour
         red, green, blue = (int(code[at : at + 2], 16) for at in (1, 3, 5))
         draw_box(picture, _scaled(box, scale), (red, green, blue), width)
     draw_box(picture, _scaled(moment.truth, scale), _TRUTH, line_width(picture), dashed=True)

@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 
 from vehicle_pf_tracker.evaluation import tables
 from vehicle_pf_tracker.evaluation.columns import (
-    COLUMNS,
-    COMPARED,
+    COMPARED_METRICS,
+    LATEX_METRICS,
+    METRIC_COLUMNS,
     NO_VALUE,
     ONCE,
-    PAPER,
     RESTARTS,
 )
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
@@ -46,11 +46,11 @@ def summary_markdown(evaluation: ScoredEvaluation, aggregates: Aggregates) -> st
     }
     if len(aggregates.order) > 2:  # of two systems the table above has the only difference
         pairs = tables.pairs_table(aggregates)
-        shown[f"Differences of all pairs, {COMPARED[0].label}"] = pairs
+        shown[f"Differences of all pairs, {COMPARED_METRICS[0].label}"] = pairs
     if (restarts := tables.restarts_table(aggregates)) is not None:
         shown[RESTARTS] = restarts
     for entry in evaluation.folder.recordings:
-        shown[entry.name] = tables.recording_table(aggregates, entry.name, COLUMNS)
+        shown[entry.name] = tables.recording_table(aggregates, entry.name, METRIC_COLUMNS)
     for heading, table in shown.items():
         parts.append(f"## {heading}\n\n{tables.markdown(*table.texts())}")
     if evaluation.failed:
@@ -67,7 +67,7 @@ def summary_csv(aggregates: Aggregates) -> str:
         [recording, system, column.key, column.unit, *astuple(found)]
         for recording, by_system in means.items()
         for system, summaries in by_system.items()
-        for column in COLUMNS
+        for column in METRIC_COLUMNS
         if (found := summaries.get(column.key)) is not None
     ]
     numbers = ("count", "mean", "spread", "low", "high")
@@ -76,7 +76,7 @@ def summary_csv(aggregates: Aggregates) -> str:
 
 def summary_tex(aggregates: Aggregates) -> str:
     """Return the main means as a LaTeX table; the best are bold."""
-    table = tables.overall_table(aggregates, [column.key for column in PAPER])
+    table = tables.overall_table(aggregates, [column.key for column in LATEX_METRICS])
     header, _ = table.texts()
     rows = [
         [_tex(label), *(rf"\textbf{{{_tex(c.text)}}}" if c.best else _tex(c.text) for c in cells)]
@@ -105,7 +105,7 @@ def summary_json(evaluation: ScoredEvaluation, aggregates: Aggregates) -> dict[s
                 "higher_is_better": column.higher_is_better,
                 "about": column.help,
             }
-            for column in COLUMNS
+            for column in METRIC_COLUMNS
         },
         "notes": evaluation.notes,
         "failed": [asdict(cell) for cell in evaluation.failed],

@@ -90,7 +90,7 @@ class Kernels:
         return np.asarray(feature.histograms(frame, np.asarray([position]), window)[0])
 
 
-CHOICES = ("auto", "opencv", "numba")
+KERNEL_CHOICES = ("auto", "opencv", "numba")
 """Values of the parameter `kernels`."""
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 
-from vehicle_pf_tracker.ros.messages import WAITING
+from vehicle_pf_tracker.ros.messages import WAITING_MESSAGE
 from vehicle_pf_tracker.ros.node.arrivals import Arrivals
 
 
@@ -62,7 +62,7 @@ class Health:
         self.rejections = Failures()
         self.refusals = Failures()
         self.restarts = 0
-        self.mode = WAITING
+        self.mode = WAITING_MESSAGE
         self.road: Mapping[str, object] = {}
         self._clock = clock
         self._mode_since = clock()

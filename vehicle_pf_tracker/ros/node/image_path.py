@@ -19,7 +19,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration, NodeParameters
-from vehicle_pf_tracker.ros.messages import REJECTED
+from vehicle_pf_tracker.ros.messages import REJECTED_MESSAGE
 from vehicle_pf_tracker.ros.node.answer import Answer
 from vehicle_pf_tracker.ros.node.image_input import read_image
 from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder
@@ -158,7 +158,7 @@ class ImagePath:
     def _rejected(self, header: Header, reason: str) -> Answer:
         self.journal.health.rejections.add(reason)
         self.journal.errors.say("rejected", f"image rejected: {reason}")
-        return Answer(header=header, mode=REJECTED, values={"reason": reason})
+        return Answer(header=header, mode=REJECTED_MESSAGE, values={"reason": reason})
 
     def reconfigure(self, configuration: Configuration) -> None:
         """Take new parameters between two images."""

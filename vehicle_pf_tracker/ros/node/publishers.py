@@ -29,7 +29,7 @@ from vehicle_pf_tracker.trackers.estimate import Estimate
 if TYPE_CHECKING:
     from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 
-RELIABLE = QoSProfile(depth=10)
+RELIABLE_QOS = QoSProfile(depth=10)
 """For results: a third of a second of images may wait for a slow subscriber; ROS's usual depth."""
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 """For what people look at: a late picture is worth nothing, and must not hold up the node."""
@@ -39,12 +39,12 @@ Topics = Mapping[str, tuple[Any, QoSProfile]]
 
 _COMMON: Topics = MappingProxyType(
     {
-        "position": (PointStamped, RELIABLE),
-        "box": (PolygonStamped, RELIABLE),
-        "velocity": (Vector3Stamped, RELIABLE),
+        "position": (PointStamped, RELIABLE_QOS),
+        "box": (PolygonStamped, RELIABLE_QOS),
+        "velocity": (Vector3Stamped, RELIABLE_QOS),
         "overlay": (Image, BEST_EFFORT),
         # Last, here and for every image: it tells a lock-step replay that the image is done with.
-        "mode": (DiagnosticArray, RELIABLE),
+        "mode": (DiagnosticArray, RELIABLE_QOS),
     }
 )
 

@@ -20,7 +20,7 @@ from vehicle_pf_tracker.image.encodings import LARGEST_SIDE_PX
 from vehicle_pf_tracker.image.stillness import Stillness
 from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
+from vehicle_pf_tracker.ros.messages import WAITING_MESSAGE, stamp_ns
 from vehicle_pf_tracker.ros.node.answer import Answer, TrackerAnswer
 from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.node.kernel_loading import KernelLoading
@@ -212,13 +212,13 @@ class TrackerFeed:
         if reason not in (self._loading.reason, self._target_problem):
             self._journal.refuse("target", reason)
             self._target_problem = reason
-        return Answer(header=header, mode=WAITING, values={"reason": reason})
+        return Answer(header=header, mode=WAITING_MESSAGE, values={"reason": reason})
 
     def _answer(self, session: Session, header: Header, frame: Frame) -> TrackerAnswer:
         """Say what the session makes of an image that it took."""
         estimate = self.estimate
         period = session.tracker.frame_period
-        mode = WAITING
+        mode = WAITING_MESSAGE
         values: dict[str, object] = {}
         sentences = self._events(session)
         if estimate is not None:

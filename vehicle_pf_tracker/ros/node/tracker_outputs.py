@@ -19,7 +19,7 @@ from vehicle_pf_tracker.ros.node.answer import Answer, TrackerAnswer
 from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.node.publishers import (
     BEST_EFFORT,
-    RELIABLE,
+    RELIABLE_QOS,
     Publishers,
     in_frame,
     in_pixels,
@@ -53,10 +53,10 @@ class TrackerOutputs:
     ) -> None:
         more = {
             "particles": (PointCloud2, BEST_EFFORT),
-            "pose_with_covariance": (PoseWithCovarianceStamped, RELIABLE),
-            "road_position": (PointStamped, RELIABLE),
-            "road_velocity": (Vector3Stamped, RELIABLE),
-            "detection": (messages.detection_type(), RELIABLE),
+            "pose_with_covariance": (PoseWithCovarianceStamped, RELIABLE_QOS),
+            "road_position": (PointStamped, RELIABLE_QOS),
+            "road_velocity": (Vector3Stamped, RELIABLE_QOS),
+            "detection": (messages.detection_type(), RELIABLE_QOS),
         }
         self._publishers = Publishers(node, hardware_id, more)
         self._localisation = localisation

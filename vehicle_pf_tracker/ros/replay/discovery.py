@@ -18,7 +18,7 @@ from vehicle_pf_tracker.recordings.messages import DIAGNOSTIC_ARRAY, IMAGE_TYPES
 
 _SLICE = 0.05
 """Longest uninterrupted wait in s: changes of the graph and signals wake no executor."""
-DISCOVERY = 5.0
+SHORTEST_SEARCH = 5.0
 """Shortest search for a node, s: discovery takes no longer on a quiet machine."""
 _QUIET = 1.0
 """A search ends so many s after the last node was found: nodes that run already are found in one
@@ -105,9 +105,9 @@ class Lookout:
         Raises
         ------
         InputError
-            If one does not within `timeout` s, or within `DISCOVERY` s if that is longer.
+            If one does not within `timeout` s, or within `SHORTEST_SEARCH` s if that is longer.
         """
-        timeout = max(timeout, DISCOVERY)
+        timeout = max(timeout, SHORTEST_SEARCH)
         wanted = list(dict.fromkeys(map(full_name, names)))
         for name in wanted:
             if not self._spinner.until(self._has_subscribed(name), timeout):
@@ -123,10 +123,10 @@ class Lookout:
         Parameters
         ----------
         timeout : float
-            Longest search for the first, s; at least `DISCOVERY`.
+            Longest search for the first, s; at least `SHORTEST_SEARCH`.
         """
         found: set[str] = set()
-        deadline = time.monotonic() + max(timeout, DISCOVERY)
+        deadline = time.monotonic() + max(timeout, SHORTEST_SEARCH)
 
         def grows() -> bool:
             now = self._trackers() & self._subscribers(self._topic)

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from vehicle_pf_tracker.ros.launching import is_true
 from vehicle_pf_tracker.ros.replay.publishing import RecordedImages
 
-ARGUMENTS = {
+REPLAY_ARGUMENTS = {
     "topic": ("", "Image topic of the recording, if it has several"),
     "target": ("", "Box to start on, x,y,w,h in px; empty takes the first true box"),
     "rate": ("1.0", "Speed of the replay"),

@@ -18,7 +18,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.messages import NOT_READY
 from vehicle_pf_tracker.ros.replay.answers import Answers
-from vehicle_pf_tracker.ros.replay.discovery import DISCOVERY, Spinner
+from vehicle_pf_tracker.ros.replay.discovery import SHORTEST_SEARCH, Spinner
 from vehicle_pf_tracker.ros.replay.replay_options import NodeReport
 
 _DEPTH = 1000
@@ -45,14 +45,14 @@ class TrackerLink:
     name : str
         Full name of the tracker node.
     timeout : float
-        Longest wait for one answer of a service in s, if longer than `DISCOVERY`.
+        Longest wait for one answer of a service in s, if longer than `SHORTEST_SEARCH`.
     """
 
     def __init__(self, node: Node, spinner: Spinner, name: str, timeout: float) -> None:
         self.name = name
         self.answers = Answers()
         self._spinner = spinner
-        self._timeout = max(timeout, DISCOVERY)
+        self._timeout = max(timeout, SHORTEST_SEARCH)
         self._mode = node.create_subscription(
             DiagnosticArray, f"{name}/mode", self.answers.receive, _DEPTH
         )

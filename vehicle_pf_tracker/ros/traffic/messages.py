@@ -21,7 +21,7 @@ from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.counting.counter import CONFIRMED, Counter
+from vehicle_pf_tracker.counting.counter import COUNTED_MODES, Counter
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.ros import messages
@@ -29,7 +29,7 @@ from vehicle_pf_tracker.showing.drawing import NEUTRAL
 from vehicle_pf_tracker.showing.traffic_drawing import identity_colour
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
-CODES: Mapping[TrackMode, int] = MappingProxyType(
+MODE_CODES: Mapping[TrackMode, int] = MappingProxyType(
     {mode: code for code, mode in enumerate(TrackMode)}
 )
 """Modes in `~/tracks`: 0 TENTATIVE, 1 TRACKING, 2 OCCLUDED, 3 LOST."""
@@ -41,7 +41,7 @@ _LINE_WIDTH = 2.0
 """Width of the lines of boxes in px: one is lost where RViz shows a large image small."""
 _LETTERS = 14.0
 """Height of numbers in px: about that of the smallest vehicles that are followed."""
-LONGEST = 1_000_000
+LONGEST_MESSAGE = 1_000_000
 """Longest message in bytes that is read: 2300 detections, which take rclpy 0.3 s. Ten thousand
 would take 1.5 s, in which no image is answered."""
 
@@ -55,7 +55,7 @@ def tracks_message(
         box = one.box
         velocity = (part / frame_period for part in one.velocity)
         values = one.identity, *one.position, box.width, box.height, *velocity
-        points[index] = *values, CODES[one.mode], one.confidence
+        points[index] = *values, MODE_CODES[one.mode], one.confidence
     return messages.cloud_message(header, points)
 
 
@@ -166,7 +166,7 @@ def detections_message(header: Header, estimates: Iterable[TrackEstimate]) -> An
     found = [
         messages.detection_message(header, one, str(one.identity), one.label or messages.CLASS)
         for one in estimates
-        if one.mode in CONFIRMED
+        if one.mode in COUNTED_MODES
     ]
     return messages.detections_type()(header=header, detections=found)
 
@@ -182,10 +182,10 @@ def read_serialized_detections(message: bytes) -> Detections:
     InputError
         If it is too long to be read in time.
     """
-    if len(message) > LONGEST:
+    if len(message) > LONGEST_MESSAGE:
         raise InputError(
             f"a message of detections has {len(message) / 1e6:.1f} MB, more than the "
-            f"{LONGEST / 1e6:g} MB that are read; is the detector in order?"
+            f"{LONGEST_MESSAGE / 1e6:g} MB that are read; is the detector in order?"
         )
     found = deserialize_message(message, messages.detections_type()).detections
     rows = [_row(one.bbox) for one in found]

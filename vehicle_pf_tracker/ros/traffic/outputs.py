@@ -20,7 +20,7 @@ from vehicle_pf_tracker.parameters.configuration import NodeParameters
 from vehicle_pf_tracker.ros.messages import detections_type, image_message
 from vehicle_pf_tracker.ros.node.answer import Answer
 from vehicle_pf_tracker.ros.node.journal import Journal
-from vehicle_pf_tracker.ros.node.publishers import RELIABLE, Publishers, in_pixels
+from vehicle_pf_tracker.ros.node.publishers import RELIABLE_QOS, Publishers, in_pixels
 from vehicle_pf_tracker.ros.traffic import messages
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.showing.drawing import Colour, draw_box, line_width
@@ -72,11 +72,11 @@ class TrafficOutputs:
         journal: Journal,
     ) -> None:
         more = {
-            "tracks": (PointCloud2, RELIABLE),
-            "modes": (DiagnosticArray, RELIABLE),
-            "counts": (DiagnosticArray, RELIABLE),
-            "detections": (detections_type(), RELIABLE),
-            "markers": (MarkerArray, RELIABLE),
+            "tracks": (PointCloud2, RELIABLE_QOS),
+            "modes": (DiagnosticArray, RELIABLE_QOS),
+            "counts": (DiagnosticArray, RELIABLE_QOS),
+            "detections": (detections_type(), RELIABLE_QOS),
+            "markers": (MarkerArray, RELIABLE_QOS),
         }
         self._publishers = Publishers(node, hardware_id, more)
         self._vehicles = vehicles

@@ -13,18 +13,18 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.detection.detections import MOST_DETECTIONS, Detections
-from vehicle_pf_tracker.detection.parameters import TOPIC
+from vehicle_pf_tracker.detection.parameters import TOPIC_DETECTOR
 from vehicle_pf_tracker.following.paced_detector import PacedDetector
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.ros.messages import WAITING, stamp_ns
+from vehicle_pf_tracker.ros.messages import WAITING_MESSAGE, stamp_ns
 from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.traffic import messages
 from vehicle_pf_tracker.ros.traffic.detection_queue import WaitingMessages
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficAnswer
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
-from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
 
@@ -34,7 +34,7 @@ class TrafficFeed:
     Parameters
     ----------
     configuration : Configuration
-        Parameters of `TRAFFIC`.
+        Parameters of `TRAFFIC_VARIANT`.
     waiting : WaitingImages
         Images that wait for detections, for the node's report.
     journal : Journal
@@ -75,7 +75,7 @@ class TrafficFeed:
             count = detector.found
             seconds = detector.seconds
         facts = {
-            "variant": TRAFFIC.name,
+            "variant": TRAFFIC_VARIANT.name,
             "seed": tracker.seed,
             "detector": kind,
             **self.vehicles.summary(),
@@ -83,7 +83,7 @@ class TrafficFeed:
             "detector's latency (ms)": round(seconds * 1e3, 2),
             "places with false alarms": tracker.cluttered_places,
         }
-        if kind == TOPIC:
+        if kind == TOPIC_DETECTOR:
             facts |= {
                 "images with detections": waiting.matched,
                 "images without detections": waiting.missed,
@@ -166,7 +166,7 @@ class TrafficFeed:
         if selected is not None:
             return selected.mode.value, dict(messages.scalars(selected))
         reason = f"vehicle {chosen} is not followed any more" if chosen else "none is selected"
-        return WAITING, {"reason": reason}
+        return WAITING_MESSAGE, {"reason": reason}
 
     def _warn_of_unusable(self, detections: Detections | None, frame: Frame) -> None:
         if detections is None:

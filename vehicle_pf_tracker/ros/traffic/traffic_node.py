@@ -13,7 +13,7 @@ from sensor_msgs.msg import RegionOfInterest
 from std_msgs.msg import Int64
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.detection.parameters import TOPIC
+from vehicle_pf_tracker.detection.parameters import TOPIC_DETECTOR
 from vehicle_pf_tracker.following.model_files import is_fetched
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.image_memory import return_memory
@@ -25,12 +25,12 @@ from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.target_messages import box_of_region, finite
 from vehicle_pf_tracker.ros.traffic.detection_queue import DetectionQueue, WaitingMessages
 from vehicle_pf_tracker.ros.traffic.live_page import open_page
-from vehicle_pf_tracker.ros.traffic.messages import LONGEST
+from vehicle_pf_tracker.ros.traffic.messages import LONGEST_MESSAGE
 from vehicle_pf_tracker.ros.traffic.outputs import TrafficOutputs
 from vehicle_pf_tracker.ros.traffic.traffic_feed import TrafficFeed
 from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING
-from vehicle_pf_tracker.trackers.registry import TRAFFIC
+from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT
 
 _LOOK_EVERY = 0.02
 """Interval in s in which images that wait for detections are looked at: the least `max_wait` that
@@ -62,14 +62,14 @@ class TrafficNode(ImageNode):
     feed: TrafficFeed | None
 
     def __init__(self, **options: Any) -> None:
-        super().__init__(TRAFFIC.executable, **options)
+        super().__init__(TRAFFIC_VARIANT.executable, **options)
         self._queue: DetectionQueue | None = None
-        self.begin(Configuration.of(TRAFFIC))
+        self.begin(Configuration.of(TRAFFIC_VARIANT))
 
     def prepare(self) -> None:
         """Make session, detector, outputs and services."""
         configuration = self.table.configuration
-        if configuration.tracker.detector.kind == TOPIC and detections_type() is None:
+        if configuration.tracker.detector.kind == TOPIC_DETECTOR and detections_type() is None:
             raise InputError(
                 "detector.kind is topic, and vision_msgs, which detections come in, is not "
                 "installed (apt: ros-<release>-vision-msgs)"
@@ -83,7 +83,7 @@ class TrafficNode(ImageNode):
         self.path = ImagePath(self, configuration, self.feed, self.outputs, journal)
         self.accept = self.path.take
         self._queue = None
-        if configuration.tracker.detector.kind == TOPIC:
+        if configuration.tracker.detector.kind == TOPIC_DETECTOR:
             self._queue = DetectionQueue(
                 waiting,
                 lambda: self.table.configuration.tracker.detector,
@@ -119,7 +119,7 @@ class TrafficNode(ImageNode):
         self.listen(PointStamped, "~/clicked_point", "selection", self._choose_at)
         self.listen(Int64, "~/select", "selection", self._choose)
         detector = self.table.configuration.tracker.detector.kind
-        if detector == TOPIC:
+        if detector == TOPIC_DETECTOR:
             self._listen_to_detections()
         self.warn_of_overrides(qos=True)
         self.get_logger().info(f"ready: images on {source}, detections: {detector}")
@@ -154,7 +154,7 @@ class TrafficNode(ImageNode):
     def _on_detections(self, message: bytes) -> None:
         if self.feed is None or self._queue is None:
             return
-        if len(message) > LONGEST and self._free_timer.is_canceled():
+        if len(message) > LONGEST_MESSAGE and self._free_timer.is_canceled():
             self._free_timer.reset()
         self._queue.add_detections(message)
 

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
-NONE = 0
+NO_VEHICLE = 0
 """Number that ends a selection; vehicles have numbers from 1."""
 _SHOWN = 10
 """Numbers of vehicles that an error lists: a line of a log."""
@@ -40,14 +40,14 @@ class Selection:
     Attributes
     ----------
     identity : int
-        Its number; `NONE` where none is selected.
+        Its number; `NO_VEHICLE` where none is selected.
     """
 
     def __init__(self) -> None:
-        self.identity = NONE
+        self.identity = NO_VEHICLE
 
     def choose(self, identity: int, estimates: Sequence[TrackEstimate]) -> None:
-        """Select a vehicle by its number; `NONE` selects none.
+        """Select a vehicle by its number; `NO_VEHICLE` selects none.
 
         Raises
         ------
@@ -55,7 +55,7 @@ class Selection:
             If no vehicle has it.
         """
         numbers = [one.identity for one in estimates if one.identity]
-        if identity != NONE and identity not in numbers:
+        if identity != NO_VEHICLE and identity not in numbers:
             known = ", ".join(map(str, numbers[:_SHOWN])) + (", …" if numbers[_SHOWN:] else "")
             there = f"there are {known}" if numbers else "there is none"
             raise InputError(f"no vehicle has the number {identity}; {there}")
@@ -160,7 +160,9 @@ class Vehicles:
         """
         crossings = self.counted.follow(image, stamp_ns, detections)
         if self.counted.has_begun_anew:
-            self.selection.identity = self.session.successors.get(self.selection.identity, NONE)
+            self.selection.identity = self.session.successors.get(
+                self.selection.identity, NO_VEHICLE
+            )
             # After an error they are followed where they were; else nothing is known of them.
             if not self.session.recovered:
                 self._configured = self._configuration.session.target.box
@@ -207,7 +209,7 @@ class Vehicles:
         identity = self.selection.identity
         if not identity:
             raise InputError("no vehicle is selected")
-        self.selection.identity = NONE
+        self.selection.identity = NO_VEHICLE
         if not self.session.remove(identity):
             raise InputError(f"the vehicle {identity} is not followed any more")
         return identity
@@ -216,7 +218,7 @@ class Vehicles:
         """Forget vehicles, counts and the images before; begin on the configured target."""
         self.session.reset()
         self.counted.begin_anew()
-        self.selection.identity = NONE
+        self.selection.identity = NO_VEHICLE
         self._configured = self._configuration.session.target.box
         self._is_shown = False
         self.waiting.clear()
@@ -260,11 +262,11 @@ class Vehicles:
         return problems
 
     def _try_to_add(self, box: Box, problems: list[str]) -> int:
-        """Return the number of the vehicle in `box`, or `NONE` with a problem."""
+        """Return the number of the vehicle in `box`, or `NO_VEHICLE` with a problem."""
         try:
             identity = self.session.add(box)
         except InputError as error:
             problems.append(f"target refused: {error}")
-            return NONE
+            return NO_VEHICLE
         self.given.append(box)
         return identity

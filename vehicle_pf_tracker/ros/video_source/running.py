@@ -12,7 +12,7 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 
 from vehicle_pf_tracker.ros.process import answer_usage, end_at_once, run_process, spin_nodes
-from vehicle_pf_tracker.ros.video_source.source_node import NAME, VideoSourceNode
+from vehicle_pf_tracker.ros.video_source.source_node import NODE_NAME, VideoSourceNode
 
 _IMAGE_BYTES = 1920 * 1080 * 3
 """Size of an image of which the segment holds four; one of 4K still fits once."""
@@ -43,10 +43,10 @@ def run_video_source(arguments: Sequence[str]) -> int:
 
     def serve(words: list[str]) -> int:
         if len(words) > 1 or any(word.startswith("-") for word in words):
-            return answer_usage(NAME, words, _USAGE)
+            return answer_usage(NODE_NAME, words, _USAGE)
         return spin_nodes([lambda: VideoSourceNode(*words)], _IMAGE_BYTES, _spin, arguments)
 
-    return run_process(NAME, arguments, serve)
+    return run_process(NODE_NAME, arguments, serve)
 
 
 def _spin(executor: SingleThreadedExecutor, node: VideoSourceNode) -> int:
@@ -60,7 +60,7 @@ def _spin(executor: SingleThreadedExecutor, node: VideoSourceNode) -> int:
     has_ended = node.stop(_LAST_WAIT)
     status = 1 if node.problem else 0
     if node.problem:
-        print(f"{NAME}: {node.problem}", file=sys.stderr)
+        print(f"{NODE_NAME}: {node.problem}", file=sys.stderr)
     if not has_ended:  # it waits for a silent camera; the node's shared memory would stay
         node.destroy_node()
         rclpy.try_shutdown()

@@ -28,7 +28,7 @@ from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
 from vehicle_pf_tracker.ros.video_source.outage import Outage
 from vehicle_pf_tracker.ros.video_source.pace import SourcePace
 
-NAME = "video_source"
+NODE_NAME = "video_source"
 _DEPTH = 5
 """Images kept for a slow subscriber. Reliable, since that serves both kinds of subscribers."""
 _LATE = 1.0
@@ -92,7 +92,9 @@ class VideoSourceNode(Node):  # type: ignore[misc]
     """
 
     def __init__(self, source: str = "", **keywords: Any) -> None:
-        super().__init__(NAME, automatically_declare_parameters_from_overrides=True, **keywords)
+        super().__init__(
+            NODE_NAME, automatically_declare_parameters_from_overrides=True, **keywords
+        )
         settings = declare(self)
         self._settings = replace(settings, source=source or settings.source)
         if not self._settings.source:

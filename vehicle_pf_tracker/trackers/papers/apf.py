@@ -28,7 +28,7 @@ from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.papers import shared
 from vehicle_pf_tracker.trackers.papers.clear_level import (
-    RELATIVE,
+    RELATIVE_RULE,
     ClearLevel,
     ClearLevelParameters,
 )
@@ -71,12 +71,12 @@ class ApfReferenceParameters:
     steady_alpha: float = share(
         0.01,
         "Higher: as alpha, with the relative occlusion rule, which is regular in more frames.",
-        source=RELATIVE,
+        source=RELATIVE_RULE,
     )
     steady_above: float = parameter(
         0.95,
         "Higher: with the relative rule, the reference follows in fewer and better frames only.",
-        bounds=(0.0, 2.0), unit="of Pi's clear level", source=RELATIVE,
+        bounds=(0.0, 2.0), unit="of Pi's clear level", source=RELATIVE_RULE,
     )  # fmt: skip
     frozen_while_occluded: bool = parameter(
         True,
@@ -121,7 +121,7 @@ class ApfVelocityParameters:
         12,
         "Longer: more of the estimates that an occlusion drags along before it is noticed are kept "
         "out of the drift. Counts with the relative rule, which notices later.",
-        bounds=(0, 1000), unit="frames", source=RELATIVE,
+        bounds=(0, 1000), unit="frames", source=RELATIVE_RULE,
     )  # fmt: skip
     from_origin: bool = parameter(
         False, "Count the first displacement from (0, 0), as printed.",

@@ -17,7 +17,7 @@ from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.evidence import RunningLevel
 from vehicle_pf_tracker.trackers.parameters import share
 
-RELATIVE = "extension: the relative rule (interpretation 27)"
+RELATIVE_RULE = "extension: the relative rule (interpretation 27)"
 """Source of the parameters that the extension has and the paper has not."""
 _LEAST_DEVIATION = 0.005
 """Deviation that is assumed at least, for images without noise: half of the smallest that was
@@ -30,19 +30,20 @@ class ClearLevelParameters:
 
     enter: float = parameter(
         6.0, "Higher: deeper falls of the similarity are needed to switch to the occlusion regime.",
-        bounds=(0.0, 100.0), unit="mean deviations below the level", source=RELATIVE, tuned=True,
+        bounds=(0.0, 100.0), unit="mean deviations below the level", source=RELATIVE_RULE,
+        tuned=True,
     )  # fmt: skip
     leave: float = parameter(
         4.0, "Higher: the regular regime returns while less of the vehicle is visible.",
-        bounds=(0.0, 100.0), unit="mean deviations below the level", source=RELATIVE,
+        bounds=(0.0, 100.0), unit="mean deviations below the level", source=RELATIVE_RULE,
     )  # fmt: skip
     certain: float = share(
         0.65, "Higher: smaller falls are occlusions however much the similarity varies; 0: never.",
-        unit="of the level", source=RELATIVE, tuned=True,
+        unit="of the level", source=RELATIVE_RULE, tuned=True,
     )  # fmt: skip
     rate: float = share(
         0.05, "Higher: level and deviation follow the similarity faster.", unit="per frame",
-        source=RELATIVE,
+        source=RELATIVE_RULE,
     )  # fmt: skip
 
 

@@ -39,7 +39,7 @@ from vehicle_pf_tracker.trackers.papers.feature_weighting import (
     weigh_features,
 )
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
-    TEXTURES,
+    TEXTURE_FEATURES,
     FilterParametersT,
     MfpfParameters,
     edge_feature,
@@ -310,5 +310,5 @@ class MfpfTracker(FeatureFilter[MfpfParameters]):
         return {
             "color": RgbMarginals(),
             "edge": edge_feature(settings.edges),
-            "texture": TEXTURES[settings.texture](),
+            "texture": TEXTURE_FEATURES[settings.texture](),
         }

@@ -23,7 +23,7 @@ from vehicle_pf_tracker.trackers.papers.shared import (
 )
 from vehicle_pf_tracker.trackers.parameters import ParticleParameters, share
 
-TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {
+TEXTURE_FEATURES: Mapping[str, Callable[[], WindowFeature]] = {
     "glcm": Cooccurrence,
     "lbp": BinaryPatterns,
     "haralick": HaralickStatistics,
@@ -34,7 +34,7 @@ TEXTURES: Mapping[str, Callable[[], WindowFeature]] = {
 texture_parameter = functools.partial(
     parameter, "glcm",
     "The histogram that describes texture; the paper tried all three and kept glcm.",
-    choices=TEXTURES, source="P2 section III-D", effect="relearns",
+    choices=TEXTURE_FEATURES, source="P2 section III-D", effect="relearns",
 )  # fmt: skip
 """Make the choice of the texture feature."""
 

@@ -24,7 +24,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import sample_normal
-from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
 from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.image.window import keep_inside
@@ -176,7 +176,7 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
         if count == 0:
             return particles, 0, regime
         # Jittered, as copies in one place would weigh the same again and end no degeneracy.
-        ancestors = SCHEMES[self._settings.resampling](weights, count, self._rng)
+        ancestors = RESAMPLING_SCHEMES[self._settings.resampling](weights, count, self._rng)
         spread = jitter * self._settings.sigma * elapsed
         parents = particles.cloud.positions[ancestors]
         copies = keep_inside(frame, parents + sample_normal(self._rng, count, spread))

@@ -20,7 +20,7 @@ from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.papers.mfpf import FeatureFilter
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (
     PRINTED_EDGES,
-    TEXTURES,
+    TEXTURE_FEATURES,
     EdgeParameters,
     FeatureFilterParameters,
     edge_feature,
@@ -91,4 +91,4 @@ class SfpfTextureTracker(FeatureFilter[SfpfTextureParameters]):
     """Grey-level co-occurrences, or another texture that P2 tried."""
 
     def _make_features(self) -> Mapping[str, WindowFeature]:
-        return {"texture": TEXTURES[self._settings.texture]()}
+        return {"texture": TEXTURE_FEATURES[self._settings.texture]()}

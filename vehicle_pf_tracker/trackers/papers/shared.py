@@ -15,7 +15,7 @@ from typing import TypeAlias
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.filtering.resampling import SCHEMES
+from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES
 from vehicle_pf_tracker.filtering.weights import Weights
 from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
@@ -79,7 +79,7 @@ histogram_bits_parameter = functools.partial(
 """Make the resolution of joint colour histograms."""
 resampling_parameter = functools.partial(
     parameter, "multinomial", "How ancestors are drawn; systematic and stratified vary less.",
-    choices=SCHEMES,
+    choices=RESAMPLING_SCHEMES,
 )  # fmt: skip
 """Make the choice of a resampling scheme; `source` is where the paper resamples."""
 

@@ -21,8 +21,13 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.overlaps import clipped, overlaps
-from vehicle_pf_tracker.trackers.traffic.box_edges import INWARD, cut_edges, deviations, sides_of
-from vehicle_pf_tracker.trackers.traffic.candidates import SIZES, Candidates
+from vehicle_pf_tracker.trackers.traffic.box_edges import (
+    INWARD_SIGNS,
+    cut_edges,
+    deviations,
+    sides_of,
+)
+from vehicle_pf_tracker.trackers.traffic.candidates import SIZE_SPREAD, Candidates
 from vehicle_pf_tracker.trackers.traffic.rows import Integers
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import PIXEL_NOISE
@@ -133,7 +138,7 @@ def edge_costs(predicted: Array, deviations: Array, detected: Array) -> Array:
     detected : (D, 4) array
         Edges of the detections, px.
     """
-    inward = (detected[np.newaxis] - predicted[:, np.newaxis]) * INWARD
+    inward = (detected[np.newaxis] - predicted[:, np.newaxis]) * INWARD_SIGNS
     # Each edge in its own standard deviations, without covariances: a covered edge can then be left
     # out by itself.
     normal = inward / deviations[:, np.newaxis]
@@ -226,7 +231,7 @@ def birth_odds(
     # 3. An edge that is cut in both: this variance gives it the density that false alarms have
     # there, so that both cancel and it tells nothing.
     sides = np.tile(sides_of(detected), 2)
-    unknown = (SIZES * sides[pairs]) ** 2 / (2 * np.pi)
+    unknown = (SIZE_SPREAD * sides[pairs]) ** 2 / (2 * np.pi)
     both_cut = cut[rows] & also_cut[pairs]
     # 4. With covariances here: while its speed is unknown, a new track's edges move far together.
     covariance = gaussians.edge_covariance[rows]

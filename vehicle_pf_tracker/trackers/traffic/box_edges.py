@@ -11,7 +11,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.rows import Bools
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import PIXEL_NOISE, Edge
 
-INWARD = np.array([1.0, 1.0, -1.0, -1.0])
+INWARD_SIGNS = np.array([1.0, 1.0, -1.0, -1.0])
 """Sign of a residual (detection less prediction) of left, top, right, bottom that points inward."""
 OPPOSITE = [Edge.RIGHT, Edge.BOTTOM, Edge.LEFT, Edge.TOP]
 """The opposite of each edge."""

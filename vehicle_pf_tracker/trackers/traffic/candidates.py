@@ -25,7 +25,7 @@ from vehicle_pf_tracker.trackers.traffic.rows import Integers
 _ORDINARY = 0.5
 """Share of the vehicles' detections with lower scores above which a score is better than most: the
 median."""
-SIZES = 2.0
+SIZE_SPREAD = 2.0
 """Logarithm of the ratio of the largest and the smallest false alarms, by which they are spread. At
 1 vehicles that pass close and fast are found late: IDF1 of three scenes is 67 instead of 83."""
 
@@ -104,7 +104,9 @@ def weighed(
     log_odds = evidence.log_odds(scores, claims, places)
     # 3. Poisson clutter, as usual, in the space of the edges, of which (left, right) has the same
     # measure as (centre, width): false alarms are anywhere in the image, and of any size.
-    false = clutter - math.log(size[0] * size[1]) - np.log(sides_of(edges) * SIZES).sum(axis=1)
+    false = (
+        clutter - math.log(size[0] * size[1]) - np.log(sides_of(edges) * SIZE_SPREAD).sum(axis=1)
+    )
     return Candidates(
         edges=edges,
         scores=scores,

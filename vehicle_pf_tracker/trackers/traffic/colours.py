@@ -17,9 +17,9 @@ from vehicle_pf_tracker.core.frame import Frame
 _LEVELS = 4
 """Levels of each channel: enough to tell colours, few enough for a box of 100 px to fill its 64
 joint bins."""
-BINS = _LEVELS**3
+COLOUR_BINS = _LEVELS**3
 """Joint bins of the three channels."""
-RIM = 0.1
+BACKGROUND_RIM = 0.1
 """Margin on each side, of the size, that is left out as background: two standard deviations of an
 edge at the usual `detections.edge_noise` of .05."""
 
@@ -42,15 +42,15 @@ class ColourBins:
 
         Returns
         -------
-        (N, BINS) array
+        (N, COLOUR_BINS) array
             Shares of the colours; zero where nothing of a box is in sight.
         """
         # Slices below clip at the far borders by themselves; a negative start would count from
         # there.
-        margins = RIM * (edges[:, 2:] - edges[:, :2])
+        margins = BACKGROUND_RIM * (edges[:, 2:] - edges[:, :2])
         low = np.maximum((edges[:, :2] + margins).astype(np.intp), 0)
         high = np.maximum((edges[:, 2:] - margins).astype(np.intp) + 1, 0)
-        counts = np.zeros((len(edges), BINS), np.float32)
+        counts = np.zeros((len(edges), COLOUR_BINS), np.float32)
         boxes = zip(np.hstack([low, high]).tolist(), covers, strict=True)
         for row, ((left, top, right, bottom), cover) in enumerate(boxes):
             part = self._frame[top:bottom, left:right]
@@ -72,5 +72,5 @@ def _uncovered(part: Frame, covers: Array) -> npt.NDArray[np.uint8]:
 
 
 def similarities(some: Array, others: Array) -> Array:
-    """Bhattacharyya coefficients (...) of histograms (..., BINS), 0 to 1."""
+    """Bhattacharyya coefficients (...) of histograms (..., COLOUR_BINS), 0 to 1."""
     return np.asarray(np.sqrt(some * others).sum(axis=-1))

@@ -16,7 +16,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.trackers.traffic.box_edges import (
-    INWARD,
+    INWARD_SIGNS,
     OPPOSITE,
     cut_edges,
     deviations,
@@ -161,7 +161,9 @@ def which_edges(
     own = sides_of(drives.gaussians.edges)
     spread = deviations(predicted, noise)
     # Innovations in their standard deviations, inward positive.
-    normal = (edges - predicted) * INWARD / np.sqrt(drives.gaussians.edge_variances + spread**2)
+    normal = (
+        (edges - predicted) * INWARD_SIGNS / np.sqrt(drives.gaussians.edge_variances + spread**2)
+    )
     opposite = normal[:, OPPOSITE]
     # Smaller than both: a prediction may have grown wrongly, a detection may be of two vehicles.
     shrunk = sides_of(edges) < _WHOLE * np.minimum(own, _latest(drives, edges))
@@ -197,7 +199,7 @@ def _recede(tracks: Tracks, edges: Array, noise: float) -> Bools:
     predicted = tracks.edges
     shares = np.log(sides_of(edges) / sides_of(predicted))
     alike = np.abs(shares[:, 0] - shares[:, 1]) < 2 * noise  # that of four edges
-    drawn_in = ((edges - predicted) * INWARD > 0)[:, _ENDS]
+    drawn_in = ((edges - predicted) * INWARD_SIGNS > 0)[:, _ENDS]
     lately = tracks.drives.drift[:, _ENDS] <= 0
     in_sight = np.array([len(covers) == 0 for covers in tracks.sights.covers], np.bool_)
     smaller = (shares < 0).all(axis=1) & (drawn_in & lately).all(axis=1)
@@ -209,7 +211,7 @@ def corrected(drives: Drives, edges: Array, verdict: Verdict, noise: float) -> D
     predicted = drives.gaussians.edges
     latest = _latest(drives, edges)
     spread = deviations(predicted, noise)
-    residuals = np.where(verdict.left_out, 0.0, (predicted - edges) * INWARD)
+    residuals = np.where(verdict.left_out, 0.0, (predicted - edges) * INWARD_SIGNS)
     drives = _doubted(drives, residuals, spread, verdict.recede)
     # An infinite deviation is a gain of zero: the edge moves by its correlations only.
     exact = np.where(verdict.left_out, np.inf, spread)

@@ -30,7 +30,7 @@ _PRIOR = 2.0
 _GRID = 16
 """Places along each side of the image: 20 px in 320, about one distant vehicle. A choice: with
 larger places a tree would speak against the road beside it, smaller ones are seldom learnt."""
-PLACES = _GRID**2
+PLACE_COUNT = _GRID**2
 """Places of the image."""
 NOWHERE = -1
 """No place: an index that no place has."""
@@ -97,8 +97,8 @@ class DetectionEvidence:
         self._sums = np.zeros(1)
         self._images = 0.0
         # False alarms that stood alone, and all outcomes (false, genuine) by place.
-        self._false = np.zeros(PLACES)
-        self._places = np.full((2, PLACES), _PRIOR)
+        self._false = np.zeros(PLACE_COUNT)
+        self._places = np.full((2, PLACE_COUNT), _PRIOR)
 
     def look(self, *, are_shapes: bool = False) -> None:
         """Note that the detector has looked at another image, and whether it reports shapes."""
@@ -169,7 +169,7 @@ class DetectionEvidence:
         images = self._images + _ASSUMED_FOR
         usual = (self._false.sum() + _FALSE_ALARMS * _ASSUMED_FOR) / images
         # A gamma-Poisson mean: one place, scaled to the image, and the prior's images.
-        seen = self._false[places] * PLACES + _ASSUMED_FOR * usual
+        seen = self._false[places] * PLACE_COUNT + _ASSUMED_FOR * usual
         return np.asarray(np.log(seen / images))
 
     def _by_score(self, scores: Array, claims: Array) -> Array:

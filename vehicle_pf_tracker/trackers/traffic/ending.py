@@ -12,7 +12,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import inside_image
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE
-from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN, drives
+from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN_LOG_ODDS, drives
 from vehicle_pf_tracker.trackers.traffic.returns import Returns
 from vehicle_pf_tracker.trackers.traffic.rows import Bools
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State, Step
@@ -66,7 +66,7 @@ def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) 
     log_odds = tracks.beliefs.log_odds
     parameters = step.parameters
     waits = absences.undetected <= _PATIENCE / experience.rate.share
-    tentative = waits & (log_odds >= -CERTAIN) & (inside > 0)  # no memory of one that left
+    tentative = waits & (log_odds >= -CERTAIN_LOG_ODDS) & (inside > 0)  # no memory of one that left
     longest = parameters.lost_after + parameters.forgotten_after  # predicted, then kept in mind
     known = (inside >= _LEFT) & (log_odds >= _REFUTED)
     known &= absences.unseen * step.period <= longest

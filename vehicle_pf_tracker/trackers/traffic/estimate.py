@@ -10,9 +10,9 @@ from enum import Enum
 
 from vehicle_pf_tracker.core.box import Box, Position
 
-SCENE = "scene"
+SCENE_OCCLUDER = "scene"
 """Occluder of a track that nothing followed hides: a sign, a bridge, the unknown."""
-BORDER = "border"
+BORDER_OCCLUDER = "border"
 """Occluder of a track that is mostly outside the image: it leaves."""
 
 
@@ -54,7 +54,8 @@ class TrackEstimate:
     age : float
         Time since it was first seen, in nominal frame periods.
     hidden_by : int or "scene" or "border" or None
-        Identity of the vehicle that hides it, `SCENE`, `BORDER`, or None where it is in sight.
+        Identity of the vehicle that hides it, `SCENE_OCCLUDER`, `BORDER_OCCLUDER`, or None
+        where it is in sight.
     serial : int
         Number of its track, the same before and after it is confirmed.
     joined : int

@@ -13,15 +13,15 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas
-from vehicle_pf_tracker.trackers.traffic.box_edges import INWARD
+from vehicle_pf_tracker.trackers.traffic.box_edges import INWARD_SIGNS
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, places_of
-from vehicle_pf_tracker.trackers.traffic.parameters import IGNORE
+from vehicle_pf_tracker.trackers.traffic.parameters import IGNORE_STANDING
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import IN_SIGHT, Tracks
 
-CERTAIN = 7.0
+CERTAIN_LOG_ODDS = 7.0
 """Log odds, one in a thousand, beyond which nothing is surer: however long a vehicle was seen, some
 missed detections in plain sight speak against it."""
 _MOST = 3.0
@@ -124,7 +124,7 @@ def believed(
     # What has driven stays proven: a second box of another vehicle may part from it later.
     drove = now_drives | beliefs.has_driven
     proven |= drove
-    if step.parameters.birth.standing == IGNORE:
+    if step.parameters.birth.standing == IGNORE_STANDING:
         proven &= drove | (lengths >= _STANDS)
     # 3. Teach detections only now: what they show depends on the drive.
     tracks = _taught(tracks, now_drives, lengths, candidates, columns, experience)
@@ -144,7 +144,7 @@ def _weighed(tracks: Tracks, candidates: Candidates, columns: Integers, fits: Ar
     strength = beliefs.strength + proof
     beliefs = replace(
         beliefs,
-        log_odds=np.minimum(beliefs.log_odds + gains + fits, CERTAIN),
+        log_odds=np.minimum(beliefs.log_odds + gains + fits, CERTAIN_LOG_ODDS),
         # A time of standing is no debt: having stood makes nothing less likely once it drives.
         doubt=np.where(ways.stands, 0.0, np.maximum(beliefs.doubt - gains, 0.0)),
         strength=np.where(ways.stands, np.maximum(strength, 0.0), strength),
@@ -156,7 +156,7 @@ def _weighed(tracks: Tracks, candidates: Candidates, columns: Integers, fits: Ar
 def _have_rest(edges: Array, others: Array) -> Bools:
     """Find boxes (N, 4) among `others` (M, 4), all, that have another one beside them."""
     reach = _REACH * np.tile(edges[:, 2:] - edges[:, :2], 2)
-    near = intersections((edges - reach * INWARD)[:, np.newaxis], others) > 0
+    near = intersections((edges - reach * INWARD_SIGNS)[:, np.newaxis], others) > 0
     near &= areas(others) > _REST * areas(edges)[:, np.newaxis]  # a speck is no rest
     return np.asarray(near.sum(axis=1) > 1)  # itself is one
 

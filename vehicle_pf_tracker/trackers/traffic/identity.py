@@ -17,7 +17,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas
 from vehicle_pf_tracker.trackers.traffic.colours import similarities
-from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN, note_found
+from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN_LOG_ODDS, note_found
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, objects
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks, added_votes
@@ -75,7 +75,7 @@ def given(state: State) -> State:
     names = tracks.names
     log_odds = tracks.beliefs.log_odds.copy()
     by_hand = names.given.copy()
-    log_odds[row], by_hand[row] = CERTAIN, True
+    log_odds[row], by_hand[row] = CERTAIN_LOG_ODDS, True
     names = replace(names, given=by_hand)
     tracks = replace(tracks, names=names, beliefs=replace(tracks.beliefs, log_odds=log_odds))
     return state._replace(tracks=tracks, last_identity=identity)

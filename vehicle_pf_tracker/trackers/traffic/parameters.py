@@ -43,7 +43,7 @@ class DetectionParameters:
     )  # fmt: skip
 
 
-REPORT, IGNORE = "report", "ignore"
+REPORT_STANDING, IGNORE_STANDING = "report", "ignore"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,10 +59,10 @@ class BirthParameters:
         bounds=(0.0, 10.0), unit="of the width", tuned=(0.1, 1.0),
     )  # fmt: skip
     standing: str = parameter(
-        REPORT,
+        REPORT_STANDING,
         "What is done with vehicles that have not moved yet, of whose scores the detector is sure: "
         "report them, or ignore them until they drive. Counts at lines do not change.",
-        choices=(REPORT, IGNORE),
+        choices=(REPORT_STANDING, IGNORE_STANDING),
     )  # fmt: skip
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import NO_BOXES, areas
 from vehicle_pf_tracker.image.point_flow import PointFlow
-from vehicle_pf_tracker.trackers.traffic.colours import RIM, similarities
+from vehicle_pf_tracker.trackers.traffic.colours import BACKGROUND_RIM, similarities
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.state import Grey, State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Sights, Tracks
@@ -231,7 +231,7 @@ def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
 
 
 def _points(edges: Array) -> Array:
-    places = ((np.arange(_GRID) + 0.5) / _GRID - 0.5) * (1 - 2 * RIM)
+    places = ((np.arange(_GRID) + 0.5) / _GRID - 0.5) * (1 - 2 * BACKGROUND_RIM)
     x, y = np.meshgrid(places, places)
     middle = (edges[:2] + edges[2:]) / 2
     size = edges[2:] - edges[:2]

@@ -10,7 +10,12 @@ import math
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.trackers.traffic.estimate import BORDER, SCENE, TrackEstimate, TrackMode
+from vehicle_pf_tracker.trackers.traffic.estimate import (
+    BORDER_OCCLUDER,
+    SCENE_OCCLUDER,
+    TrackEstimate,
+    TrackMode,
+)
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 
 _MOSTLY_INSIDE = 0.5
@@ -110,7 +115,9 @@ def _mode(is_confirmed: bool, is_lost: bool, is_seen: bool) -> TrackMode:
 
 def _hiders(tracks: Tracks, modes: list[TrackMode]) -> list[int | str | None]:
     """Say what hides each hidden vehicle: another one, or else the scene or the border."""
-    unknown = np.where(tracks.sights.inside >= _MOSTLY_INSIDE, SCENE, BORDER).tolist()
+    unknown = np.where(
+        tracks.sights.inside >= _MOSTLY_INSIDE, SCENE_OCCLUDER, BORDER_OCCLUDER
+    ).tolist()
     rows = zip(modes, tracks.sights.hidden_by.tolist(), unknown, strict=True)
     hidden = (TrackMode.OCCLUDED, TrackMode.LOST)
     # Zero is no identity: nothing that is followed hides it.

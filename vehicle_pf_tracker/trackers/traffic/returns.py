@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import PLACES
+from vehicle_pf_tracker.trackers.traffic.detection_evidence import PLACE_COUNT
 from vehicle_pf_tracker.trackers.traffic.rows import Bools
 
 _UNKNOWN = 0.5
@@ -35,7 +35,7 @@ class Returns:
     """
 
     def __init__(self) -> None:
-        self._counts = np.zeros((2, PLACES))
+        self._counts = np.zeros((2, PLACE_COUNT))
 
     def learn(self, place: int, *, found: bool) -> None:
         """Add an outcome."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import NO_BOXES
-from vehicle_pf_tracker.trackers.traffic.colours import BINS
+from vehicle_pf_tracker.trackers.traffic.colours import COLOUR_BINS
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE
 from vehicle_pf_tracker.trackers.traffic.horizon import Growths
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Objects, Rows, filled
@@ -195,7 +195,7 @@ class Looks(Rows):
 
     Attributes
     ----------
-    colours : (N, BINS) array
+    colours : (N, COLOUR_BINS) array
         Histogram of its colours; zero while unknown.
     usual_similarity : (N,) array
         Similarity of its colours to those learnt, while it is detected.
@@ -258,7 +258,9 @@ class Tracks(Rows):
         edges = np.zeros((count, 4))
         extents = Extents(np.zeros((count, 2)), numbers, numbers, none, numbers, numbers)
         # Similar and in sight until something shows the opposite: ones, not zeros.
-        looks = Looks(np.zeros((count, BINS)), np.ones(count), detections, np.full(count, np.nan))
+        looks = Looks(
+            np.zeros((count, COLOUR_BINS)), np.ones(count), detections, np.full(count, np.nan)
+        )
         absences = Absences(zero, zero, numbers, none, no)
         return cls(
             Names(serial, numbers, no, numbers, filled(count, {})),
