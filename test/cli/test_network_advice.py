@@ -20,13 +20,24 @@ def test_few_ambiguous_blobs_are_no_reason():
     assert network_advice(COMMAND, Path("out"), DetectionTotals(images=100, ambiguous=30)) == []
 
 
-@pytest.mark.parametrize("own", [[], ["--detector", "motion"], ["--detector=motion"]])
+@pytest.mark.parametrize(
+    "own", [[], ["--detector", "motion"], ["--detector=motion"], ["-o", "out"], ["--output=out"]]
+)
 def test_the_line_runs_the_same_with_a_network(own):
     found = DetectionTotals(images=100, ambiguous=45)
     (sentence,) = network_advice([*COMMAND, *own], Path("out"), found)
     assert sentence.startswith("in 45% of the images")
     words = shlex.split(sentence.rpartition("apart: ")[2])
-    assert words == [*COMMAND, "--model", "yolox-nano", "-o", "out_yolox-nano"]
+    assert words == [*COMMAND[:-2], "--model", "yolox-nano", "-o", "out_yolox-nano"]
+
+
+@pytest.mark.parametrize("given", [["--video", "a/all.mp4"], ["--video=a/all.mp4"]])
+def test_the_line_replaces_no_video(given):
+    found = DetectionTotals(images=100, ambiguous=45)
+    (sentence,) = network_advice([*COMMAND, *given], Path("out"), found)
+    words = shlex.split(sentence.rpartition("apart: ")[2])
+    assert "a/all_yolox-nano.mp4" in " ".join(words)
+    assert not {"a/all.mp4", "--video=a/all.mp4"} & set(words)
 
 
 def test_the_line_over_many_sources_names_the_folder_over_all(tmp_path):
@@ -40,5 +51,5 @@ def test_the_line_over_many_sources_names_the_folder_over_all(tmp_path):
     (sentence,) = advice_over_sources(command, Path("all"), folders)
     assert sentence.startswith("in 1 of 4 sources (east) blobs may have held several vehicles")
     words = shlex.split(sentence.rpartition("apart: ")[2])
-    assert words == [*command, "--model", "yolox-nano", "-o", "all_yolox-nano"]
+    assert words == [*command[:-2], "--model", "yolox-nano", "-o", "all_yolox-nano"]
     assert advice_over_sources(command, Path("all"), folders[1:]) == []

@@ -21,8 +21,12 @@ _AMBIGUOUS = 0.35
 .28 and .30 counts at lines were within one of ten, from .45 on a tenth to all were missed."""
 _MOST_NAMED = 5
 """Sources that the advice names, what a line of a terminal holds."""
-_OWN = "--detector"
+_OWN = ("--detector",)
 """Option that chooses motion, and cannot stand beside `--model`."""
+_OUTPUT = ("-o", "--output")
+"""Options of the folder of results: there they are already."""
+_VIDEO = "--video"
+"""Option of the video, which is there already, too."""
 
 
 def network_advice(command: Sequence[str], folder: Path, found: DetectionTotals) -> list[str]:
@@ -82,9 +86,37 @@ def _found_in(folder: Path) -> DetectionTotals:
 def _advice(command: Sequence[str], folder: Path) -> str:
     """Return the advice, with the line that repeats a command with a network."""
     network = next(iter(KNOWN_NETWORKS))
-    words = [word for word in command if not word.startswith(f"{_OWN}=")]
-    if _OWN in words:
-        at = words.index(_OWN)
-        words[at : at + 2] = []
-    line = shlex.join([*words, "--model", network, "-o", f"{folder}_{network}"])
+    words = _without(command, _OWN)
+    words = [*_other_video(words, network), "--model", network]
+    line = shlex.join([*_without(words, _OUTPUT), "-o", f"{folder}_{network}"])
     return f"blobs may have held several vehicles; a network tells them apart: {line}"
+
+
+def _without(words: Sequence[str], names: Sequence[str]) -> list[str]:
+    """Return the words without options of these names and their values."""
+    found: list[str] = []
+    before = ""
+    for word in words:
+        if before not in names and word not in names and word.partition("=")[0] not in names:
+            found.append(word)
+        before = word
+    return found
+
+
+def _other_video(words: Sequence[str], network: str) -> list[str]:
+    """Return the words with another name of the video, which would not be replaced."""
+    found: list[str] = []
+    for word in words:
+        option, equals, name = word.partition("=")
+        if found and found[-1] == _VIDEO:
+            found.append(_named(word, network))
+        elif option == _VIDEO and equals:
+            found.append(f"{option}={_named(name, network)}")
+        else:
+            found.append(word)
+    return found
+
+
+def _named(video: str, network: str) -> str:
+    path = Path(video)
+    return str(path.with_name(f"{path.stem}_{network}{path.suffix}"))
