@@ -73,6 +73,7 @@ class Depth:
         scale = self.scale(share)
         gone = self._distance(share) - FOCAL / NEAREST
         aside = self.side * (gone / math.tan(BEARING)) + across / math.sin(BEARING)
+        # The near end on one side leaves room for the road to go to the other.
         start = self.width * (0.5 - 0.2 * self.side)
         span = (BOTTOM - TOP) * self.height / (NEAREST - NEAREST / self.factor)
         return start + aside * scale, BOTTOM * self.height - span * (NEAREST - scale)
@@ -91,6 +92,7 @@ class IntoDepth:
 
     def __call__(self, frame: float) -> Pose:
         """Give the pose in `frame`."""
+        # Constant on the ground: in the image it slows down as it drives away.
         share = frame / self.frames if self.away else 1 - frame / self.frames
         heading = BEARING if self.depth.side > 0 else math.pi - BEARING
         x, y = self.depth.point(share, -0.45 * HALF_WIDTH)
@@ -102,6 +104,7 @@ def scale(parameters: ScaleParameters, seed: int) -> Scene:
     width, height = PAPER_SIZES[parameters.resolution]
     side = 1.0 if parameters.heading == "right" else -1.0
     depth = Depth(width + 2 * SHAKE_MARGIN, height + 2 * SHAKE_MARGIN, parameters.factor, side)
+    # The speed of all scenes is in px per frame; here it is the mean over the way.
     frames = math.dist(depth.point(0), depth.point(1)) / parameters.speed
     rng = stream(seed, "drive")
     model = Model(target_faces(parameters.vehicle, rng), NEAREST)
@@ -122,6 +125,7 @@ def _backdrop(depth: Depth, seed: int) -> Image:
     rng = stream(seed, "backdrop")
     picture = grass((depth.height, depth.width), rng)
     road = asphalt((depth.height, depth.width), rng)
+    # Beyond both ends: the road reaches from below the image to near the horizon.
     shares = np.linspace(-0.45, 4.0, 30).tolist()
     _fill(picture, depth, shares, (-HALF_WIDTH, HALF_WIDTH), road)
     white = np.full_like(road, 208)

@@ -124,6 +124,7 @@ class RoadVehicle:
 
     def _actor(self, *, shade: bool) -> Actor:
         def look(frame: float) -> Sprite:
+            # Kept for the frame: who asks for the picture and for what it hides has it drawn once.
             last = self._drawn.get(shade)
             if last is None or last[0] != frame:
                 opacity = SHADOW_OPACITY if shade else 1.0
@@ -197,10 +198,12 @@ def draw(placed: tuple[Array, _Solid], camera: RoadCamera, opacity: float) -> Sp
     corners, solid = placed
     pixels = camera.project(corners)
     box = bounds(pixels)
+    # A vehicle beside the camera would have millions of cells; it is drawn more coarsely.
     fineness = min(_OVERSAMPLING, math.sqrt(camera.most_cells / box.area))
     columns = math.ceil(box.width * fineness)
     rows = math.ceil(box.height * fineness)
     cells = (pixels - (box.x, box.y)) * (columns / box.width, rows / box.height)
+    # Inverse depth, as it is linear across a face in the image; depth itself is not.
     nearness = 1 / camera.depth(corners)
     colour = np.zeros((rows, columns, 3), np.uint8)
     nearest = np.zeros((rows, columns))
@@ -209,6 +212,8 @@ def draw(placed: tuple[Array, _Solid], camera: RoadCamera, opacity: float) -> Sp
         if inside.any():
             near = _over(cells[part], nearness[part], window.left, window.top, inside.shape)
             kept = nearest[window.slices]
+            # A depth buffer: no order of the faces is right from every side. Those in one place, as
+            # a window in its wall, are told apart by their order.
             inside &= near > kept / (1 + SAME_PLACE * kept)
             kept[inside] = near[inside]
             colour[window.slices][inside] = _shaded(face, corners[part], camera)
@@ -230,6 +235,7 @@ def _shaded(face: Face, corners: Array, camera: RoadCamera) -> tuple[float, floa
         return face.colour
     normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
     normal = normal / np.linalg.norm(normal)
+    # Light falls on the side that is seen, whichever way round the corners were given.
     seen_from_outside = normal @ (camera.pose.position - corners[0]) >= 0
     return lit(face.colour, normal if seen_from_outside else -normal)
 
@@ -280,6 +286,7 @@ def ground_picture(
             pixels = np.stack([columns + right, rows + down], axis=-1)
             ideal = plane.ideal(pixels)
             ground = plane.homography.to_road(ideal)
+            # Rays above the horizon meet the road behind the camera: they are sky.
             below = (plane.homography.nearness(ideal) > 1e-3)[..., np.newaxis]
             points = np.where(below, ground, 0.0)
             total += np.where(below, _colours(points, marks, tar, green), _SKY)
@@ -308,6 +315,7 @@ def _near(x: Array, lines: tuple[float, ...], reach: float) -> npt.NDArray[np.bo
 def _sampled(tile: Image, x: Array, y: Array) -> Image:
     """Look a texture up at road points; it goes on mirrored."""
     columns, rows = (
+        # Mirrored at the tile's ends, where a plain repetition would draw a line across the road.
         np.abs((np.floor(place / _CELL).astype(np.intp) % (2 * _TILE)) - _TILE) % _TILE
         for place in (x, y)
     )

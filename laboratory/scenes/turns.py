@@ -57,6 +57,7 @@ class Bend:
         after = gone - before - arc
         side = math.copysign(1.0, self.angle)
         turn = side * arc / self.radius
+        # On the ground, where the arc is a circle; the view from above shortens it only afterwards.
         along = before + self.radius * abs(math.sin(turn)) + after * math.cos(turn)
         across = side * self.radius * (1 - math.cos(turn)) + after * math.sin(turn)
         east, north = _rotated(along, across, self.start.heading)
@@ -84,11 +85,13 @@ def side_road(
     """Draw a road with a dashed middle line from `begin` to `end` (x, y), `width` px across."""
     x0, y0 = begin
     x1, y1 = end
+    # The kerb first, and the asphalt over it.
     sides = (-width / 2 - 3, width / 2 + 3), (-width / 2, width / 2)
     for (left, right), light in zip(sides, (1.25, 1.0), strict=True):
         outline = np.array([(x0 + left, y0), (x0 + right, y0), (x1 + right, y1), (x1 + left, y1)])
         window, inside = cells_inside(outline, *picture.shape[:2])
         rows, columns = inside.shape
+        # Turned, since the grain of asphalt runs along a road.
         ground = asphalt((columns, rows), rng).transpose(1, 0, 2) * np.float32(light)
         picture[window.slices][inside] = ground[inside]
     for row in range(max(round(y0), 0), min(round(y1), picture.shape[0])):

@@ -85,13 +85,17 @@ def background_of(source: Source) -> Background:
         shares.append(share)
     count = len(steps) + 1
     identity = np.broadcast_to(np.eye(3), (count, 3, 3))
+    # Judged over the whole recording: one gust, or a lorry that fills the image, is no drive.
     if not steps or np.mean(np.array(flows) < _STILL_PX) >= _STILL_SHARE:
         return Background(True, True, identity)
+    # Logarithms, so that driving in and driving out are alike.
     scales = np.abs(np.log([np.hypot(step[0, 0], step[1, 0]) for step in steps]))
     if np.median(shares) < _AGREEING or np.median(scales) > _LOOMING:
         return Background(False, False, identity)
     matrices = [np.eye(3)]
     for step in steps:
+        # Chained, and not measured against the first frame: what that one showed is soon out of
+        # view. The drift of a chain carries the occluder with it, and shifts no truth.
         matrices.append(step @ matrices[-1])
     return Background(False, True, np.array(matrices))
 
@@ -110,6 +114,7 @@ def _step(
     last: Grey, present: Grey, zoom: float, target: Box | None
 ) -> tuple[Matrix, float, float]:
     before, after = _flow(last, present, _without_target(last, zoom, target))
+    # A share of 0, as of no agreement at all: many such frames make the background incoherent.
     if len(before) < _LEAST_CORNERS:
         return np.eye(3), 0.0, 0.0
     median = float(np.median(np.hypot(*(after - before).T)))
@@ -120,6 +125,7 @@ def _step(
     if matrix is None:
         return np.eye(3), median, 0.0
     step = np.vstack([matrix, [0.0, 0.0, 1.0]])
+    # Only the shift has a unit of pixels; turn and scale are those of the whole image.
     step[:2, 2] /= zoom
     return step, median, float(np.mean(agreeing))
 

@@ -64,12 +64,14 @@ class Kind:
 
 def case_seed(seed: int, *words: object) -> int:
     """Derive the seed of a case from the battery's and the case's name."""
+    # `hash` differs from process to process, and so would the cases.
     return zlib.crc32("/".join(map(str, (seed, *words))).encode())
 
 
 def _playing(origin: StressSource, kind: str, variation: str = "", **more: Any) -> Iterator[Case]:
     """Yield the case of all frames from the first one with truth on."""
     footage = open_footage(origin.source)
+    # Without truth there is no box to start on.
     first = next((i for i, truth in enumerate(footage.truth) if truth is not None), 0)
     count = len(footage.truth) - first
     if count >= _LEAST_FRAMES:
@@ -93,6 +95,7 @@ def _reversed(origin: StressSource, seed: int) -> Iterator[Case]:
 
 def _last_in_view(truths: tuple[Truth | None, ...]) -> int:
     """Index of the last frame in full view, else of the last that is not hidden; else -1."""
+    # A run that is played backwards starts here, and should see the whole vehicle if it can.
     for accepted in ({Occlusion.NONE}, {Occlusion.NONE, Occlusion.PARTIAL}):
         for index in range(len(truths) - 1, -1, -1):
             truth = truths[index]
@@ -103,6 +106,7 @@ def _last_in_view(truths: tuple[Truth | None, ...]) -> int:
 
 def _half_rate(origin: StressSource, seed: int) -> Iterator[Case]:
     for case in _playing(origin, "half_rate", seed=seed):
+        # As many seconds as before, so that the vehicle drives twice as far between two frames.
         yield replace(case, step=2, count=(case.count + 1) // 2)
 
 
@@ -166,6 +170,7 @@ def _reduced(origin: StressSource, seed: int) -> Iterator[Case]:
     for factor in (0.75, 0.5):
         change = (changes.Reduction(factor),)
         for case in _playing(origin, "reduced", f"{factor:g}", seed=seed, changes=change):
+            # The start decides: a vehicle that grows later can be learnt, one that shrinks was.
             box = case.start_box()
             if min(box.width, box.height) >= _LEAST_SIDE:
                 yield case

@@ -47,6 +47,7 @@ class Motion:
 
     def from_anchor(self, points: Floats, index: int) -> Floats:
         """Take points (N, 2) of frame `anchor` to frame `index`."""
+        # Its own motion first: the velocity is in px of the anchor frame, as it was measured there.
         moved = points + (index - self.anchor) * np.asarray(self.velocity)
         a, b, x, y = self.carried[index - self.first] if self.carried else _STANDING
         turn = np.array([[a, b], [-b, a]])
@@ -59,6 +60,7 @@ class Motion:
         carried = self.carried[begin : begin + count] if self.carried else (_STANDING,) * count
         a, b, x, y = np.array(carried).T
         moved = points - np.stack([x, y], axis=1)[:, np.newaxis]
+        # The inverse of each similarity, all frames at once; none is singular, as a scale is not 0.
         back = np.array([[a, -b], [b, a]]) / (a * a + b * b)
         turned = np.einsum("fnk,kjf->fnj", moved, back)
         own = np.arange(first, first + count)[:, np.newaxis] - self.anchor
@@ -103,6 +105,7 @@ class Occluder:
             return truth
         # How much of a vehicle that was hidden in part is left is not known.
         known = share if truth.occlusion is Occlusion.NONE else None
+        # What either hides is hidden; what both hide in part may be the same part.
         hidden = max(truth.occlusion, painted)
         return replace(truth, occlusion=Occlusion(hidden), visible_fraction=known)
 

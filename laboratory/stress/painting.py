@@ -73,6 +73,7 @@ class Texture:
         """Make the texture for a rectangle, at the resolution of the images."""
         shape = _side(rectangle.height), _side(rectangle.width)
         patch = self._patch(footage)
+        # A stream of its own: another occluder, or another fault, changes no pixel of this one.
         rng = stream(self.seed, "texture")
         if self.style == LORRY:
             image = _lorry(shape, patch, rng)
@@ -82,6 +83,7 @@ class Texture:
         else:
             image = _wall(shape, patch, rng)
         if footage.is_grey:
+            # Grey footage has grey occluders, or colour alone would tell what was painted.
             image = np.repeat(image.mean(axis=2, keepdims=True), 3, axis=2)
         soft = cv2.GaussianBlur(np.ascontiguousarray(image), (0, 0), _SOFTNESS_PX)
         return np.asarray(np.clip(soft, 0, 255), np.float32)
@@ -109,11 +111,13 @@ def blend(frame: Frame, texture: Image, corners: Floats) -> Frame:
     if right <= left or bottom <= top:
         return frame
     rows, columns = texture.shape[:2]
+    # Pixel centres are half a pixel inside the corners, for OpenCV at whole numbers.
     ends = np.array([[0, 0], [columns, 0], [0, rows]], np.float32) - 0.5
     places = (corners[[0, 1, 3]] - (left + 0.5, top + 0.5)).astype(np.float32)
     matrix = cv2.getAffineTransform(ends, places)
     size = (right - left, bottom - top)
     painted = cv2.warpAffine(texture, matrix, size, borderMode=cv2.BORDER_REPLICATE)
+    # By area and not by the nearest pixel: a hard edge would be a gradient that no lens makes.
     share = coverage(corners, (left, top, *size))[..., np.newaxis].astype(np.float32)
     result: Frame = frame.copy()
     part = result[top:bottom, left:right]
@@ -126,6 +130,7 @@ def _wall(shape: tuple[int, int], patch: Image, rng: np.random.Generator) -> Ima
     base = np.full(3, _level(patch)) * rng.uniform(0.75, 1.3) * (1.03, 1.0, 0.94)
     shade = 1 + 0.10 * value_noise(shape, (40, 25), rng) + 0.06 * value_noise(shape, (5, 4), rng)
     shade += _grain(patch) * rng.standard_normal(shape)
+    # Joints give the surface structure: a plain one would be no test of texture and edges.
     slab = max(12, round(min(shape) * rng.uniform(0.35, 0.6)))
     shade[:, ::slab] *= 0.75
     shade[::slab, :] *= 0.8
@@ -137,6 +142,7 @@ def _pole(shape: tuple[int, int], patch: Image, rng: np.random.Generator) -> Ima
     """Draw a round post along the longer side, bright at one flank."""
     is_upright = shape[0] >= shape[1]
     across = shape[1] if is_upright else shape[0]
+    # Shaded across like a cylinder: a flat post would look like the border of a sign.
     position = (np.arange(across) + 0.5) / across
     flank = 0.55 + 0.65 * np.exp(-(((position - 0.35) / 0.28) ** 2))
     shade = (flank if is_upright else flank[:, np.newaxis]) * np.ones(shape)
@@ -148,6 +154,7 @@ def _pole(shape: tuple[int, int], patch: Image, rng: np.random.Generator) -> Ima
 def _lorry(shape: tuple[int, int], patch: Image, rng: np.random.Generator) -> Image:
     """Draw a lorry from the side, its cab at the right: a patch of the footage under paint."""
     rows, columns = shape
+    # In the light of the scene: a body in daylight would shine at dusk.
     paint = np.asarray(_BODIES[rng.integers(len(_BODIES))]) * _level(patch) / 128
     side = cv2.resize(patch, (columns, rows), interpolation=cv2.INTER_LINEAR)
     shade = (
@@ -166,6 +173,7 @@ def _add_cab(image: Image, paint: Floats) -> None:
     begin = columns - max(3, min(columns // 4, round(0.9 * rows)))
     image[:, begin:] = 0.75 * paint + 0.25 * image[:, begin:]
     image[:, begin : begin + max(1, columns // 80)] *= 0.4
+    # Windows and wheels: what tells a lorry from a wall to a tracker that looks at edges.
     glass = slice(round(0.12 * rows), round(0.42 * rows))
     image[glass, begin + (columns - begin) // 4 :] *= 0.35
 

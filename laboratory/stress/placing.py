@@ -107,6 +107,7 @@ class Placer:
 
     def place(self, spec: OcclusionSpec, anchor: int, seed: int) -> Placed | None:
         """Place an occluder that hides the vehicle around frame `anchor`; None if that fails."""
+        # A standing occluder that does not move as its surroundings do is seen through at once.
         if spec.style != LORRY and not self._background.coherent:
             return None
         span = self._span(anchor, spec.duration)
@@ -116,6 +117,7 @@ class Placer:
         motion = self._motion(spec, anchor, span, rng)
         boxes = self._relative(motion, span)
         rectangles = _rectangles(spec, boxes, anchor - span.start, rng)
+        # Counted by boxes first, which is cheap; only the best one is judged by its exact shape.
         counts = [(abs(_hidden(each, boxes) - spec.duration), each) for each in rectangles]
         miss, best = min(counts, key=lambda pair: pair[0])
         if miss > 2 * _slack(spec):  # far from it even by its outline, so nothing exact is computed
@@ -125,6 +127,7 @@ class Placer:
 
     def _span(self, anchor: int, duration: int) -> range | None:
         """Return the frames around `anchor`, all with truth, that an occlusion could matter in."""
+        # Without truth nobody knows what the occluder hides: the span ends at the first gap.
         reach = duration // 2 + _LONGEST_TOUCH + max(LEAD, TAIL)
         first = last = anchor
         while first > max(0, anchor - reach) and self._truth[first - 1] is not None:
@@ -145,11 +148,14 @@ class Placer:
         if spec.style != LORRY:
             return standing
         boxes = self._relative(standing, span)
+        # Eleven frames, a third of a second: the difference of two boxes is noise of the truth.
         near = slice(max(0, anchor - span.start - 5), anchor - span.start + 6)
         velocity = np.mean(np.diff(_centres(boxes[near]), axis=0), axis=0)
         extent = boxes[anchor - span.start, 2] - boxes[anchor - span.start, 0]
+        # A lorry drives along the road as the vehicle does, and passes it at a speed of its own.
         passing = rng.choice([-1.0, 1.0]) * extent / spec.crossing
         x, y = (velocity + np.array([passing, 0.0])).tolist()
+        # Rounded, so that a case that is read from its file is the same to the last bit.
         return replace(standing, velocity=(round(x, 3), round(y, 3)))
 
     def _relative(self, motion: Motion, span: range) -> Floats:
@@ -172,6 +178,7 @@ class Placer:
         is_total = spec.style != POLE
         if not len(touched) or not _is_right(hidden, spec) or touched[0] < LEAST_LEAD:
             return None
+        # A post hides nothing wholly: its occlusion is the time that it touches the vehicle.
         core = hidden if is_total else touched
         if np.ptp(touched) + 1 - len(hidden) > _LONGEST_TOUCH and not is_total:
             return None
@@ -192,6 +199,7 @@ class Placer:
     def _in_view(self, first: int, last: int) -> bool:
         """Return whether the sequence itself shows the vehicle, in full where the case begins."""
         own = [truth.occlusion for truth in self._truth[first : last + 1] if truth is not None]
+        # A vehicle that the sequence hides itself would make the occlusion longer than it says.
         return own[0] is Occlusion.NONE and Occlusion.TOTAL not in own
 
     def _path(self, motion: Motion, span: range, entry: int, leaving: int) -> str:
@@ -215,11 +223,14 @@ def _rectangles(
     spec: OcclusionSpec, boxes: Floats, anchor: int, rng: np.random.Generator
 ) -> Iterator[Box]:
     """Yield rectangles that hide the vehicle longer and longer around row `anchor`."""
+    # Random margins: a tracker must not learn how far an occluder reaches beyond the vehicle.
     margins = rng.uniform(0.15, 0.9, 4)
     if spec.style == LORRY:
         margins = rng.uniform(0.05, 0.3, 4)
     share = rng.uniform(*_POLE_SHARES)
     for length in range(1, max(spec.duration, 1) + 1):
+        # Grown around the anchor, in the occluder's coordinates, where a vehicle that drives away
+        # from its camera is hidden for longer the farther away it is.
         begin = max(0, anchor - (length - 1) // 2)
         inner = boxes[begin : begin + length]
         low = inner[:, :2].min(axis=0)
@@ -241,6 +252,7 @@ def _rectangles(
 def _axis(boxes: Floats, anchor: int) -> int:
     """Return the axis that the vehicle passes a standing occluder along: 0 for x, 1 for y."""
     near = _centres(boxes[max(0, anchor - 10) : anchor + 11])
+    # In sizes of the vehicle: a long one that turns in place goes no way along its own axis.
     way = np.abs(near[-1] - near[0]) / (boxes[anchor, 2:] - boxes[anchor, :2])
     return int(way[1] > way[0])
 

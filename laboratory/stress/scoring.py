@@ -121,9 +121,11 @@ def score_estimates(
     stamps = [t.stamp_ns if t else stamp_of(i, fps) for i, t in enumerate(truths)]
     rows = [_row(i, stamps[i - 1], each) for i, each in enumerate(estimates, start=1)]
     assert len(rows) == len(truths) or fault, "a frame without an estimate"
+    # A tracker that failed has lost its vehicle in all later frames, and is scored as that.
     rows += [
         EstimateRow.without(i + 1, stamps[i], Mode.LOST) for i in range(len(rows), len(truths))
     ]
+    # A tolerance of 0: estimates have the very stamps of the truth.
     counted = score_frames(rows, [truth for truth in truths if truth is not None], 0.0).counted
     visible = [frame for frame in counted if not frame.hidden]
     hidden = [frame for frame in counted if frame.hidden]
@@ -143,6 +145,7 @@ def score_estimates(
 
 
 def _accuracy(visible: Sequence[FrameScore], fault: str) -> dict[str, Any]:
+    # One fault fails the whole run: half a run is no measure of the tracker.
     on_target = _share([is_on_target(frame) and not fault for frame in visible])
     return {
         "on_target": on_target,
@@ -201,6 +204,7 @@ def _pairs(frames: Sequence[FrameScore], *, hidden: bool) -> list[tuple[float, b
 
 
 def _digest(rows: Sequence[EstimateRow]) -> str:
+    # Without step times, which differ from run to run.
     words = ((r.x, r.y, r.width, r.height, r.mode, r.confidence) for r in rows)
     return hashlib.sha256(repr(list(words)).encode()).hexdigest()[:16]
 

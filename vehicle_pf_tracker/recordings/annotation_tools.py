@@ -45,8 +45,10 @@ def cvat(path: Path, text: str, images: Images) -> Iterator[Label]:
         root = ElementTree.fromstring(text)  # noqa: S314 - expat bounds what entities expand to
     except ElementTree.ParseError as error:
         raise UnreadTruthError(f"{path} is not whole XML: {error}") from error
+    # Without tracks nothing says which of several boxes is the vehicle of the image before.
     if any(len(image.findall("box")) > 1 for image in root.iter("image")):
         raise UnreadTruthError(f"{path} has several boxes in an image, and no tracks")
+    # Other shapes are given, too, each with its fault: a target would vanish without a word.
     for parent in root.iter():
         for shape in parent.findall("*") if parent.tag in ("track", "image") else ():
             if shape.tag in _CVAT_SHAPES:
@@ -108,6 +110,7 @@ def _studio_labels(path: Path, document: Any, images: Images) -> Iterator[Label]
     width, height = images.size()
     for task in document:
         done = [one["result"] for one in task["annotations"] if not one.get("was_cancelled")]
+        # The first annotator's: the tool exports all, and a mean of two boxes is nobody's truth.
         regions = (done or [[]])[0]
         for region in regions:
             where = f"a region of the truth {path}"
@@ -147,6 +150,7 @@ def _key_frames(
     Frames that a file names and the video does not have are left out, however many.
     """
     count = len(images.numbers)
+    # Bounded by the frames there are: a file may say 10^9.
     last = min(value.get("framesCount") or 0, count)
     for now, following in pairwise([*value["sequence"], None]):
         frame = now["frame"]

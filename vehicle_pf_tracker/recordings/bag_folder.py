@@ -72,6 +72,7 @@ def _folder_files(folder: Path) -> tuple[list[Path], list[str]]:
     if information is not None:
         _check_storage(folder, information)
         return _listed_files(folder, information)
+    # A recorder that was killed has written no metadata: the files are whole all the same.
     state = "damaged" if metadata.exists() else "missing"
     for suffix in (MCAP_SUFFIX, SQLITE_SUFFIX):
         present = [path for path in folder.glob(f"[!.]*{suffix}") if path.is_file()]
@@ -92,6 +93,7 @@ def _information(metadata: Path) -> dict[str, Any] | None:
     # ValueError: bytes that are not text, numbers of thousands of digits, dates that are none.
     except (yaml.YAMLError, ValueError, RecursionError, KeyError, TypeError, AttributeError):
         return None
+    # Checked for its types here, so that nothing below has to doubt what it reads.
     is_sound = isinstance(files, list) and files and all(isinstance(w, str) for w in files + words)
     return information if is_sound else None
 
@@ -113,6 +115,7 @@ def _check_storage(folder: Path, information: dict[str, Any]) -> None:
 def _listed_files(folder: Path, information: dict[str, Any]) -> tuple[list[Path], list[str]]:
     names = [PurePath(name) for name in information["relative_file_paths"]]
     for name in names:
+        # A bag from elsewhere must not have files read that lie beside it.
         if name.is_absolute() or ".." in name.parts:
             raise InputError(
                 f"{folder / 'metadata.yaml'} lists the file {name}, which is outside of its folder"
@@ -121,6 +124,7 @@ def _listed_files(folder: Path, information: dict[str, Any]) -> tuple[list[Path]
     present = [path for path in listed if path.is_file()]
     if not present:
         raise InputError(f"the recording {folder} lacks its file {listed[0].name}")
+    # A split bag of which one part was not copied is worth the parts that there are.
     lacking = [path.name for path in listed if path not in present]
     notices = [f"recording {folder} lacks its file {name}; the rest is used" for name in lacking]
     return present, notices

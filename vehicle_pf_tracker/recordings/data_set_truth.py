@@ -37,6 +37,7 @@ def _flags(folder: Path) -> list[Occlusion | None]:
     for path, meaning in ((folder / name, meaning) for name, meaning in _FLAGS.items()):
         if path.is_file():
             columns.append([meaning.get(flag, Occlusion.NONE) for flag in _list(path)])
+    # Flags may contradict each other: absent wins, then the more hidden.
     states = (set(row) for row in zip_longest(*columns, fillvalue=Occlusion.NONE))
     return [None if None in state else max(state - {None}) for state in states]  # type: ignore[type-var]
 
@@ -82,6 +83,7 @@ def in_order(path: Path, text: str, images: Images) -> Iterator[Label]:
     """
     folder = path.parent
     begin = 0
+    # One pixel more or less is a tenth of the width of a far vehicle.
     first_px = 0 if (folder / "sequence").is_file() or any(folder.glob("*.tag")) else 1
     span = folder / path.name.replace("_gt.", "_frames.")
     if span != path and span.is_file():

@@ -65,6 +65,7 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
     with RecordingWriter(out, overwrite=overwrite) as writer:
         for frames, picture in enumerate(_pictures(footage), start=1):
             size = _check_size(picture, size if frames > 1 else frame_size(picture.frame))
+            # Bytes of a file are kept as they are: decoding and coding anew would lose quality.
             if coded := _coded(picture, format):
                 writer.write_compressed(picture.stamp_ns, *coded)
             else:
@@ -104,6 +105,7 @@ def _pictures(footage: Footage) -> Iterator[Picture]:
 
 
 def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:
+    # Recordings are played to trackers, which take images of one size.
     width, height = frame_size(picture.frame)
     if (width, height) != size:
         raise InputError(
@@ -115,6 +117,7 @@ def _check_size(picture: Picture, size: tuple[int, int]) -> tuple[int, int]:
 
 def _coded(picture: Picture, wanted: str | None) -> tuple[str, bytes] | None:
     """Kind and bytes of the file that a picture is stored as; None where its pixels are."""
+    # PNG is slow to decode, and as raw pixels no larger than what a camera publishes.
     if wanted == "raw" or (wanted is None and picture.coded_format == "png"):
         return None
     if picture.coded_format:

@@ -94,6 +94,7 @@ def serialize(message: Any, type_name: str) -> memoryview:
     InputError
         If the type is unknown.
     """
+    # Asked for its class first: an unknown type then has a sentence and not a KeyError.
     message_class(type_name)
     return _store().serialize_cdr(message, type_name)
 
@@ -229,6 +230,7 @@ def truth_from_messages(
     frames: dict[int, dict[str, Any]] = defaultdict(dict)
     for topic, message in received:
         frames[stamp_ns(message)][topic] = message
+    # By stamp, since the three topics of a frame are three messages, which may be interleaved.
     stamps = sorted(frames)
     if is_cut and stamps:
         complete = frames[stamps[0]].keys() if len(stamps) > 1 else TRUTH_TYPES.keys()
@@ -255,10 +257,12 @@ def _box_of(stamp_ns: int, by_topic: dict[str, Any]) -> Box:
         raise InputError(
             f"the truth box at stamp {stamp_ns} ns is not a polygon of corners within 2^24 px"
         )
+    # The hull, whichever corner comes first, and whichever way round.
     width = max(xs) - min(xs)
     height = max(ys) - min(ys)
     if width <= 0 or height <= 0:
         raise InputError(f"the truth box at stamp {stamp_ns} ns has no area")
+    # Corners are in single precision; the centre beside them has all digits.
     if TRUTH_POSITION_TOPIC not in by_topic:
         return Box(min(xs), min(ys), width, height)
     point = by_topic[TRUTH_POSITION_TOPIC].point

@@ -56,6 +56,7 @@ def _add_blocks(index: McapIndex, database: sqlite3.Connection) -> None:
     rows = database.execute(_MESSAGES)
     try:
         for number, topic, time_ns, length in rows:
+            # SQLite checks no types: a damaged row may have text where a time should be.
             if topic in index.channels and isinstance(time_ns, int) and length:
                 block = Block(number, length, time_ns, time_ns, frozenset({topic}))
                 index.blocks.append(block)
@@ -81,6 +82,8 @@ def _read_message(path: Path, block: Block) -> Iterator[Message]:
 
 def _connected(path: Path) -> sqlite3.Connection:
     """Open a file for reading; without the log of a recorder that crashed it cannot change."""
+    # `immutable` reads from media that cannot be written; but it ignores the log, in which a
+    # recorder that crashed may have left the last messages.
     has_log = path.with_name(path.name + "-wal").exists()
     options = "mode=ro" if has_log else "mode=ro&immutable=1"
     return sqlite3.connect(f"file:{quote(str(path.absolute()))}?{options}", uri=True)

@@ -162,6 +162,7 @@ class Drive:
 
     def far_traffic(self) -> list[Actor]:
         """Make the traffic of the far lane, behind the target."""
+        # Slower than the target, which so passes vehicles of its own kind: distractors.
         speed = self.parameters.speed * self.rng.uniform(0.75, 0.85)
         return convoy(self.road.lane(0), speed, self.frame_count, self.width, self.rng)
 
@@ -193,6 +194,7 @@ class Drive:
         if behind is None:
             behind = self.far_traffic()
             front = (*self.opposite_traffic(), *front)
+        # The order to paint in: what is nearer to the viewer comes later, and covers.
         behind = list(behind)
         own = self.target.on(self.sways(self.course(self.start, self.pace)))
         return Scene(
