@@ -32,10 +32,10 @@ _SCORE_DOUBT = 0.5
 does not hide it for ever; and that are taken off each, in confirming by scores alone."""
 _PROVEN = 4.0
 """Sum of the log odds of scores that stands for a drive: one in 55, two detections at least."""
-_MISSED = 0.3
+_MISSED = 0.15
 """Log odds that a detection missed in plain sight takes off a vehicle: something unknown may hide
-it, so that only 25 take off all that it can have. If it takes 50, ghosts drive on: IDF1 by motion
-behind a bridge 67.3 instead of 69.5; if it takes 15, what the bridge hides ends (64.5)."""
+it, so that only 50 take off all that it can have. The older one of two values that cameras left out
+do not tell apart, .15 and .3 (`laboratory/notes/traffic.md`)."""
 _VANISHED_AFTER = 4
 """Misses in plain sight in a row by which it vanished: 1 in 16 by chance at a rate of a half."""
 _WAIT = 0.5
