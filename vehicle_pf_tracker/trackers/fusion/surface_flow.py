@@ -29,6 +29,10 @@ one is compared with: the youngest such patch is taken. Flow is good to about on
 _TELLING_PX = 2.0
 """Motion apart in canonical px below which the background's flow is too close to the vehicle's:
 twice the error."""
+_MAGNIFIED_PX = 1.5
+"""The same in px of the frame, of a vehicle that is magnified, in the first frames after a return:
+its flow is no better than its image. Of one of 18 px that moved by one px none counted as moving;
+the number was chosen on it (straight_bridge_total, laboratory/notes/fusion_tried.md)."""
 _SIDE = 96
 """Side in canonical px of the middle of a patch that flow is measured in: a target has 77 px at
 most, and flow of all 128 takes 1.7 times as long."""
@@ -71,6 +75,8 @@ class SurfaceFlow(NamedTuple):
         Ratio of the two, at most 1; 1 where flow tells nothing.
     is_reliable : bool
         True where enough usually moves with the vehicle, when last judged.
+    is_back : bool
+        True for a vehicle that has been hidden: its usual share is of earlier patches.
     """
 
     patches: tuple[_Kept, ...] = ()
@@ -78,10 +84,11 @@ class SurfaceFlow(NamedTuple):
     latest: float = 1.0
     share: float = 1.0
     is_reliable: bool = False
+    is_back: bool = False
 
     def restarted(self) -> SurfaceFlow:
         """Discard all patches, but not the usual share."""
-        return SurfaceFlow((), self.usual, self.latest)
+        return SurfaceFlow((), self.usual, self.latest, is_back=True)
 
     def moved(self, camera: CameraMotion) -> SurfaceFlow:
         """Let the camera move, once between two patches that are kept."""
@@ -109,6 +116,11 @@ class SurfaceFlow(NamedTuple):
         if not self.patches:
             return self
         kept, camera, apart = self._earlier(position, patch.zoom)
+        # In the first frames after a return: once all patches are kept, a slow vehicle has no
+        # others.
+        hardly = min(_MAGNIFIED_PX * float(patch.zoom.max()), _APART_PX)
+        if self.is_back and _TELLING_PX <= apart < hardly and len(self.patches) < _KEPT:
+            return self._replace(share=1.0, is_reliable=False)
         background = camera if apart >= _TELLING_PX else None
         latest = _moving_share(_middle(patch), kept, position, size, background)
         # The first share is its own usual one: no other is known.
@@ -116,7 +128,7 @@ class SurfaceFlow(NamedTuple):
         is_reliable = usual >= _LEAST_USUAL_SHARE
         # More than usual is no better than visible; an unreliable share must not speak against it.
         share = min(latest / usual, 1.0) if is_reliable else 1.0
-        return SurfaceFlow(self.patches, usual, latest, share, is_reliable)
+        return SurfaceFlow(self.patches, usual, latest, share, is_reliable, self.is_back)
 
     def learnt_usual(self) -> SurfaceFlow:
         """Count the present share as one of a clear frame."""
