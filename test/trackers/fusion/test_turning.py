@@ -71,7 +71,8 @@ def drive(turns, paint=lambda picture, time: None, response=0.1, still=lambda ti
             if foreground.is_known:
                 foreground.learn_background()
             motion = PerspectiveMotion(centres[DOUBT], np.array([SPEED, 0.0]), 0.0)
-            turning = Outlines.begun(foreground, motion, Sighting(late, centres[DOUBT], SIZE))
+            last = Sighting(late, centres[DOUBT], SIZE)
+            turning = Outlines.begun(foreground, motion, last, centre)
     return given, centres[DOUBT + late + 1 :]
 
 
@@ -155,4 +156,5 @@ def test_frames_of_another_size_begin_anew():
         foreground.keep(SmallGrey(picture, 1.0), still=True)
     assert not foreground.is_known
     motion = PerspectiveMotion(START, np.array([SPEED, 0.0]), 0.0)
-    assert Outlines.begun(foreground, motion, Sighting(0.0, START, SIZE)) == Outlines()
+    last = Sighting(0.0, START, SIZE)
+    assert Outlines.begun(foreground, motion, last, START) == Outlines()

@@ -88,8 +88,9 @@ def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> Sta
         case Hidden() if not seen.was_hidden:
             state = _enter_occlusion(state, step)
         case Hidden(outlines=Outlines(reappearance=way)) if way is not None:
-            if way.vehicle is not None:
-                state = _look_at(state, *way.vehicle, step)
+            found = way.vehicle
+            if found is not None:
+                state = _look_at(state, *found, step)
         # In each frame, since the chain lets some become visible: only a proven return counts.
         case Gone():
             state = state._replace(particles=state.particles.all_visible(0.0))
@@ -130,7 +131,8 @@ def _enter_occlusion(state: State, step: Step) -> State:
     # Once, of the frames before: all hidden frames are compared with the same background.
     if foreground.is_known:
         foreground.learn_background()
-    state = state._replace(verdict=Hidden(Outlines.begun(foreground, path, last)))
+    outlines = Outlines.begun(foreground, path, last, state.position)
+    state = state._replace(verdict=Hidden(outlines))
     # The size too: the occluder has shrunk the box in the frames since.
     size = last.size * path.scale_at(last.age)
     state = state._replace(size=size, whole=state.whole._replace(measured=size))

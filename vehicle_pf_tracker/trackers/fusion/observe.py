@@ -179,7 +179,7 @@ def _is_stranger(state: State, position: Array, step: Step) -> bool:
     way = _way_of(state)
     if way is None or state.particles.probability_visible <= 0.5:
         return False
-    if way.is_behind(position):
+    if way.is_behind(position) or way.is_another(position):
         return True
     appearance = step.memory.appearance
     return appearance.paint_share(step.frame, state.size, position) < LEAST_PAINT
@@ -224,7 +224,8 @@ def _searched(
     way = _way_of(state)
     # Only the evidence for it is dropped: what answers there is another one.
     if way is not None:  # what comes up from behind is another vehicle
-        ratios = np.where(way.is_behind(positions), np.minimum(ratios, 0.0), ratios)
+        another = way.is_behind(positions) | way.is_another(positions)
+        ratios = np.where(another, np.minimum(ratios, 0.0), ratios)
     return view, positions, ratios
 
 

@@ -6,7 +6,7 @@
 Behind an occluder it may have come nearer, or driven on faster, than its earlier sightings told: it
 is in full view then, beside the hypotheses and at another size. The outline that appears on its
 heading and drives on along it is the vehicle, if the filter and the paint agree at its own size.
-What was in view before, or came from elsewhere, is another vehicle.
+What was in view before, or came from elsewhere, is another vehicle; nothing returns there.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.fusion.known_others import KnownOthers, areas
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import (
     CLEAR_RESPONSE,
@@ -37,6 +38,9 @@ predicted at .36 to .8 of their size, others at up to 1.4 of it."""
 _LEAST_AREA = 0.25
 """Area of an outline beside the heading that is another vehicle, of the predicted one: less is a
 piece, and may be the tip of the vehicle's own shadow. The quarter is a choice."""
+_LARGEST_KNOWN = 2.0
+"""Area of an outline, of the predicted one, from which it is not known to be one other vehicle: two
+may have merged, and the vehicle itself with them. Two is a choice."""
 _SPEEDS = 0.4, 3.0
 """Bounds of its speed, of the predicted one: one that is twice as near is four times as fast."""
 LEAST_PAINT = 0.1
@@ -48,11 +52,16 @@ half is a choice; two vehicles in a lane are a whole length apart."""
 _BEHIND = 0.5
 """Distance in sizes against the heading, from the last clear sighting, beyond which nothing is the
 vehicle: it does not reverse on a road, and what comes up from behind is another one."""
+_EVERY = 2
+"""Frames from one look at the outlines to the next, until one drives on: half of the cost. What is
+proven within `_PROOF` is proven a frame later at most."""
 _REMEMBERED = 2
-"""Frames in which others are remembered, the least that bridges one in which an outline is lost: it
+"""Looks in which others are remembered, the least that bridges one in which an outline is lost: it
 flickers. Longer ones would claim the road that others have left."""
-_FOLLOWED = 2 * PROOF_FRAMES
-"""Frames over which the velocity of an outline is measured at most: it may brake or turn."""
+_PROOF = PROOF_FRAMES - 1.0
+"""Periods from the first to the last of the frames that prove a motion."""
+_FOLLOWED = 2.0 * PROOF_FRAMES
+"""Periods over which the velocity of an outline is measured at most: it may brake or turn."""
 _JUDGED = 3
 """Frames in a row in which filter and paint have to know it: single outlines jump. Three is a
 choice, a tenth of a second."""
@@ -93,19 +102,28 @@ class Reappearance(NamedTuple):
     motion : PerspectiveMotion
         Motion of the vehicle then, whose time 0 is that sighting.
     age : float
-        Frames since that sighting.
+        Periods since that sighting.
+    position : (2,) array
+        Centre of the last estimate before it was hidden, px: seen less clearly, and later.
+    rested : int
+        Frames since the last look at the outlines.
     others : tuple of (N, 2, 2) arrays
-        Bounding boxes (low, high; px) of other vehicles, in the last frames.
+        Bounding boxes (low, high; px) of other vehicles, in the last looks.
+    known : KnownOthers
+        Those of them that were in view when the vehicle was hidden.
     track : tuple of (float, (2, 2) array)
-        Ages and bounding boxes of the outline, in the last frames.
+        Ages and bounding boxes of the outline, in the last looks.
     judged : tuple of Candidate
-        The vehicle in it, in the last frames in which it drove on along the heading.
+        The vehicle in it, in the last looks in which it drove on along the heading.
     """
 
     last: Sighting
     motion: PerspectiveMotion
     age: float
+    position: Array
+    rested: int = _EVERY
     others: tuple[Array, ...] = ()
+    known: KnownOthers = KnownOthers()
     track: tuple[tuple[float, Array], ...] = ()
     judged: tuple[Candidate, ...] = ()
 
@@ -115,28 +133,50 @@ class Reappearance(NamedTuple):
         return self.motion.position_at(self.age), self.last.size * self.motion.scale_at(self.age)
 
     def aged(self, elapsed: float) -> Reappearance:
-        """Let `elapsed` frames pass."""
-        return self._replace(age=self.age + elapsed)
+        """Let a frame pass, `elapsed` periods after the last one."""
+        return self._replace(age=self.age + elapsed, rested=self.rested + 1)
+
+    @property
+    def is_due(self) -> bool:
+        """True in every second frame, and in each while an outline drives on along the heading."""
+        return self.rested >= _EVERY or bool(self.judged)
 
     def observed(self, boxes: Array, judge: Judge) -> Reappearance:
         """Follow the outline; only one that drives on is judged by the filter and the paint."""
         # Others are known by where they were: on the heading an outline is the vehicle's only if
         # none of them was there before.
-        areas = (boxes[:, 1] - boxes[:, 0]).prod(axis=1)
-        is_other = ~self._on_heading(boxes) & (areas > _LEAST_AREA * self.place[1].prod())
+        position, size = self.place
+        is_large = areas(boxes) > _LEAST_AREA * size.prod()
+        is_other = ~self._on_heading(boxes) & is_large
         if self.others:
             is_other |= _touch(boxes, np.concatenate(self.others))
+            known = self.known.seen(boxes, self.age)
         else:  # what is in view elsewhere when the vehicle is hidden is not the vehicle
-            position, size = self.place
             # The middle half of the predicted box: only the vehicle's own rest may be seen there.
             own = np.stack([position - size / 4, position + size / 4])
             is_other |= ~_touch(boxes, own[np.newaxis])
-        new = self._replace(others=(*self.others[1 - _REMEMBERED :], boxes[is_other]))
+            known = KnownOthers.begun(boxes[is_other & self._is_single(boxes)], self.age)
+        others = (*self.others[1 - _REMEMBERED :], boxes[is_other])
+        new = self._replace(others=others, known=known, rested=0)
         return new._followed(boxes[~is_other], judge)
+
+    def _is_single(self, boxes: Array) -> Mask:
+        """Test which boxes are of one vehicle, and of another one."""
+        position, size = self.place
+        # The centre is outside of all of the predicted box: a rest a little ahead is its own. And
+        # after a short return the prediction may be off, but not the last estimate.
+        is_apart = (np.abs(boxes.mean(axis=1) - position) > size / 2).any(axis=1)
+        is_apart &= ~((boxes[:, 0] < self.position) & (self.position < boxes[:, 1])).all(axis=1)
+        shares = areas(boxes) / size.prod()
+        return np.asarray(is_apart & (shares > _LEAST_AREA) & (shares < _LARGEST_KNOWN))
+
+    def is_another(self, positions: Array) -> Mask:
+        """Test which positions (..., 2) are in the middle of one that was in view all the time."""
+        return self.known.has(positions, self.age)
 
     def _followed(self, boxes: Array, judge: Judge) -> Reappearance:
         """Follow the outline that is next to the predicted position."""
-        # A frame without any ends the proof, which asks for frames in a row.
+        # A look without any ends the proof, which asks for frames in a row.
         boxes = boxes[self._has_size(boxes)]
         if not len(boxes):
             return self._replace(track=(), judged=())
@@ -144,7 +184,7 @@ class Reappearance(NamedTuple):
         # Of several that come out, the one next to the prediction: the order on a lane stays.
         off = np.linalg.norm(boxes.mean(axis=1) - position, axis=1)
         sides = boxes[int(off.argmin())]
-        track = self.track[-_FOLLOWED:]
+        track = tuple(each for each in self.track if each[0] >= self.age - _FOLLOWED)
         if track and np.abs(sides - track[-1][1]).max() > _LARGEST_JUMP * np.hypot(*size):
             track = ()
         new = self._replace(track=(*track, (self.age, sides)), judged=())
@@ -167,18 +207,20 @@ class Reappearance(NamedTuple):
 
     def _velocity(self) -> Array | None:
         """Velocity of an outline that drives on along the heading, px per frame; else None."""
-        if len(self.track) < PROOF_FRAMES:
+        if len(self.track) < PROOF_FRAMES // _EVERY:
             return None
         began, first = self.track[0]
         now, last = self.track[-1]
+        if now - began < _PROOF:
+            return None
         # The side in front moves all the time, the other one once all has come out.
         moves = last - first
         moved = np.where(np.abs(moves[1]) > np.abs(moves[0]), moves[1], moves[0])
-        velocity = np.asarray(moved / max(now - began, 1e-3))
+        velocity = np.asarray(moved / (now - began))
         predicted = self.motion.velocity_at(self.age)
         speed = float(np.hypot(*predicted))
-        # Along the predicted heading, so that what crosses it is no return. 1e-3 and 1e-9 only keep
-        # repeated stamps and vehicles that stood from dividing by zero.
+        # Along the predicted heading, so that what crosses it is no return. 1e-9 only keeps
+        # vehicles that stood from dividing by zero.
         along = float(velocity @ predicted) / max(speed, 1e-9)
         return velocity if _SPEEDS[0] * speed < along < _SPEEDS[1] * speed else None
 

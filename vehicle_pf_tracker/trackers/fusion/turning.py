@@ -163,15 +163,22 @@ class Outlines(NamedTuple):
     reappearance: Reappearance | None = None
 
     @classmethod
-    def begun(cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting) -> Outlines:
+    def begun(
+        cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting, position: Array
+    ) -> Outlines:
         """Begin where the vehicle was last seen clearly, of which `last.age` frames passed.
 
         Without a background there are none; it has to be learnt.
+
+        Parameters
+        ----------
+        position : (2,) array
+            Centre of the last estimate, px: that of a sighting that was less clear.
         """
         if not foreground.is_known:
             return cls()
         # On its way it may come out even if its outline was cut: that one is not compared.
-        reappearance = Reappearance(last, motion, last.age)
+        reappearance = Reappearance(last, motion, last.age, position)
         if last.cut:  # its outline was not the vehicle's
             return cls(reappearance=reappearance)
         emergence = Emergence(last, motion, foreground.extent)
@@ -210,8 +217,9 @@ class Outlines(NamedTuple):
         # 3. What comes out on the way, judged where it is now.
         if reappearance is not None:
             reappearance = reappearance.aged(elapsed)
-            boxes = foreground.boxes_near(*reappearance.place)
-            reappearance = reappearance.observed(boxes, judge)
+            if reappearance.is_due:
+                boxes = foreground.boxes_near(*reappearance.place)
+                reappearance = reappearance.observed(boxes, judge)
         if branch is None:
             return Outlines(None, emergence, reappearance)
         # 4. A proven turn ends the other searches, and is over once the filter knows the new side.
