@@ -4,6 +4,7 @@
 """The page of a run that goes on."""
 
 import json
+import re
 import socket
 import threading
 import time
@@ -189,4 +190,5 @@ def test_chromium_shows_picture_and_tables(browse):
         thread.join()
     assert "0:03.0, frame 75, 2 vehicles in view" in shown
     assert "<td>gate</td><td>12</td>" in shown and "<td>exit</td><td>–</td>" in shown
-    assert 'src="blob:' in shown
+    (picture,) = re.findall(r"<img[^>]*>", shown)
+    assert 'src="blob:' in picture and " hidden" not in picture
