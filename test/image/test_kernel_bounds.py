@@ -17,7 +17,12 @@ import collections
 import cv2, numpy as np
 from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.kernels import numba_cells, numba_pixel_cells, numba_windows
+from vehicle_pf_tracker.image.kernels import (
+    numba_cells,
+    numba_counts,
+    numba_pixel_cells,
+    numba_windows,
+)
 from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.image.similarity import Reference
 from vehicle_pf_tracker.image.textures import Cooccurrence
@@ -71,9 +76,8 @@ for _ in range(1500):
     pixels = rng.integers(-2, 70, (5, 2))
     reach = tuple(rng.integers(-1, 30, 3).tolist())
     attempt(numba_windows.compare_windows, cells, pixels, reach, scale)
-    attempt(numba_windows.compare_rectangles, cells, rng.integers(-1, 60, (4, 4)), scale)
     counts = rng.integers(-1, 50, (3, 16)).astype(np.int32)
-    attempt(numba_windows.compare_counts, counts, rng.integers(0, 90, 3), scale)
+    attempt(numba_counts.compare_counts, counts, rng.integers(0, 90, 3), scale)
     table = rng.integers(0, 99, int(rng.choice([0, 5, 64, 512]))).astype(np.uint16)
     attempt(numba_windows.joint_cells, frame, int(rng.integers(-1, 10)), table)
     attempt(numba_pixel_cells.marginal_cells, frame, int(rng.integers(-1, 300)), table)

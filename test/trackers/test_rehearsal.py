@@ -29,7 +29,7 @@ SHARED = {"numba_jit", "numba_kernels", "numba_pixel_cells", "numba_types"}
     [
         ("apf", {"numba_windows"}),
         ("ms", {"numba_windows", "numba_mean_shift"}),
-        ("sfpf_edge", {"numba_windows", "numba_gradients", "numba_edges"}),
+        ("sfpf_edge", {"numba_windows", "numba_gradients", "numba_edges", "numba_counts"}),
     ],
 )
 def test_a_rehearsal_loads_what_the_step_needs_and_nothing_else(variant, needed):

@@ -5,14 +5,15 @@
 
 How long it takes follows from what numba writes out for each expression. So kernels fill arrays,
 copy them and search them in loops: `a[:] = b` alone takes a second and more, as it brings the
-text of an error with it, and `a[:, 0].min()` as long.
+text of an error with it, and `a[:, 0].min()` as long. Arrays are made empty and filled, as zeros
+are a function of their own for each type; and `x = a[i, 0]` is shorter than `x, y = a[i]`.
 """
 
 from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 
@@ -55,6 +56,43 @@ def compiled(*signatures: Any) -> Callable[[FunctionT], FunctionT]:
         return result
 
     return compile_it
+
+
+class OnDemand:
+    """A kernel that is compiled, or loaded, when it is first called: a variant needs few of a file.
+
+    Compiled functions cannot call it; what kernels of a file share is `inlined`.
+
+    Parameters
+    ----------
+    function : callable
+        The kernel in Python.
+    signatures : sequence
+        Its types, as for `compiled`.
+    """
+
+    def __init__(self, function: Callable[..., Any], signatures: Sequence[Any]) -> None:
+        self._function = function
+        self._signatures = signatures
+        functools.update_wrapper(self, function)
+
+    @functools.cached_property
+    def ready(self) -> Callable[..., Any]:
+        """The compiled kernel."""
+        return compiled(*self._signatures)(self._function)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call the compiled kernel."""
+        return self.ready(*arguments)
+
+
+def on_demand(*signatures: Any) -> Callable[[FunctionT], FunctionT]:
+    """Compile a function for these signatures, as `compiled` does, when it is first called."""
+
+    def keep(function: FunctionT) -> FunctionT:
+        return cast("FunctionT", OnDemand(function, signatures))
+
+    return keep
 
 
 def inlined(function: FunctionT) -> FunctionT:

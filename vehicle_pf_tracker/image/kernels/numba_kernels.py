@@ -3,8 +3,8 @@
 
 """The kernels in numba, and windows and references in the form that they take.
 
-A module of kernels is imported when one of them is first called: that compiles it, or loads what
-was compiled before, and a variant needs few of them.
+A module of kernels is imported when one of them is first called. That compiles them, or loads what
+was compiled before, but for those that only some of its variants need (`numba_jit.OnDemand`).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.gradients import DIRECTION_BINS, GradientDirections
-from vehicle_pf_tracker.image.kernels import numba_jit
+from vehicle_pf_tracker.image.kernels import numba_jit, numba_pixel_cells
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
     marginal_cells,
@@ -43,8 +43,15 @@ from vehicle_pf_tracker.image.window import (
 if TYPE_CHECKING:
     from vehicle_pf_tracker.image.kernels.numba_edges import Numbers
 
-_MODULES = ("numba_windows", "numba_gradients", "numba_edges", "numba_mean_shift", "numba_cells")
-"""Modules whose kernels are compiled when they are imported, the commonest first."""
+_MODULES = (
+    "numba_windows",
+    "numba_gradients",
+    "numba_edges",
+    "numba_counts",
+    "numba_mean_shift",
+    "numba_cells",
+)
+"""Modules that are imported when a kernel of theirs is first called, the commonest first."""
 
 _LANES = 16
 """Cells are padded to a multiple of this, so that loops over them fill vector registers: the
@@ -63,8 +70,10 @@ def _kernels(module: str) -> ModuleType:
 
 def load_all() -> None:
     """Compile or load every kernel."""
-    for module in _MODULES:
-        _kernels(module)
+    for module in (numba_pixel_cells, *map(_kernels, _MODULES)):
+        for kernel in vars(module).values():
+            if isinstance(kernel, numba_jit.OnDemand):
+                _ = kernel.ready
 
 
 class CellTable(NamedTuple):
@@ -275,7 +284,7 @@ def _compare_edges(
     totals = _count_edges(feature, frame, positions, window, table.cells, counts)
     # Edge points are at most the pixels of a window.
     scale = table.values, roots_up_to(window.width * window.height)
-    similarity: Reals = _kernels("numba_windows").compare_counts(counts, totals, scale)
+    similarity: Reals = _kernels("numba_counts").compare_counts(counts, totals, scale)
     return similarity
 
 

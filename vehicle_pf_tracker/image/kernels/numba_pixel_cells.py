@@ -15,7 +15,7 @@ import numpy as np
 from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled
+from vehicle_pf_tracker.image.kernels.numba_jit import on_demand
 from vehicle_pf_tracker.image.kernels.numba_types import (
     BIN_TABLE,
     CELL_PLANES,
@@ -28,7 +28,7 @@ from vehicle_pf_tracker.image.similarity import Histogram
 from vehicle_pf_tracker.image.window import Grey
 
 
-@compiled(CELL_PLANES(RGB_IMAGE, types.int64, BIN_TABLE))
+@on_demand(CELL_PLANES(RGB_IMAGE, types.int64, BIN_TABLE))
 def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
     """Cells of each channel's own bins, a plane each; channel `c` has bins from ``c * levels``."""
     height, width, channels = pixels.shape
@@ -44,7 +44,7 @@ def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
     return cells
 
 
-@compiled(CELL_PLANES(GREY_IMAGE, BIN_TABLE))
+@on_demand(CELL_PLANES(GREY_IMAGE, BIN_TABLE))
 def pair_cells(grey: Grey, table: Table) -> Cells:
     """Cells of the 8 x 8 grey levels of each pixel and the next one in its row, one plane."""
     height = grey.shape[0]
@@ -60,7 +60,7 @@ def pair_cells(grey: Grey, table: Table) -> Cells:
     return cells
 
 
-@compiled(
+@on_demand(
     types.Tuple((types.uint16[::1], types.float64[::1]))(
         types.Array(types.float64, 1, "A", readonly=True), types.int64
     )
@@ -79,11 +79,14 @@ def number_cells(histogram: Histogram, lanes: int) -> tuple[Table, Histogram]:
     for value in histogram:
         # Counted first: other bins get the number after the last active one.
         active += value != 0
-    cells = np.full(len(histogram), active, np.uint16)
+    cells = np.empty(len(histogram), np.uint16)
     # Rounded up, so that the loop over cells has no remainder; zeros add nothing.
-    values = np.zeros(-(-(active + 1) // lanes) * lanes)
+    values = np.empty(-(-(active + 1) // lanes) * lanes)
+    for k in range(active, len(values)):
+        values[k] = 0.0
     number = 0
     for k in range(len(histogram)):
+        cells[k] = active
         if histogram[k] != 0:
             cells[k] = number
             values[number] = math.sqrt(histogram[k])

@@ -17,11 +17,10 @@ import numpy as np
 from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
+from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined, on_demand
 from vehicle_pf_tracker.image.kernels.numba_types import (
     BIN_TABLE,
     CELL_PLANES,
-    COUNTS,
     EXTENT,
     PAIR,
     POSITIONS,
@@ -53,11 +52,13 @@ _BINS_AT_ONCE = 8
 @inlined
 def _extent(pixels: Pixels) -> Extent:
     """Return the least x and y, and the largest, of windows' middles, px."""
-    x0, y0 = pixels[0]
-    x1, y1 = x0, y0
+    x0 = x1 = pixels[0, 0]
+    y0 = y1 = pixels[0, 1]
     for i in range(len(pixels)):
-        x, y = pixels[i]
-        x0, y0, x1, y1 = min(x0, x), min(y0, y), max(x1, x), max(y1, y)
+        x0 = min(x0, pixels[i, 0])
+        y0 = min(y0, pixels[i, 1])
+        x1 = max(x1, pixels[i, 0])
+        y1 = max(y1, pixels[i, 1])
     return x0, y0, x1, y1
 
 
@@ -160,7 +161,8 @@ def _follow_rows(columns: Columns, cells: Cells, rows: Pixels, top: int, bottom:
 @inlined
 def _gather(counts: Counts, columns: Columns, left: int, right: int) -> None:
     """Sum the columns from left to right."""
-    counts[:] = 0
+    for k in range(len(counts)):
+        counts[k] = 0
     for x in range(left, right):
         for k in range(len(counts)):
             counts[k] += np.int32(columns[x, k])
@@ -184,6 +186,9 @@ def _shift(counts: Counts, columns: Columns, leaving: int, entering: int) -> Non
 @inlined
 def _listed(pixels: Pixels, x0: int, y0: int, heads: Pixels) -> Pixels:
     """List the windows of each pixel, from 1: the last in `heads`, then each one's predecessor."""
+    for y in range(heads.shape[0]):
+        for x in range(heads.shape[1]):
+            heads[y, x] = 0
     others = np.empty(len(pixels), np.int64)
     for i in range(len(pixels)):
         x, y = pixels[i, 0] - x0, pixels[i, 1] - y0
@@ -210,11 +215,12 @@ def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Sc
     left, right, up = reach
     x0, y0, x1, y1 = extent
     values, roots = scale
-    heads = np.zeros((y1 - y0 + 1, x1 - x0 + 1), np.int64)
+    heads = np.empty((y1 - y0 + 1, x1 - x0 + 1), np.int64)
     others = _listed(pixels, x0, y0, heads)
     columns = np.zeros((width, len(values)), np.uint16)
-    sums = np.zeros(len(values), np.int32)
-    rows = np.zeros(2, np.int64)
+    sums = np.empty(len(values), np.int32)
+    rows = np.empty(2, np.int64)
+    rows[0] = rows[1] = 0
     result = np.empty(len(pixels))
     for y in range(y0, y1 + 1):
         # 1. Between the first and last window of a row the sum slides; beyond, nothing is asked.
@@ -241,36 +247,23 @@ def _slide(cells: Cells, pixels: Pixels, extent: Extent, reach: Reach, scale: Sc
     return result
 
 
-@compiled(types.float64[::1](COUNTS, types.int64[::1], SCALE))
-def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
-    """Compare windows that are counted already; `totals` are those of all bins, shape (N,)."""
-    values, roots = scale
-    if counts.shape[1] != len(values) or len(totals) != len(counts):
-        raise IndexError("the counts are not those of the reference's cells")
-    result = np.empty(len(counts))
-    for i in range(len(counts)):
-        least = np.int32(0)
-        most = np.int32(0)
-        for k in range(len(values)):
-            least, most = min(least, counts[i, k]), max(most, counts[i, k])
-        if least < 0 or most > totals[i]:
-            raise IndexError("more of a bin are counted than of all together")
-        result[i] = _overlap(counts[i], values, totals[i], roots)
-    return result
-
-
-@compiled(types.float64[::1](CELL_PLANES, RECTANGLES, SCALE))
-def compare_rectangles(cells: Cells, rectangles: Pixels, scale: Scale) -> Reals:
+@inlined
+def _compare_each(cells: Cells, rectangles: Pixels, scale: Scale) -> Reals:
     """Compare windows one after the other; parameters as for `compare_windows`."""
     planes, height, width = cells.shape
     values, roots = scale
     _check_cells(cells, values)
+    sums = np.empty(len(values), np.int32)
     result = np.empty(len(rectangles))
     for i in range(len(rectangles)):
-        left, top, right, bottom = rectangles[i]
+        left = rectangles[i, 0]
+        top = rectangles[i, 1]
+        right = rectangles[i, 2]
+        bottom = rectangles[i, 3]
         if left < 0 or top < 0 or right > width or bottom > height:
             raise IndexError("a window is not among the cells")
-        sums = np.zeros(len(values), np.int32)
+        for k in range(len(sums)):
+            sums[k] = 0
         for plane in range(planes):
             for y in range(top, bottom):
                 for x in range(left, right):
@@ -320,13 +313,14 @@ def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) ->
         return _slide(cells, pixels, extent, reach, scale)
     rectangles = np.empty((len(pixels), 4), np.int64)
     for i in range(len(pixels)):
-        x, y = pixels[i]
+        x = pixels[i, 0]
+        y = pixels[i, 1]
         rectangles[i, 0], rectangles[i, 1] = max(x - left, 0), max(y - up, 0)
         rectangles[i, 2], rectangles[i, 3] = min(x + right, width), min(y + up + 1, height)
-    return compare_rectangles(cells, rectangles, scale)
+    return _compare_each(cells, rectangles, scale)
 
 
-@compiled(types.float64[::1](RGB_IMAGE, POSITIONS, types.int64, PAIR, BIN_TABLE, SCALE))
+@on_demand(types.float64[::1](RGB_IMAGE, POSITIONS, types.int64, PAIR, BIN_TABLE, SCALE))
 def compare_joint(
     frame: Frame, positions: Positions, bits: int, half: tuple[int, int], table: Table, scale: Scale
 ) -> Reals:
@@ -343,10 +337,13 @@ def compare_joint(
         cells = joint_cells(frame[top:bottom, left:right], bits, table)
         return compare_windows(cells, pixels, (beside, beside + 1, above), scale)
     result = np.empty(len(pixels))
+    rectangle = np.empty((1, 4), np.int64)
+    rectangle[0, 0] = rectangle[0, 1] = 0
     for i in range(len(pixels)):  # they share few pixels
         x, y = pixels[i, 0] + left, pixels[i, 1] + top
         part = frame[max(y - above, 0) : y + above + 1, max(x - beside, 0) : x + beside + 1]
         cells = joint_cells(part, bits, table)
-        rectangle = np.array([[0, 0, cells.shape[2], cells.shape[1]]])
-        result[i] = compare_rectangles(cells, rectangle, scale)[0]
+        rectangle[0, 2] = cells.shape[2]
+        rectangle[0, 3] = cells.shape[1]
+        result[i] = _compare_each(cells, rectangle, scale)[0]
     return result
