@@ -137,13 +137,13 @@ def csrt_table(costs: Sequence[Costs]) -> str:
     header = ("sequence", "image, px", "steps", *ours, "CSRT: mean, ms", *least)
     header += ("times as fast: mean", *least)
     rows = []
-    for one in costs:
-        own = one.ms[OURS]
-        cells = [one.sequence, one.size, f"{len(own)}"]
+    for cost in costs:
+        own = cost.ms[OURS]
+        cells = [cost.sequence, cost.size, f"{len(own)}"]
         cells += [f"{value:.2f}" for value in summary(own)]
         cells += [f"{max(own):.1f}"]
-        cells += [f"{value:.1f}" for value in summary(one.ms[CSRT])]
-        cells += [f"{ratio:.1f}" for ratio in one.ratios(OURS, CSRT)]
+        cells += [f"{value:.1f}" for value in summary(cost.ms[CSRT])]
+        cells += [f"{ratio:.1f}" for ratio in cost.ratios(OURS, CSRT)]
         rows.append(cells)
     return markdown(header, rows)
 
@@ -155,10 +155,10 @@ def size_table(costs: Sequence[Costs]) -> str:
     header += [f"{name}: median, least, ms" for name in SIZES]
     header += [f"{name} / VGA: median, least" for name in larger]
     rows = []
-    for one in costs:
-        medians = {name: statistics.median(times) for name, times in one.ms.items()}
-        least = {name: min(times) for name, times in one.ms.items()}
-        cells = [one.sequence]
+    for cost in costs:
+        medians = {name: statistics.median(times) for name, times in cost.ms.items()}
+        least = {name: min(times) for name, times in cost.ms.items()}
+        cells = [cost.sequence]
         cells += [f"{medians[name]:.2f}, {least[name]:.2f}" for name in SIZES]
         cells += [
             f"{medians[name] / medians['VGA']:.2f}, {least[name] / least['VGA']:.2f}"
@@ -213,7 +213,7 @@ def main() -> int:
     document = {
         "environment": environment,
         "sequences": [asdict(one) for one in beside],
-        "sizes": [asdict(one) for one in sizes],
+        "sizes": [asdict(size) for size in sizes],
     }
     write_text(options.output / "cost.json", json.dumps(document, indent=1))
     return 0

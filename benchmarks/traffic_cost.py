@@ -162,7 +162,7 @@ def ours(sequence: TrafficSequence, *, motion: bool) -> tuple[float, float]:
         before = time.process_time()
         estimates = session.feed(frame, round(number * 1e9 / 30), detections)
         seconds.append(time.process_time() - before)
-        followed.append(sum(one.mode is TrackMode.TRACKING for one in estimates))
+        followed.append(sum(estimate.mode is TrackMode.TRACKING for estimate in estimates))
     return 1e3 * statistics.fmean(seconds[SETTLED:]), statistics.fmean(followed[SETTLED:])
 
 

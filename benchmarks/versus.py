@@ -220,9 +220,9 @@ def compare(
 def table(ratios: Sequence[Ratio], commit: str) -> str:
     """Lay the ratios out as lines of a table."""
     lines = [f"{'step of':14} {'here':>9} {commit[:12]:>12}   here / there"]
-    for one in ratios:
-        times = f"{one.here_ms:6.3f} ms {one.there_ms:9.3f} ms"
-        lines.append(f"{one.variant:14} {times}   {one.ratio:.2f} +- {one.spread / 2:.2f}")
+    for ratio in ratios:
+        times = f"{ratio.here_ms:6.3f} ms {ratio.there_ms:9.3f} ms"
+        lines.append(f"{ratio.variant:14} {times}   {ratio.ratio:.2f} +- {ratio.spread / 2:.2f}")
     return "\n".join(lines)
 
 

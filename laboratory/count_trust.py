@@ -107,7 +107,7 @@ def lines_of(sequence: TrafficSequence, boxes: str, store: ResultStore) -> list[
     if key not in store:
         lines = LineCounts(sequence)
         follow(cut(sequence, boxes), TrafficParameters(), lines=lines)
-        store.add(key, key, {"lines": [packed(one) for one in lines.results()]})
+        store.add(key, key, {"lines": [packed(result) for result in lines.results()]})
     return [unpacked(one) for one in store[key]["lines"]]
 
 
@@ -161,8 +161,8 @@ class Likelihood:
         for clip in clips:
             # Lines of a camera see the same vehicles: as many of other cameras tell more.
             same = sum(len(other.lines) for other in clips if other.camera == clip.camera)
-            for one in clip.lines:
-                key = one.true, tuple(one.signs.get(sign, 0) for sign in (*_TRUE, *_MISSED))
+            for line in clip.lines:
+                key = line.true, tuple(line.signs.get(sign, 0) for sign in (*_TRUE, *_MISSED))
                 weights[key] = weights.get(key, 0.0) + same**-0.5
         counts = np.array([signs for _, signs in weights], dtype=np.float64)
         self._crossings = counts[:, : len(_TRUE)]
@@ -225,7 +225,7 @@ def judge(clips: Sequence[Clip]) -> list[Clip]:
         trust = fitted(others or clips)
         for clip in clips:
             if clip.camera == camera:
-                lines = [replace(one, interval=trust.interval(one.signs)) for one in clip.lines]
+                lines = [replace(line, interval=trust.interval(line.signs)) for line in clip.lines]
                 judged.append(replace(clip, lines=lines))
     return judged
 
@@ -255,21 +255,21 @@ def cells(trust: Trust) -> list[str]:
 def judged_rows(clips: Sequence[Clip]) -> Iterable[list[str]]:
     """Summarise each clip, motion, boxes, and all."""
     for clip in clips:
-        if any(one.is_judged for one in clip.lines):
+        if any(line.is_judged for line in clip.lines):
             yield [clip.camera, clip.name, clip.boxes, *means(clip.lines)]
     for name, own in (
         ("boxes", [clip for clip in clips if clip.boxes != MOTION_SOURCE]),
         ("motion", [clip for clip in clips if clip.boxes == MOTION_SOURCE]),
         ("all", clips),
     ):
-        lines = [one for clip in own for one in clip.lines]
-        if any(one.is_judged for one in lines):
+        lines = [line for clip in own for line in clip.lines]
+        if any(line.is_judged for line in lines):
             yield [name, "", "", *means(lines)]
 
 
 def means(lines: Sequence[LineCount]) -> list[str]:
     """Return the number of lines judged, and their means."""
-    judged = [one for one in lines if one.is_judged]
+    judged = [line for line in lines if line.is_judged]
     exact = 100 * np.mean([one.true == one.counted for one in judged])
     held = 100 * np.mean([one.is_held for one in judged])
     width = np.mean([one.interval[1] - one.interval[0] for one in judged])

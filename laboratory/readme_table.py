@@ -95,7 +95,7 @@ def main() -> int:
         on_progress=report_progress,
     )  # fmt: skip
     for name, shown in VARIANTS.items():
-        rows[shown] = of_results((one for one in results if one.system == name), cases)
+        rows[shown] = of_results((result for result in results if result.system == name), cases)
     for name, own in of_baselines(folder / "baselines.csv").items():
         rows[BASELINES[name]] = own
     table = sorted((cells(name, own) for name, own in rows.items() if own), key=_on_target)

@@ -82,9 +82,15 @@ def follow(clip: Path, parameters: TrafficParameters) -> list[np.ndarray]:
         frame = np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB), dtype=np.uint8)
         estimates = session.feed(frame, round((len(found) + 1) * 1e9 / rate))
         rows = [
-            (one.identity, one.box.x, one.box.y, one.box.width, one.box.height)
-            for one in estimates
-            if one.mode in {TrackMode.TRACKING, TrackMode.OCCLUDED}
+            (
+                estimate.identity,
+                estimate.box.x,
+                estimate.box.y,
+                estimate.box.width,
+                estimate.box.height,
+            )
+            for estimate in estimates
+            if estimate.mode in {TrackMode.TRACKING, TrackMode.OCCLUDED}
         ]
         found.append(np.array(rows, dtype=float).reshape(-1, 5))
 

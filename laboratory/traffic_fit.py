@@ -128,7 +128,7 @@ def main() -> int:
         raise InputError(f"--only names no decision: {', '.join(args.only)}")
     store = ResultStore(args.out / "runs.jsonl")
     with TrafficWorker() as worker:
-        rows = [row(one, scores_of(one, clips, store, worker)) for one in decisions]
+        rows = [row(decision, scores_of(decision, clips, store, worker)) for decision in decisions]
     write_text(args.out / "leave_one_camera_out.md", markdown(HEADER, rows))
     return 0
 

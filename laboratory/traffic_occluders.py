@@ -53,7 +53,11 @@ def judged(sequence: TrafficSequence, source: str) -> Counter[str]:
         estimates = session.feed(frame, stamp_ns, Detections.make(now[:, 1:5], now[:, 5]))
         rows = sequence.truth[:, 0] == number
         _name(names, sequence.truth[rows & ~sequence.hidden], estimates)
-        by_vehicle = {names[one.identity]: one for one in estimates if one.identity in names}
+        by_vehicle = {
+            names[estimate.identity]: estimate
+            for estimate in estimates
+            if estimate.identity in names
+        }
         for vehicle in sequence.truth[rows & sequence.hidden, 1].astype(int).tolist():
             if vehicle in by_vehicle:
                 counts[_verdict(by_vehicle[vehicle], true[number, vehicle], names)] += 1
@@ -69,7 +73,10 @@ def _occluders(path: Path) -> dict[tuple[int, int], str]:
 def _name(names: dict[int, int], seen: Array, estimates: tuple[TrackEstimate, ...]) -> None:
     """Note which vehicle each track was last seen on."""
     boxes = np.array(
-        [[one.box.x, one.box.y, one.box.width, one.box.height] for one in estimates]
+        [
+            [estimate.box.x, estimate.box.y, estimate.box.width, estimate.box.height]
+            for estimate in estimates
+        ]
     ).reshape(-1, 4)
     for row, column in zip(*matches(seen[:, 2:], boxes), strict=True):
         names[estimates[column].identity] = int(seen[row, 1])

@@ -90,16 +90,16 @@ def _rmse(metrics: Metrics) -> float:
 def _markdown(table: Table, value: object, digits: int) -> str:
     assert callable(value)
     numbers = {
-        name: {system: [value(one) for one in runs] for system, runs in row.items()}
+        name: {system: [value(run) for run in runs] for system, runs in row.items()}
         for name, row in table.items()
     }
     systems = list(next(iter(numbers.values())))
     lines = [_line(["system", *numbers, "mean"]), _line(["---", *["---:"] * (len(numbers) + 1)])]
     for system in systems:
         runs = [row[system] for row in numbers.values()]
-        means = [statistics.fmean(one) for one in runs if one]
+        means = [statistics.fmean(run) for run in runs if run]
         mean = f"**{statistics.fmean(means):.{digits}f}**" if means else "–"
-        lines.append(_line([f"`{system}`", *(_cell(one, digits) for one in runs), mean]))
+        lines.append(_line([f"`{system}`", *(_cell(run, digits) for run in runs), mean]))
     return "\n".join(lines)
 
 
@@ -108,12 +108,12 @@ def _recoveries(table: Table) -> str:
     lines = [_line(["system", *hidden]), _line(["---", *["---:"] * len(hidden)])]
     for system in next(iter(table.values())):
         counts = [_judged(table[name][system]) for name in hidden]
-        lines.append(_line([f"`{system}`", *(f"{sum(one)} of {len(one)}" for one in counts)]))
+        lines.append(_line([f"`{system}`", *(f"{sum(count)} of {len(count)}" for count in counts)]))
     return "\n".join(lines)
 
 
 def _judged(runs: Sequence[Metrics]) -> list[bool]:
-    verdicts = [one.recovered for run in runs for one in run.occlusions]
+    verdicts = [occlusion.recovered for run in runs for occlusion in run.occlusions]
     return [verdict for verdict in verdicts if verdict is not None]
 
 

@@ -52,7 +52,7 @@ def generated_files(root: Path = ROOT) -> dict[Path, str]:
     """Return the text of every generated file; pages keep what stands outside the markers."""
     variants = VARIANTS.values()
     nodes = NODES.values()
-    files = {root / "config" / f"{one.name}.yaml": default_yaml(one) for one in nodes}
+    files = {root / "config" / f"{node.name}.yaml": default_yaml(node) for node in nodes}
     files[root / "config" / "sros2_policy.xml"] = policy(nodes)
     files[root / "config" / "large_images.xml"] = profile(LAUNCHED_SEGMENT)
     files[root / "docs" / "parameters.md"] = parameters_page()

@@ -41,7 +41,9 @@ def main() -> int:
     results = Results(describe(), [command])
     compile_all("auto")  # else the first step that needs a kernel would be measured with it
     try:
-        _measure(results, lambda name: any(fnmatch(name, one) for one in patterns), effort, args)
+        _measure(
+            results, lambda name: any(fnmatch(name, pattern) for pattern in patterns), effort, args
+        )
     except InputError as error:
         print(f"bench: {error}", file=sys.stderr)
         return 1

@@ -237,9 +237,10 @@ def _bandwidth(results: Results) -> str:
 
 def _deliveries(results: Results) -> str:
     lines = [
-        f"- `{one.name}`: {one.sent} images at {one.rate_hz:g} Hz each, {one.lost} lost, "
-        f"{one.cpu_ms:.3g} ms of CPU per image, {one.memory_mb:.0f} MB in all."
-        for one in results.deliveries
+        f"- `{delivery.name}`: {delivery.sent} images at {delivery.rate_hz:g} Hz each, "
+        f"{delivery.lost} lost, {delivery.cpu_ms:.3g} ms of CPU per image, "
+        f"{delivery.memory_mb:.0f} MB in all."
+        for delivery in results.deliveries
     ]
     head = (
         "Several nodes, each with a camera, in processes of their own and in one (`container`):\n"

@@ -72,7 +72,9 @@ def _takes(case: str, milliseconds: float) -> Target:
 
 def _loses_nothing(case: str) -> Target:
     def value(results: Results) -> float | None:
-        return next((float(one.lost) for one in results.deliveries if one.name == case), None)
+        return next(
+            (float(delivery.lost) for delivery in results.deliveries if delivery.name == case), None
+        )
 
     return Target(case, "loses no image", value, 0.0, False, " lost")
 

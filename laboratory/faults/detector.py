@@ -68,16 +68,18 @@ def sightings(cloud: PointCloud2) -> list[Sighting]:
     """Read ~/tracks by the fields that the message itself names."""
     kind = np.dtype(
         {
-            "names": [one.name for one in cloud.fields],
-            "formats": [FORMATS[one.datatype] for one in cloud.fields],
-            "offsets": [one.offset for one in cloud.fields],
+            "names": [field.name for field in cloud.fields],
+            "formats": [FORMATS[field.datatype] for field in cloud.fields],
+            "offsets": [field.offset for field in cloud.fields],
             "itemsize": cloud.point_step,
         }
     )
     points = np.frombuffer(bytes(cloud.data), kind)
     return [
-        Sighting(int(one["id"]), float(one["x"]), float(one["y"]), int(one["mode"]) in CONFIRMED)
-        for one in points
+        Sighting(
+            int(point["id"]), float(point["x"]), float(point["y"]), int(point["mode"]) in CONFIRMED
+        )
+        for point in points
     ]
 
 

@@ -184,10 +184,10 @@ class Trial:
             for vehicle, (x, y) in self._corners[stamp_ns(self._tracks[-1].header)].items()
             if x >= 0 and x + self._offset <= last
         }
-        for one in sightings(self._tracks[-1]):
-            vehicle = ROAD.nearest(one.x, one.y, corners)
-            if one.is_confirmed and vehicle is not None:
-                found[vehicle] = min(one.identity, found.get(vehicle, one.identity))
+        for sighting in sightings(self._tracks[-1]):
+            vehicle = ROAD.nearest(sighting.x, sighting.y, corners)
+            if sighting.is_confirmed and vehicle is not None:
+                found[vehicle] = min(sighting.identity, found.get(vehicle, sighting.identity))
         del self._tracks[:-1]
         return found
 

@@ -163,7 +163,7 @@ class Numbers:
     def judge(self, answer: Iterable[Sighting], corners: Corners) -> None:
         """Take the answer to an image, and where the vehicles are in it."""
         sightings = [one for one in answer if one.identity]  # tentative ones have no number yet
-        identities = {one.identity for one in sightings}
+        identities = {sighting.identity for sighting in sightings}
         self.reissued += len(sightings) - len(identities)
         for gone in self._votes.keys() - identities:
             self._close(self._votes.pop(gone))

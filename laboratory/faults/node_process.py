@@ -157,7 +157,9 @@ class NodeProcess:
             for report in self._reports:
                 status = report.status[0]
                 if status.name.startswith(f"{self.name[1:]}:"):
-                    return next(int(one.value) for one in status.values if one.key == "dropped")
+                    return next(
+                        int(value.value) for value in status.values if value.key == "dropped"
+                    )
         return 0
 
     @property

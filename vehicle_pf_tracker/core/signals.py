@@ -19,7 +19,7 @@ Handle: TypeAlias = Callable[[int, FrameType | None], None]
 def ending_signals() -> list[signal.Signals]:
     """Return SIGINT, and SIGTERM and SIGHUP unless they are ignored, as SIGHUP is under nohup."""
     others = (signal.SIGTERM, signal.SIGHUP)
-    heard = [one for one in others if signal.getsignal(one) is not signal.SIG_IGN]
+    heard = [other for other in others if signal.getsignal(other) is not signal.SIG_IGN]
     return [signal.SIGINT, *heard]
 
 

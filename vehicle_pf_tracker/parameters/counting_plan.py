@@ -116,8 +116,8 @@ class CountingPlan:
 
     def outside(self, width: int, height: int) -> list[str]:
         """Return the names of the lines and zones of which nothing is in an image of this size."""
-        shapes = [(one.name, np.array([one.start, one.end])) for one in self.lines]
-        shapes += [(one.name, np.array(one.corners)) for one in self.zones]
+        shapes = [(line.name, np.array([line.start, line.end])) for line in self.lines]
+        shapes += [(zone.name, np.array(zone.corners)) for zone in self.zones]
         low = (0, 0)
         high = (width, height)
         return [n for n, at in shapes if (at.max(0) < low).any() or (at.min(0) > high).any()]

@@ -116,7 +116,7 @@ def mot(path: Path, text: str, _: Images) -> Iterator[Label]:
     ends in out of view, occlusion (1 none, 2 large to 4 small) and class.
     """
     others = [path.with_name(name) for name in ("labels.txt", "occluders.csv")]
-    first_px = 0 if any(one.is_file() for one in others) else 1
+    first_px = 0 if any(other.is_file() for other in others) else 1
     is_uavdt = path.stem.endswith("_gt_whole")
     for where, cells in table_rows(path, text, 6):
         number, identity, x, y, w, h, *rest = numbers_in(where, cells)

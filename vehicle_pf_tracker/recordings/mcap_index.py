@@ -157,7 +157,7 @@ def _is_complete(summary: Summary, size: int) -> bool:
         and len(chunks) == statistics.chunk_count
         and all(chunk.chunk_start_offset + chunk.chunk_length <= size for chunk in chunks)
         and counts.keys() <= channels.keys()
-        and {one.schema_id for one in channels.values()} <= {0, *summary.schemas}
+        and {channel.schema_id for channel in channels.values()} <= {0, *summary.schemas}
     )
 
 

@@ -102,8 +102,10 @@ def _run_cameras(words: Sequence[str]) -> int:
     from vehicle_pf_tracker.trackers.registry import find_node  # noqa: PLC0415
 
     makers = [
-        partial(_maker(find_node(one.variant)), namespace=one.name, cli_args=one.arguments())
-        for one in read_cameras(words[1])
+        partial(
+            _maker(find_node(camera.variant)), namespace=camera.name, cli_args=camera.arguments()
+        )
+        for camera in read_cameras(words[1])
     ]
     return run_nodes(f"{_ANY}_tracker", makers, words[2:], _USAGE)
 

@@ -134,7 +134,7 @@ def write_labels(picture: Frame, labels: Iterable[Label], width: float = 0) -> N
     taken = np.zeros((0, 4))
     for box, colour, choice in labels:
         options = [(words, at) for words in choice for at in _places(picture, words, box, width)]
-        free = (one for one in options if not intersections(one[1], taken).any())
+        free = (option for option in options if not intersections(option[1], taken).any())
         # Without room the shortest words cover others: a vehicle always has its number.
         words, place = next(free, options[-4])
         taken = np.vstack([taken, place])

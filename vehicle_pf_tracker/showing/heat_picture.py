@@ -60,10 +60,10 @@ class HeatPicture:
         if self._seconds.shape[1:] != frame.shape[:2]:
             self._seconds = np.zeros((2, *frame.shape[:2]), np.float32)
         width, height = frame_size(frame)
-        for one in estimates:
-            if one.mode in COUNTED_MODES:
-                box = one.box
-                speed = float(np.hypot(*one.velocity)) / period
+        for estimate in estimates:
+            if estimate.mode in COUNTED_MODES:
+                box = estimate.box
+                speed = float(np.hypot(*estimate.velocity)) / period
                 left, _ = box.corners[0]
                 right, bottom = box.corners[2]
                 edges = [left, bottom - _FOOTPRINT * box.height, right, bottom]

@@ -108,7 +108,7 @@ class PathPicture:
         size = frame.shape[0], frame.shape[1]
         if size != self._size:
             self._begin(size, max(1, round(_LEAST_WIDTH / frame.shape[1])))
-        visible = [one for one in estimates if one.mode is TrackMode.TRACKING]
+        visible = [estimate for estimate in estimates if estimate.mode is TrackMode.TRACKING]
         if self.ground is None or len(visible) > len(self._on_ground):
             self.ground = frame.copy()
             self._on_ground = visible

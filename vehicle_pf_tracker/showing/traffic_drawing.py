@@ -48,10 +48,10 @@ class Trails:
         """Take the next image; the trail of a vehicle that is not in sight of it ends."""
         before = self.of
         self.of = {}
-        for one in estimates:
-            if one.mode in COUNTED_MODES:
-                self.of[one.serial] = before.get(one.serial) or deque(maxlen=_TRAIL)
-                self.of[one.serial].append(foot_of(one.box))
+        for estimate in estimates:
+            if estimate.mode in COUNTED_MODES:
+                self.of[estimate.serial] = before.get(estimate.serial) or deque(maxlen=_TRAIL)
+                self.of[estimate.serial].append(foot_of(estimate.box))
 
 
 def draw_vehicle(
@@ -114,10 +114,10 @@ def annotated(
     if words:
         labels.append((Box(5 * width, 19 * width, 0, 0), drawing.NEUTRAL, (words,)))
     draw_counts(picture, labels, counter)
-    for one in estimates:
-        trail = trails.of.get(one.serial, ())
-        colour = identity_colour(one.identity)
+    for estimate in estimates:
+        trail = trails.of.get(estimate.serial, ())
+        colour = identity_colour(estimate.identity)
         drawing.draw_path(picture, trail, colour)
-        draw_vehicle(picture, labels, one, counter.speed_kmh(one.serial))
+        draw_vehicle(picture, labels, estimate, counter.speed_kmh(estimate.serial))
     drawing.write_labels(picture, labels)
     return picture

@@ -99,15 +99,15 @@ class CameraInputs:
             self._warn(str(error))
 
     def _on_transforms(self, message: Any) -> None:
-        for one in message.transforms:
-            at = one.transform.translation
-            turn = one.transform.rotation
+        for transform in message.transforms:
+            at = transform.transform.translation
+            turn = transform.transform.rotation
             try:
                 pose = Pose.of((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w))
             except InputError as error:
-                self._warn(f"a transform of {one.child_frame_id} is ignored: {error}")
+                self._warn(f"a transform of {transform.child_frame_id} is ignored: {error}")
             else:
-                self.poses.put(one.header.frame_id, one.child_frame_id, pose)
+                self.poses.put(transform.header.frame_id, transform.child_frame_id, pose)
 
     def _warn(self, words: str) -> None:
         self._node.get_logger().warning(words, throttle_duration_sec=_THROTTLE)

@@ -115,7 +115,9 @@ class ParameterTable:
             self._changed(new)
 
     def _with(self, parameters: list[Parameter]) -> Configuration:
-        return self.configuration.updated({one.name: one.value for one in parameters})
+        return self.configuration.updated(
+            {parameter.name: parameter.value for parameter in parameters}
+        )
 
 
 def take_overrides(node: Node) -> dict[str, Any]:

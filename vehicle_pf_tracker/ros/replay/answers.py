@@ -130,7 +130,7 @@ class Answers:
         if not any(answers):
             return {}
         return {
-            name: [float(one[name]) if name in one else None for one in answers]
+            name: [float(answer[name]) if name in answer else None for answer in answers]
             for name in ROAD_COLUMNS
         }
 

@@ -80,20 +80,25 @@ def scalars(estimate: TrackEstimate) -> dict[str, object]:
 
 def mode_statuses(estimates: Iterable[TrackEstimate]) -> Iterator[messages.Status]:
     """Describe each vehicle, with every scalar of its estimate."""
-    for one in estimates:
-        mode = one.mode.value
-        yield messages.LEVELS[mode], f"vehicle {one.identity or mode.lower()}", mode, scalars(one)
+    for estimate in estimates:
+        mode = estimate.mode.value
+        yield (
+            messages.LEVELS[mode],
+            f"vehicle {estimate.identity or mode.lower()}",
+            mode,
+            scalars(estimate),
+        )
 
 
 def markers_message(header: Header, estimates: Iterable[TrackEstimate]) -> MarkerArray:
     """Make box and number of each vehicle that is not lost, px as m; those before are deleted."""
     markers = [Marker(header=header, action=Marker.DELETEALL)]
-    for one in estimates:
-        if one.mode is TrackMode.LOST:
+    for estimate in estimates:
+        if estimate.mode is TrackMode.LOST:
             continue
-        markers.append(_outline(header, one))
-        if one.identity:  # a tentative one has no number
-            markers.append(_number(header, one))
+        markers.append(_outline(header, estimate))
+        if estimate.identity:  # a tentative one has no number
+            markers.append(_number(header, estimate))
     return MarkerArray(markers=markers)
 
 
@@ -164,9 +169,11 @@ def _values(
 def detections_message(header: Header, estimates: Iterable[TrackEstimate]) -> Any:
     """Make the detections of the vehicles that are seen or predicted, with their numbers."""
     found = [
-        messages.detection_message(header, one, str(one.identity), one.label or messages.CLASS)
-        for one in estimates
-        if one.mode in COUNTED_MODES
+        messages.detection_message(
+            header, estimate, str(estimate.identity), estimate.label or messages.CLASS
+        )
+        for estimate in estimates
+        if estimate.mode in COUNTED_MODES
     ]
     return messages.detections_type()(header=header, detections=found)
 
@@ -212,5 +219,5 @@ def _row(box: Any) -> tuple[float, float, float, float, float]:
 def _best(results: Any) -> tuple[float, str]:
     if not results:
         return 1.0, ""
-    best = max((one.hypothesis for one in results), key=lambda one: float(one.score))
+    best = max((result.hypothesis for result in results), key=lambda one: float(one.score))
     return float(best.score), str(best.class_id)

@@ -54,7 +54,7 @@ class Selection:
         InputError
             If no vehicle has it.
         """
-        numbers = [one.identity for one in estimates if one.identity]
+        numbers = [estimate.identity for estimate in estimates if estimate.identity]
         if identity != NO_VEHICLE and identity not in numbers:
             known = ", ".join(map(str, numbers[:_SHOWN])) + (", …" if numbers[_SHOWN:] else "")
             there = f"there are {known}" if numbers else "there is none"
@@ -69,7 +69,11 @@ class Selection:
         InputError
             If there is none, within the size of a vehicle.
         """
-        shown = [one for one in estimates if one.identity and one.mode is not TrackMode.LOST]
+        shown = [
+            estimate
+            for estimate in estimates
+            if estimate.identity and estimate.mode is not TrackMode.LOST
+        ]
         inside = [one for one in shown if _contains(one.box, point)]
         if inside:
             self.identity = min(inside, key=lambda one: (one.box.area, one.identity)).identity
@@ -82,7 +86,9 @@ class Selection:
     def of(self, estimates: Sequence[TrackEstimate]) -> TrackEstimate | None:
         """Return the estimate of the selected vehicle, where there is one."""
         chosen = self.identity
-        return next((one for one in estimates if chosen and one.identity == chosen), None)
+        return next(
+            (estimate for estimate in estimates if chosen and estimate.identity == chosen), None
+        )
 
 
 def _contains(box: Box, point: Position) -> bool:
@@ -243,7 +249,7 @@ class Vehicles:
 
     def summary(self) -> dict[str, object]:
         """Count the vehicles by what is claimed of them, and those dropped for a bad state."""
-        modes = Tally(one.mode for one in self.estimates)
+        modes = Tally(estimate.mode for estimate in self.estimates)
         counts = {f"vehicles {mode.value}": modes[mode] for mode in TrackMode}
         dropped = self.session.tracker.bad_states
         return {"vehicles": len(self.estimates), **counts, "dropped for a bad state": dropped}

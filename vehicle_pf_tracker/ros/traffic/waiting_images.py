@@ -138,5 +138,5 @@ class WaitingImages(Generic[ImageT]):
             first.number >= self._awaited
             and self._clock() < first.until
             and len(self._images) <= MOST_WAITING
-            and not any(one.is_answered for one in self._images)
+            and not any(image.is_answered for image in self._images)
         )
