@@ -84,7 +84,8 @@ class KnownOthers(NamedTuple):
         """Boxes at an age, at constant velocity since they were seen last."""
         spans = np.maximum(self.ages - self.began, 1.0)
         moved = (self.latest - self.first).mean(axis=1) / spans[:, np.newaxis]
-        return self.latest + (moved * (age - self.ages)[:, np.newaxis])[:, np.newaxis]
+        since = (age - self.ages)[:, np.newaxis]
+        return np.asarray(self.latest + (moved * since)[:, np.newaxis])
 
 
 def areas(boxes: Array) -> Array:
