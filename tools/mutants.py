@@ -34,8 +34,10 @@ ROOMS = {
     "toy": ("filtering/weights.py", "test/filtering/test_weights.py"),
 }
 """Modules that are changed, and the tests that have to notice, by the room's name."""
-_NEEDED = "vehicle_pf_tracker", "test", "docs", "config", "conftest.py", "pyproject.toml"
-"""Parts of the repository that the tests need, which are copied."""
+_FOLDERS = "vehicle_pf_tracker", "laboratory", "test", "docs", "config"
+_NEEDED = (*_FOLDERS, "conftest.py", "pyproject.toml")
+"""Parts of the repository that the tests need, which are copied: counting's roads are drawn in the
+laboratory."""
 _CONFIGURATION = """[mutmut]
 source_paths=vehicle_pf_tracker
 only_mutate=vehicle_pf_tracker/{modules}
@@ -43,11 +45,13 @@ also_copy=
     conftest.py
     docs
     config
+    laboratory
 pytest_add_cli_args_test_selection=
     {tests}
 pytest_add_cli_args=
     -m
     not slow
+    --hypothesis-seed=0
 use_git_change_detection=false
 track_dependencies=false
 """

@@ -152,6 +152,22 @@ def test_time_that_goes_back_begins_all_paths_anew():
     assert counter.update([vehicle(1, 100, 120)], LATE - PERIOD_NS) == ()
 
 
+def test_time_that_stands_still_goes_on_with_the_paths():
+    counter = line_counter()
+    counter.update([vehicle(1, 100, 80)], LATE)
+    counter.update([vehicle(1, 100, 99)], LATE)  # on no clear side, was it all that is known
+    assert len(counter.update([vehicle(1, 100, 120)], LATE + PERIOD_NS)) == 1
+
+
+def test_a_lost_vehicle_is_remembered_for_ten_minutes():
+    counter = line_counter()
+    counter.update([vehicle(1, 100, 80)], 0)
+    counter.update([], 600 * 10**9)
+    assert list(counter.vehicles) == [1]
+    counter.update([], 600 * 10**9 + 1)
+    assert not counter.vehicles
+
+
 def test_memory_does_not_grow_with_vehicles_that_are_gone():
     counter = line_counter()
     for identity in range(1, 3001):  # one a second
@@ -183,6 +199,8 @@ def test_speed_on_the_road_is_exact_in_perspective():
             found += counter.update([vehicle(1, x, bottom)], LATE + index * PERIOD_NS)
     (crossing,) = found
     assert crossing.speed_kmh == pytest.approx(72.0, rel=1e-6)
+    assert counter.speed_kmh(1) == pytest.approx(72.0, rel=1e-6)
+    assert counter.speed_kmh(2) is None  # nobody has this number
 
 
 @pytest.mark.parametrize("speed", [70.0, 120.0])

@@ -4,8 +4,10 @@
 """The point at which a vehicle stands, by hand."""
 
 import math
+from dataclasses import replace
 
 import pytest
+from traffic_samples import vehicle
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.counting.foot_point import FootPoint, foot_of
@@ -63,3 +65,13 @@ def test_a_point_of_the_way_has_the_later_facts():
     assert (quarter.point, quarter.stamp_ns) == ((15.0, 60.0), 1250)
     assert (quarter.mode, quarter.size) == (TrackMode.OCCLUDED, (44.0, 22.0))
     assert foot().is_seen and not quarter.is_seen
+
+
+def test_an_estimate_stands_where_its_box_does_with_its_own_covariance():
+    estimate = replace(
+        vehicle(1, 30.0, 50.0, TrackMode.OCCLUDED, size=(40.0, 20.0)),
+        foot_covariance=(4.0, 1.0, 9.0),
+    )
+    assert FootPoint.of(estimate, 1000) == FootPoint(
+        (30.0, 50.0), 1000, TrackMode.OCCLUDED, (40.0, 20.0), (4.0, 1.0, 9.0)
+    )

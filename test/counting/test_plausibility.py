@@ -148,6 +148,23 @@ def test_what_cannot_be_the_same_vehicle():
     assert twins(later=0.01, begin=1.0) == ""  # both were seen at 1 s
 
 
+def test_one_that_ended_when_the_other_began_was_seen_at_the_same_time():
+    for end, doubt in ((2.0, ""), (1.9, "twice")):
+        place = Plausibility()
+        assert place.doubt(crossing(1, at=0.2, mode=OCCLUDED), life(2.0, 3.0)) == ""
+        second = crossing(2, at=0.201, mode=OCCLUDED)
+        assert place.doubt(second, life(1.0, end, first=(300.0, 90.0))) == doubt
+
+
+def test_twins_without_a_speed_have_not_driven():
+    place = Plausibility()
+    first = crossing(1, at=0.2, mode=OCCLUDED, speed=None)
+    assert place.doubt(first, life(0.0, 1.0)) == ""
+    # 100 s later: at 1 px/s they would be 100 px apart, and within 1.5 boxes they are 60.
+    second = crossing(2, at=10.2, mode=OCCLUDED, speed=None)
+    assert place.doubt(second, life(2.0, 3.0, first=(300.0, 90.0))) == "twice"
+
+
 def test_images_are_counted_and_the_last_point_is_one_that_was_seen():
     lived = life(0.0, 1.0, detected=0)
     hidden = FootPoint((5.0, 95.0), 2 * SECOND, OCCLUDED, (60.0, 30.0))

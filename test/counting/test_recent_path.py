@@ -112,6 +112,18 @@ def test_four_seconds_and_at_least_24_points_are_remembered():
     assert path(ys, 100).scatter((0.0, 1.0)) > math.sqrt(50.0 / (2 + 11))
 
 
+def test_a_point_is_forgotten_when_it_is_older_than_four_seconds():
+    # Of 26 points 161 ms apart the first is 4.025 s old, and the second 3.864 s.
+    found = path([40.0, *[0.0] * 25], 161).scatter((0.0, 1.0))
+    assert found == pytest.approx(math.sqrt(50.0 / (2 + 11.5)))
+
+
+def test_a_fifth_of_a_second_of_seven_images_is_three():
+    # 6 px at three images, 36; one bend of 2 px at one image, and 2, 4 and 2 px at two.
+    found = path([0.0, 2.0, 4.0, 6.0, 4.0, 2.0, 0.0], 200 / 3).scatter((0.0, 1.0))
+    assert found == pytest.approx(math.sqrt((50.0 + 0.5 * 36.0 / 1.5) / 2.5))
+
+
 def test_the_end_of_a_path_is_its_latest_point():
     last = FootPoint((10.0, 5.0), START_NS, TRACKING, (40.0, 20.0))
     made = RecentPath()

@@ -57,6 +57,30 @@ def test_a_count_of_a_month_is_as_exact_as_its_share():
     )
 
 
+def test_numbers_are_told_apart_within_eight_deviations_of_what_is_true():
+    # 90 of 100 with a deviation of 3: from 90 - 1 - 24 to 100. Nothing missed goes up to 12 + 1.
+    first, likely = trust(true=0.9).distribution({Sign.SEEN: 100})
+    assert (first, len(likely)) == (65, 36 + 13)
+    # Both ends: 50 with a deviation of 5, 41 to each side.
+    first, likely = trust(true=0.5).distribution({Sign.SEEN: 100})
+    assert (first, len(likely)) == (9, 83 + 13)
+    assert likely[41] == pytest.approx(0.0795892, abs=1e-6)  # 100! / 50!² / 2^100
+
+
+def test_numbers_missed_are_told_apart_within_twelve_deviations():
+    # A mean of 6 and a variance of 6 + 0.4 * 36 = 20.4: 6 + 12 * (1 + 4.5166) = 72.2.
+    _, likely = trust(missed=6.0, spread=0.4).distribution({Sign.BROKEN: 1})
+    assert len(likely) == 74
+    assert likely[0] == pytest.approx((1 + 0.4 * 6) ** (-1 / 0.4))
+    assert likely[1] / likely[0] == pytest.approx(6 / (1 + 0.4 * 6))
+
+
+def test_a_thousand_missed_are_as_likely_as_a_poisson_number():
+    # The likeliest is e^996 times as likely as none, which no float can hold squared.
+    _, likely = trust(missed=1000.0, spread=1e-6).distribution({Sign.BROKEN: 1})
+    assert likely @ np.arange(len(likely)) == pytest.approx(1000.0)
+
+
 def test_where_nothing_was_seen_nothing_crossed():
     assert OF_BOXES.interval({}) == (0, 0)
 
@@ -138,3 +162,54 @@ def test_a_reset_discards_that_detections_were_blobs():
     assert counter.interval("across", "in") == OF_BLOBS.interval(likely)
     counter.reset()
     assert counted(*drives, counter=counter).interval("across", "in") == OF_BOXES.interval(likely)
+
+
+def test_vehicles_that_are_followed_when_a_recording_begins_again_have_ended():
+    counter = Counter(CountingPlan(lines=(ACROSS,)))
+    for index, bottom in enumerate(BEFORE):
+        counter.update([replace(vehicle(1, 100.0, bottom), score=0.9)], index * PERIOD_NS)
+    assert counter.signs("across", "in") == Tally()  # it may cross yet
+    counter.forget_vehicles()
+    assert counter.signs("across", "in") == {Sign.BROKEN: 1}
+    # The next one with this number is another vehicle, and takes nothing back.
+    counter.update([replace(vehicle(1, 100.0, 40.0), score=0.9)], 0)
+    assert counter.signs("across", "in") == {Sign.BROKEN: 1}
+
+
+def test_what_began_behind_the_line_has_been_missed_before_it_ends():
+    counter = Counter(CountingPlan(lines=(ACROSS,)))
+    for index, bottom in enumerate(BEHIND):
+        counter.update([replace(vehicle(1, 100.0, bottom), score=0.9)], index * PERIOD_NS)
+    assert counter.signs("across", "in") == {Sign.BROKEN: 1}
+
+
+def mixed(ambiguous=None):
+    """Counter of 20 cars, 3 buses and 2 walkers, who are no vehicles; each crosses in."""
+    counter = Counter(CountingPlan(lines=(ACROSS,)), apart={"walker"})
+    labels = ["car"] * 20 + ["bus"] * 3 + ["walker"] * 2
+    for number, label in enumerate(labels, start=1):
+        for index, bottom in enumerate((80, 90, 110, 120)):
+            one = replace(vehicle(number, 100.0, bottom, label=label), score=0.9)
+            counter.update([one], (1000 * number + index) * PERIOD_NS, ambiguous=ambiguous)
+    return counter
+
+
+def test_classes_apart_are_in_no_total_of_vehicles():
+    counter = mixed()
+    assert counter.by_class("across", "in") == {"car": 20, "bus": 3, "walker": 2}
+    assert counter.count("across", "in") == 23
+    assert counter.count("across", "out") == 0
+    assert counter.signs("across", "in") == {Sign.SEEN: 23}
+    assert counter.signs("across", "in", "bus") == {Sign.SEEN: 3}
+    assert counter.signs("across", "in", "walker") == {Sign.SEEN: 2}
+
+
+def test_intervals_are_those_of_boxes_until_there_were_blobs():
+    boxes, blobs = mixed(), mixed(ambiguous=0)
+    assert boxes.interval("across", "in") == OF_BOXES.interval({Sign.SEEN: 23})
+    assert blobs.interval("across", "in") == OF_BLOBS.interval({Sign.SEEN: 23})
+    assert boxes.interval("across", "in") != blobs.interval("across", "in")
+    assert boxes.interval("across", "in", "car") == OF_BOXES.interval({Sign.SEEN: 20})
+    assert boxes.interval("across", "in", "bus") == OF_BOXES.interval({Sign.SEEN: 3})
+    blobs.update([], 10**15)  # once blobs, always blobs
+    assert blobs.interval("across", "in") == OF_BLOBS.interval({Sign.SEEN: 23})

@@ -256,3 +256,30 @@ def test_one_low_similarity_is_enough_for_the_occlusion_regime():
         assert now.regime == ("occlusion" if low else "regular")
         single |= low if len(low) == 1 else set()
     assert single == {"pi", "pi_up"}
+
+
+def test_new_parameters_keep_the_moves_that_were_seen():
+    street, tracker = Street(), make(**REAL_VIDEO)
+    follow(tracker, street, range(30))
+    value, settled = tracker._velocity.value, tracker._velocity.settled
+    assert value != settled  # 12 moves are left out of the drift
+    tracker.reconfigure(tracker.parameters)
+    assert (tracker._velocity.value, tracker._velocity.settled) == (value, settled)
+
+
+def test_as_printed_the_first_move_begins_in_the_corner():
+    street, tracker = Street(), make(as_printed=True)
+    first = follow(tracker, street, range(2))[1]
+    assert first.velocity == pytest.approx(first.position, abs=1e-9)
+
+
+@pytest.mark.parametrize(("sigma_r", "drawn"), [(0.0, 6.0), (3.0, 3.0)])
+def test_a_sigma_of_zero_is_that_of_the_regular_regime(sigma_r, drawn, monkeypatch):
+    sigmas = []
+    monkeypatch.setattr(
+        apf, "sample_normal_rayleigh", lambda rng, count, velocity, r, n: sigmas.append((r, n))
+    )
+    motion = {"sigma_w": 6.0, "sigma_n": 4.0, "sigma_r": sigma_r, "drift_from_velocity": False}
+    tracker = make(**{f"motion.{name}": value for name, value in motion.items()})
+    tracker._drift(tracker.parameters, 5, 2.0)
+    assert sigmas == [(2 * drawn, 8.0)]

@@ -233,3 +233,62 @@ def test_the_search_grows_by_time_not_by_frames():
 
     assert reach([3.0]) == pytest.approx(reach([1.0] * 3), abs=0.7)
     assert reach([3.0]) == pytest.approx(20.0, abs=1.0)
+
+
+def started(**values):
+    street, tracker = Street(speed=0.0), make(**values)
+    tracker.start(street.frame(0), street.box(0))
+    return street, tracker
+
+
+def test_gaussian_noise_has_the_variance_of_the_disc(monkeypatch):
+    sigmas, draw = [], mfpf.sample_normal
+    monkeypatch.setattr(
+        mfpf,
+        "sample_normal",
+        lambda rng, n, sigma: sigmas.append((n, sigma)) or draw(rng, n, sigma),
+    )
+    started(**{"dispersion.noise": "gaussian", "dispersion.radius": 3.0})
+    # The first search reaches twice as far, and a disc's deviation is half of its radius.
+    assert sigmas[0] == (200, 3.0)
+
+
+def test_a_search_reaches_further_in_a_longer_time():
+    _, tracker = started(**{"dispersion.radius": 14.0, "dispersion.growth": 2.0})
+    assert tracker._search_radius(2.0, 0.0) == pytest.approx(56.0)
+    assert tracker._search_radius(1.0, 3.0) == pytest.approx(34.0)
+
+
+def test_noise_is_added_to_the_move():
+    street, tracker = started()
+    tracker._noise = lambda radius: np.full((200, 2), (3.0, -2.0))
+    particles, _, _ = tracker._disperse(street.frame(1), 1.0)
+    assert particles == pytest.approx(np.tile(np.add(street.box(0).centre, (3.0, -2.0)), (200, 1)))
+
+
+@pytest.mark.parametrize("left", [True, False])
+def test_the_image_is_left_where_the_particles_leave_it(left):
+    street, tracker = started()
+    move = tracker._move
+    tracker._move = lambda frame, positions, moves: (move(frame, positions, moves)[0], left)
+    assert tracker._advance(street.frame(1), 1.0).left_image is left
+
+
+def test_as_printed_each_feature_draws_its_own_survivors(monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        mfpf,
+        "common_survivors",
+        lambda sets, count, otherwise: asked.append((len(sets), count)) or otherwise,
+    )
+    street, tracker = started(joint_resampling=False, resample_below=1.0, resampling="systematic")
+    draws, draw = [], tracker._draw
+    tracker._draw = lambda weights, scheme: draws.append((weights, scheme)) or draw(weights, scheme)
+    weigh, weighed = tracker.weigh, []
+    tracker.weigh = lambda *words: weighed.append(weigh(*words)) or weighed[-1]
+    tracker.step(street.frame(1))
+    assert asked == [(3, 200)]
+    own, cloud = weighed[0]
+    assert [scheme for _, scheme in draws] == ["systematic"] * 4
+    for (weights, _), expected in zip(draws, (cloud.weights, *own), strict=True):
+        assert np.array_equal(weights, expected)

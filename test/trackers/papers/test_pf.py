@@ -3,6 +3,8 @@
 
 """The colour particle filter of Perez et al. 2002."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from street import Street, error, follow
@@ -53,3 +55,13 @@ def test_second_order_particles_go_on_with_their_ancestors_moves(monkeypatch):
     assert second == pytest.approx(first[[1, 1, 2]] + 2 * moves[[1, 1, 2]])
     third = tracker.step(street.frame(3)).particles
     assert third == pytest.approx(second[[1, 1, 2]] + moves[[1, 1, 2]])
+
+
+def test_another_number_of_particles_all_have_the_mean_speed():
+    street, tracker = Street(), make(num_particles=3, dynamics="second_order")
+    follow(tracker, street, range(3))
+    speeds = tracker._speeds.copy()
+    tracker.reconfigure(replace(tracker.parameters, num_particles=5))
+    assert tracker._speeds == pytest.approx(np.array([speeds.mean(axis=0)] * 5))
+    tracker.reconfigure(replace(tracker.parameters, sigma=3.0))
+    assert len(tracker.step(street.frame(3)).particles) == 5

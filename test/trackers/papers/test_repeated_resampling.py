@@ -194,3 +194,20 @@ def test_particles_of_equal_weight_are_all_good():
     before, after, replaced, _ = one_pass([0.9] * 5)
     assert replaced == 0
     assert after is before
+
+
+@both
+def test_the_plain_mean_leaves_the_particles_their_weights(make):
+    street, tracker = Street(), make(weighted_mean=False, most_passes=0)
+    tracker.start(street.frame(0), street.box(0))
+    outcome = tracker._advance(street.frame(1), 1.0)
+    assert outcome.position == pytest.approx(outcome.cloud.positions.mean(axis=0))
+    assert np.ptp(outcome.cloud.weights) > 0
+
+
+def test_the_conventional_filter_replaces_all_in_the_regular_regime():
+    tracker = conventional()
+    cloud = Cloud.uniform(np.zeros((3, 2)))
+    replaced, weights, jitter, regime = tracker._choose(WeighedParticles(np.ones(3), cloud))
+    assert replaced.dtype == bool and replaced.all()
+    assert (weights.tolist(), jitter, regime) == ([1 / 3] * 3, 0.5, "regular")

@@ -59,3 +59,15 @@ def test_tied_the_variance_shrinks_by_the_share_that_survives(monkeypatch):
     follow(make(sigma=8.0, **{"annealing.tied": True, **values}), Street(), range(2))
     # The start, then three layers: a quarter of the variance is half of the deviation.
     assert sigmas == pytest.approx([8.0, 8.0, 4.0, 2.0], rel=1e-3)
+
+
+@pytest.mark.parametrize("left", [True, False])
+def test_the_image_is_left_where_the_last_layer_leaves_it(left):
+    street, tracker = Street(), make(**{"annealing.layers": 2})
+    tracker.start(street.frame(0), street.box(0))
+    diffuse, answers = tracker._diffuse, iter((not left, left))
+    tracker._diffuse = lambda frame, parents, sigma: (
+        diffuse(frame, parents, sigma)[0],
+        next(answers),
+    )
+    assert tracker._advance(street.frame(1), 1.0).left_image is left
