@@ -276,9 +276,13 @@ def means(lines: Sequence[LineCount]) -> list[str]:
     true = np.mean([one.true for one in judged])
     counted = np.mean([one.counted for one in judged])
     return [
-        str(len(judged)), f"{true:.1f}", f"{counted:.1f}", f"{exact:.0f}", f"{held:.0f}",
+        str(len(judged)),
+        f"{true:.1f}",
+        f"{counted:.1f}",
+        f"{exact:.0f}",
+        f"{held:.0f}",
         f"{width:.1f}",
-    ]  # fmt: skip
+    ]
 
 
 if __name__ == "__main__":

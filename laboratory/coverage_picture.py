@@ -60,8 +60,13 @@ def _draw_levels(axes: Axes, runs: Mapping[str, Runs]) -> None:
         axes.plot(_LEVELS, shares, **style)
     axes.plot([0, 1], [0, 1], "k:", lw=1)
     axes.fill_between([0.94, 0.96], 0.9, 0.99, color="tab:green", alpha=0.4, lw=0)
-    axes.set(xlabel="level of the ellipse", ylabel="frames whose truth it holds",
-             xlim=(0, 1), ylim=(0, 1), title="all scenes (grey: the other variants)")  # fmt: skip
+    axes.set(
+        xlabel="level of the ellipse",
+        ylabel="frames whose truth it holds",
+        xlim=(0, 1),
+        ylim=(0, 1),
+        title="all scenes (grey: the other variants)",
+    )
     axes.legend(loc="lower right")
 
 
@@ -75,12 +80,24 @@ def _draw_drive(axes: Axes, paths: Mapping[str, list[Path]]) -> None:
         _, areas = run.calibrated(CALIBRATIONS[name])
         frames = np.arange(2, len(areas) + 2)
         radius = np.sqrt(INSIDE_95 * np.sqrt(areas))
-        axes.fill_between(frames, 0.05, radius, color=colour, alpha=0.2, lw=0,
-                          label=f"{name}: radius of the 95 % ellipse")  # fmt: skip
+        axes.fill_between(
+            frames,
+            0.05,
+            radius,
+            color=colour,
+            alpha=0.2,
+            lw=0,
+            label=f"{name}: radius of the 95 % ellipse",
+        )
         error = np.hypot(run["error_x"], run["error_y"])
         axes.plot(frames, np.maximum(error, 0.05), color=colour, label=f"{name}: error")
         hidden = frames[run.is_occluded]
     axes.axvspan(hidden[0], hidden[-1], color="0.9", zorder=0, label="out of sight")
-    axes.set(xlabel="frame", ylabel="px", yscale="log", ylim=(0.05, None),
-             title=f"scene `{_DRIVE}`, seed {files[0].name.split('.')[2]}")  # fmt: skip
+    axes.set(
+        xlabel="frame",
+        ylabel="px",
+        yscale="log",
+        ylim=(0.05, None),
+        title=f"scene `{_DRIVE}`, seed {files[0].name.split('.')[2]}",
+    )
     axes.legend(fontsize=8, loc="upper left")

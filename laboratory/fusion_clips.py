@@ -188,9 +188,7 @@ def is_at_border(box: Box, size: tuple[int, int]) -> bool:
     """Test whether a box is about to leave an image of this width and height."""
     x, y = box.centre
     width, height = size
-    return (
-        min(x, width - x) < AT_BORDER * box.width or min(y, height - y) < AT_BORDER * box.height
-    )  # fmt: skip
+    return min(x, width - x) < AT_BORDER * box.width or min(y, height - y) < AT_BORDER * box.height
 
 
 def followed(clip: Clip, seeds: int) -> list[Run]:

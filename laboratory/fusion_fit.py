@@ -154,9 +154,11 @@ def fit(options: argparse.Namespace) -> dict[str, Setting]:
 
 
 def _write_fit(
-    path: Path, chosen: Mapping[str, Setting], settings: Sequence[Setting],
+    path: Path,
+    chosen: Mapping[str, Setting],
+    settings: Sequence[Setting],
     by_camera: Sequence[Mapping[str, float]],
-) -> None:  # fmt: skip
+) -> None:
     drawn = [
         {"setting": setting, "objective": scores}
         for setting, scores in zip(settings, by_camera, strict=True)
@@ -175,10 +177,13 @@ def judge(options: argparse.Namespace, chosen: Mapping[str, Setting]) -> list[Re
             own = [case for case in cases if camera and case.camera == camera]
             if own:
                 results += run_battery(
-                    own, [_system("fusion", setting)], seeds=tuple(seeds),
-                    workers=options.workers, store=options.output / "judged.jsonl",
+                    own,
+                    [_system("fusion", setting)],
+                    seeds=tuple(seeds),
+                    workers=options.workers,
+                    store=options.output / "judged.jsonl",
                     on_progress=report_progress,
-                )  # fmt: skip
+                )
     return results
 
 

@@ -41,9 +41,13 @@ def shipped_results(options: argparse.Namespace) -> list[Result]:
     results: list[Result] = []
     for cases, seeds in ((plain, range(options.seeds)), (hard, range(1))):
         results += run_battery(
-            cases, [variant_system("fusion")], seeds=tuple(seeds), workers=options.workers,
-            store=options.output / "shipped.jsonl", on_progress=report_progress,
-        )  # fmt: skip
+            cases,
+            [variant_system("fusion")],
+            seeds=tuple(seeds),
+            workers=options.workers,
+            store=options.output / "shipped.jsonl",
+            on_progress=report_progress,
+        )
     return results
 
 

@@ -137,9 +137,16 @@ def _draw(axes: Axes, made: SceneFrame, row: EstimateRow) -> None:
     assert share is not None
     axes.set_title(f"frame {row.frame}, {share:.0%} visible", fontsize=8, loc="left", pad=3)
     axes.text(
-        0.03, 0.95, f"{row.mode} {row.confidence:.2f}", transform=axes.transAxes, color=colour,
-        fontsize=8, weight="bold", va="top", bbox={"color": "black", "pad": 2},
-    )  # fmt: skip
+        0.03,
+        0.95,
+        f"{row.mode} {row.confidence:.2f}",
+        transform=axes.transAxes,
+        color=colour,
+        fontsize=8,
+        weight="bold",
+        va="top",
+        bbox={"color": "black", "pad": 2},
+    )
 
 
 def _corner(made: SceneFrame, box: Box) -> tuple[int, int]:

@@ -186,11 +186,14 @@ def _row(speed: str, source: str, judged: Sequence[Judged]) -> list[str]:
     sizes = [abs(error) for error in errors]
     within = [abs(one.speed - one.true) <= 2 * one.deviation for one in judged]
     return [
-        speed, source, str(len(judged)), f"{100 * statistics.median(sizes):.2f} %",
+        speed,
+        source,
+        str(len(judged)),
+        f"{100 * statistics.median(sizes):.2f} %",
         f"{100 * float(np.quantile(sizes, 0.95)):.2f} %",
         f"{100 * statistics.fmean(errors):+.2f} %",
         f"{100 * statistics.fmean(within):.0f} %",
-    ]  # fmt: skip
+    ]
 
 
 if __name__ == "__main__":

@@ -66,8 +66,9 @@ def judged(sequence: TrafficSequence, source: str) -> Counter[str]:
 
 def _occluders(path: Path) -> dict[tuple[int, int], str]:
     with path.open(encoding="utf-8") as file:
-        return {(int(row["frame"]), int(row["id"])): row["hidden_by"]
-                for row in csv.DictReader(file)}  # fmt: skip
+        return {
+            (int(row["frame"]), int(row["id"])): row["hidden_by"] for row in csv.DictReader(file)
+        }
 
 
 def _name(names: dict[int, int], seen: Array, estimates: tuple[TrackEstimate, ...]) -> None:

@@ -134,10 +134,20 @@ def _row(estimate: Estimate, each: SceneFrame, period: float) -> tuple[float, ..
     true_x, true_y = truth.box.centre
     (xx, xy), (_, yy) = cloud_covariance(estimate)
     return (
-        truth.stamp_ns * 1e-9, x - true_x, y - true_y, xx, xy, yy,
-        estimate.box.width, estimate.box.height, *estimate.velocity, period,
-        list(Mode).index(estimate.mode), estimate.confidence, int(truth.occlusion),
-    )  # fmt: skip
+        truth.stamp_ns * 1e-9,
+        x - true_x,
+        y - true_y,
+        xx,
+        xy,
+        yy,
+        estimate.box.width,
+        estimate.box.height,
+        *estimate.velocity,
+        period,
+        list(Mode).index(estimate.mode),
+        estimate.confidence,
+        int(truth.occlusion),
+    )
 
 
 if __name__ == "__main__":

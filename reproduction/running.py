@@ -15,6 +15,9 @@ from vehicle_pf_tracker.following.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.trackers.papers import shared
 from vehicle_pf_tracker.trackers.registry import find_variant
 
+_LARGEST_BATCH = 48
+"""Cells that run together: more share a rendering, fewer are lost by an interruption."""
+
 
 def cell_key(cell: Cell) -> str:
     """Digest the cell's facts, its kind, the code, and the versions of what it runs on."""
@@ -26,9 +29,6 @@ def code_digest() -> str:
     """Digest the code that any experiment depends on: this folder's, and the papers' trackers'."""
     return source_digest(frozenset({__name__, shared.__name__}))
 
-
-_LARGEST_BATCH = 48
-"""Cells that run together: more share a rendering, fewer are lost by an interruption."""
 
 _Batch: TypeAlias = tuple[Cell, ...]
 

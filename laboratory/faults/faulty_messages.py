@@ -172,9 +172,12 @@ class Faults:
     def _region(self) -> RegionOfInterest:
         numbers = [self._random.choice((0, 1, 5, 20, 63, 64, 2**31, _LARGEST)) for _ in range(4)]
         return RegionOfInterest(
-            x_offset=numbers[0], y_offset=numbers[1], width=numbers[2], height=numbers[3],
+            x_offset=numbers[0],
+            y_offset=numbers[1],
+            width=numbers[2],
+            height=numbers[3],
             do_rectify=bool(numbers[0] % 2),
-        )  # fmt: skip
+        )
 
     def _number(self) -> float:
         draw = self._random

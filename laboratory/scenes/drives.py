@@ -25,6 +25,11 @@ from vehicle_pf_tracker.scenes.scenery import value_noise
 from vehicle_pf_tracker.scenes.solids import SHADOW_TINT, VIEW_ELEVATION
 from vehicle_pf_tracker.scenes.vehicles import car, coach, saloon, suv, van
 
+CLEAR_FRAMES = 10
+"""Frames at the start in which nothing may hide the target: trackers learn it there."""
+CROSSING = math.radians(28)
+"""Angle between the road and the one that crosses it."""
+
 
 @dataclass(frozen=True, slots=True)
 class ShadowParameters(DriveParameters):
@@ -140,10 +145,6 @@ def acceleration(parameters: AccelerationParameters, seed: int) -> Scene:
     return Drive(parameters, seed, Pace(knots)).scene()
 
 
-CLEAR_FRAMES = 10
-"""Frames at the start in which nothing may hide the target: trackers learn it there."""
-
-
 def near_traffic(drive: Drive) -> list[Actor]:
     """Fill the nearer lane with faster vehicles, each of which hides a part of the target."""
     rng = stream(drive.seed, "near lane")
@@ -188,10 +189,6 @@ def _own_lane(drive: Drive, rng: np.random.Generator) -> list[Actor]:
         place = drive.start + distance + rng.uniform(-15, 15)
         actors += Model(faces, drive.scale).on(drive.course(place, drive.pace))
     return actors
-
-
-CROSSING = math.radians(28)
-"""Angle between the road and the one that crosses it."""
 
 
 def cross(parameters: DriveParameters, seed: int) -> Scene:

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.parameters.table import parameter
+from vehicle_pf_tracker.road.motion import KMH_PER_MS
 from vehicle_pf_tracker.scenes.scene import noise_parameter
 
 _ACCELERATION, _BRAKING = 1.5, 2.0
@@ -33,6 +34,17 @@ _CHANGE = 2.5
 """Duration of a change of lanes, s."""
 _PATIENCE = 3.0
 """Shortest time between two changes of one driver, s."""
+_FIRST = (0.0, 0.3)
+"""Place of each lane's first vehicle in the beginning, of the stretch in the image: traffic comes
+in."""
+_SPREAD = (0.88, 1.12)
+"""Wanted speeds, in mean speeds."""
+_LORRIES_AHEAD = 0.4
+"""Place of the first lorry before the first cars, of the stretch, where they overtake."""
+_LORRY_GAP = 2.5
+"""Mean gap between lorries, in mean gaps: most cars pass one in the image."""
+_GAPS = (0.5, 1.5)
+"""Shortest and longest gap between two vehicles in the beginning, in mean gaps."""
 
 
 class Driver(NamedTuple):
@@ -245,21 +257,6 @@ class TrafficSceneParameters:
     )
 
 
-_KMH = 3.6
-"""km/h in a m/s."""
-_FIRST = (0.0, 0.3)
-"""Place of each lane's first vehicle in the beginning, of the stretch in the image: traffic comes
-in."""
-_SPREAD = (0.88, 1.12)
-"""Wanted speeds, in mean speeds."""
-_LORRIES_AHEAD = 0.4
-"""Place of the first lorry before the first cars, of the stretch, where they overtake."""
-_LORRY_GAP = 2.5
-"""Mean gap between lorries, in mean gaps: most cars pass one in the image."""
-_GAPS = (0.5, 1.5)
-"""Shortest and longest gap between two vehicles in the beginning, in mean gaps."""
-
-
 def draw_lorries(
     count: int, parameters: TrafficSceneParameters, rng: np.random.Generator
 ) -> list[bool]:
@@ -302,7 +299,7 @@ def drive(
         lane = slow % parameters.lanes if alone else car_count % min(slow, parameters.lanes)
         car_count += not alone
         pace = parameters.lorry_speed if lane == slow or (large and parameters.mixed) else 1.0
-        speed = parameters.speed / _KMH * rng.uniform(*_SPREAD) * pace
+        speed = parameters.speed / KMH_PER_MS * rng.uniform(*_SPREAD) * pace
         drivers.append(Driver(lane, float(ahead[lane]), length, float(speed)))
         gap = parameters.gap * rng.uniform(*_GAPS) * (_LORRY_GAP if lane == slow else 1.0)
         ahead[lane] -= length + gap

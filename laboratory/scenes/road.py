@@ -13,14 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from laboratory.scenes.perspective import (
-    Drive,
-    RoadCamera,
-    RoadMarks,
-    RoadVehicle,
-    ground_picture,
-    looking,
-)
+from laboratory.scenes.perspective import Drive, RoadCamera, RoadVehicle, looking
+from laboratory.scenes.road_ground import RoadMarks, ground_picture
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.scenes.cameras import Camera

@@ -15,13 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from laboratory.scenes.flow import TrafficSceneParameters, draw_lorries, drive
-from laboratory.scenes.perspective import (
-    RoadCamera,
-    RoadMarks,
-    RoadVehicle,
-    ground_picture,
-    looking,
-)
+from laboratory.scenes.perspective import RoadCamera, RoadVehicle, looking
+from laboratory.scenes.road_ground import RoadMarks, ground_picture
 from laboratory.scenes.traffic_scene import TrafficScene
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
@@ -194,13 +189,15 @@ def _marks(parameters: PerspectiveParameters) -> RoadMarks:
     between = [inner + LANE_WIDTH * number for number in range(1, parameters.lanes)]
     return RoadMarks(
         tar=tuple(
-            (min(way * (inner - _SHOULDER), way * (outer + _SHOULDER)),
-             max(way * (inner - _SHOULDER), way * (outer + _SHOULDER)))
+            (
+                min(way * (inner - _SHOULDER), way * (outer + _SHOULDER)),
+                max(way * (inner - _SHOULDER), way * (outer + _SHOULDER)),
+            )
             for way in ways
         ),
         dashed=tuple(way * x for way in ways for x in between),
         solid=tuple(way * x for way in ways for x in (inner, outer)),
-    )  # fmt: skip
+    )
 
 
 def _direction(

@@ -183,9 +183,11 @@ def _bridges(parameters: TrafficSceneParameters, seed: int) -> list[Actor]:
         for number in range(1, parameters.bridges + 1)
         for actor in bridge(
             number * pitch - parameters.bridge_width / 2 + rng.uniform(-0.1, 0.1) * pitch,
-            parameters.bridge_width, HEIGHT, rng,
+            parameters.bridge_width,
+            HEIGHT,
+            rng,
         )
-    ]  # fmt: skip
+    ]
 
 
 def _direction(

@@ -119,8 +119,10 @@ def similarities(matrices: Iterable[Floats]) -> tuple[Similarity, ...]:
     """Write (3, 3) similarities as plain numbers, to a thousandth of a pixel."""
     return tuple(
         (
-            round(float(m[0, 0]), 6), round(float(m[1, 0]), 6),
-            round(float(m[0, 2]), 3), round(float(m[1, 2]), 3),
+            round(float(m[0, 0]), 6),
+            round(float(m[1, 0]), 6),
+            round(float(m[0, 2]), 3),
+            round(float(m[1, 2]), 3),
         )
         for m in matrices
-    )  # fmt: skip
+    )

@@ -78,9 +78,15 @@ def _cases(
         more = {**labels, "path": placed.path, "hidden": str(placed.hidden)}
         more["carried_by"] = _carrier(background)
         yield Case(
-            origin, kind, f"{variation}_{placed.path}", placed.first, placed.count,
-            seed=own, labels=tuple(more.items()), changes=(occluder,),
-        )  # fmt: skip
+            origin,
+            kind,
+            f"{variation}_{placed.path}",
+            placed.first,
+            placed.count,
+            seed=own,
+            labels=tuple(more.items()),
+            changes=(occluder,),
+        )
         if len(done) == 2:
             return
 
