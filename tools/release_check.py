@@ -48,12 +48,12 @@ _OF_ROS = re.compile(r"ros-|ros(idl|graph)_|r(cl|cutils|mw)|std_srvs$|.*_(msgs|i
 _ASK_LICENCES = """
 import re
 from importlib.metadata import distributions
-for one in distributions():
-    told = one.metadata
-    classes = [c.rpartition("::")[2] for c in told.get_all("Classifier", []) if "License" in c]
-    words = told.get("License-Expression") or "; ".join(classes) or told.get("License") or ""
-    files = [f for f in one.files or [] if re.search("(?i)licen[sc]e|copying|notice", f.name)]
-    print(told["Name"], told["Version"], " ".join(words.split())[:60], len(files), sep="\\t")
+for package in distributions():
+    facts = package.metadata
+    classes = [c.rpartition("::")[2] for c in facts.get_all("Classifier", []) if "License" in c]
+    words = facts.get("License-Expression") or "; ".join(classes) or facts.get("License") or ""
+    files = [f for f in package.files or [] if re.search("(?i)licen[sc]e|copying|notice", f.name)]
+    print(facts["Name"], facts["Version"], " ".join(words.split())[:60], len(files), sep="\\t")
 """
 
 
@@ -174,21 +174,27 @@ def follow_readme(python: Path, extra: str, folder: Path) -> None:
             raise ReleaseError(f"the README's commands for [{extra}] leave no {name}")
 
 
-def licences(python: Path) -> list[Licence]:
+def licences_in(python: Path) -> list[Licence]:
     """Return the licences of all distributions in an environment."""
     lines = run(python, "-c", _ASK_LICENCES, cwd=python.parent).splitlines()
     rows = [line.split("\t") for line in lines]
     return sorted(Licence(name, version, words, int(files)) for name, version, words, files in rows)
 
 
-def check_licences(found: Iterable[Licence]) -> str:
+def check_licences(licences: Iterable[Licence]) -> str:
     """Check that every distribution but ROS 2's states its licence, in words or by a file."""
-    found = list(found)
-    found = [one for one in found if one.words or one.files or not _OF_ROS.match(one.name)]
-    silent = [one.name for one in found if not one.words and not one.files]
+    stated = []
+    silent = []
+    for licence in licences:
+        if licence.words or licence.files:
+            stated.append(licence)
+        elif not _OF_ROS.match(licence.name):
+            silent.append(licence.name)
     if silent:
         raise ReleaseError(f"these state no licence: {', '.join(silent)}")
-    return "; ".join(f"{one.name} {one.version}: {one.words or 'see its file'}" for one in found)
+    return "; ".join(
+        f"{licence.name} {licence.version}: {licence.words or 'see its file'}" for licence in stated
+    )
 
 
 def megabytes(python: Path) -> int:
@@ -202,11 +208,11 @@ def check_install(archive: Path, extra: str) -> str:
     with TemporaryDirectory(prefix="release-check-") as scratch:
         python = installed(archive, extra, Path(scratch, "env"))
         size = megabytes(python)
-        told = check_licences(licences(python))
+        stated = check_licences(licences_in(python))
         follow_readme(python, extra, Path(scratch, "work"))
     if size > SIZES[extra]:
         raise ReleaseError(f"[{extra}] takes {size} MB, more than {SIZES[extra]}")
-    return f"{size} MB; {told}"
+    return f"{size} MB; {stated}"
 
 
 def checks(dist: Path, extras: Collection[str]) -> Iterator[tuple[str, Callable[[], object]]]:

@@ -45,16 +45,22 @@ class Backdating:
         `undecided` has the numbers of the vehicles whose class may still change.
         """
         self._held.append((frame, stamp_ns, estimates))
-        known = [one for one in estimates if one.identity]
-        self._numbers.update({one.serial: one.identity for one in known})
-        self._numbers.update({one.joined: one.identity for one in known if one.joined})
-        self._labels.update({one.identity: one.label for one in known if one.label})
-        open_ones = {
-            one.serial for one in estimates if not one.identity or one.identity in undecided
+        known = [estimate for estimate in estimates if estimate.identity]
+        self._numbers.update({estimate.serial: estimate.identity for estimate in known})
+        self._numbers.update(
+            {estimate.joined: estimate.identity for estimate in known if estimate.joined}
+        )
+        self._labels.update(
+            {estimate.identity: estimate.label for estimate in known if estimate.label}
+        )
+        unknown = {
+            estimate.serial
+            for estimate in estimates
+            if not estimate.identity or estimate.identity in undecided
         }
         while self._held and (
             len(self._held) > _HELD_FRAMES
-            or open_ones.isdisjoint(one.serial for one in self._held[0][2])
+            or unknown.isdisjoint(estimate.serial for estimate in self._held[0][2])
         ):
             yield self._known(*self._held.popleft())
 
@@ -67,11 +73,13 @@ class Backdating:
         self, frame: int, stamp_ns: int, estimates: Sequence[TrackEstimate]
     ) -> FrameEstimates:
         by_number: dict[int, TrackEstimate] = {}
-        for one in estimates:
-            number = self._numbers.get(one.serial, 0)
+        for estimate in estimates:
+            number = self._numbers.get(estimate.serial, 0)
             other = by_number.get(number)
             if number and (other is None or other.mode not in _SEEN):
-                label = self._labels.get(number, one.label)
-                is_same = (one.identity, one.label) == (number, label)
-                by_number[number] = one if is_same else replace(one, identity=number, label=label)
+                label = self._labels.get(number, estimate.label)
+                is_same = (estimate.identity, estimate.label) == (number, label)
+                by_number[number] = (
+                    estimate if is_same else replace(estimate, identity=number, label=label)
+                )
         return frame, stamp_ns, list(by_number.values())
