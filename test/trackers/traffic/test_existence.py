@@ -215,7 +215,7 @@ def test_what_pixels_hold_on_empty_road_at_the_border_is_soon_lost():
         detections = Detections.make(boxes if index < 50 else np.empty((0, 4)))
         modes.append([one.mode for one in tracker.step(frame, detections) if one.identity])
     assert modes[49] == [TrackMode.TRACKING]
-    assert TrackMode.TRACKING not in modes[120]
+    assert TrackMode.TRACKING not in modes[90]
 
 
 def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
