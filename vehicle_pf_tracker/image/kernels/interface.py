@@ -112,9 +112,7 @@ def load_kernels(choice: str) -> Kernels:
     try:
         # Also for auto: only the attempt tells whether numba can be had.
         return load_numba()
-    except (
-        Exception
-    ) as error:  # a broken installation raises more than ImportError: llvmlite OSError
+    except Exception as error:  # ImportError, or what a broken installation raises: OSError
         if choice == "numba":
             raise InputError(
                 f"kernels: numba needs numba, which cannot be imported ({error}); "
