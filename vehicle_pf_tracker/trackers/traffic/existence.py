@@ -35,7 +35,7 @@ _PROVEN = 4.0
 _MISSED = 0.3
 """Log odds that a detection missed in plain sight takes off a vehicle: something unknown may hide
 it, so that only 25 take off all that it can have. At .15 ghosts stay twice as long: 1660 images at
-dusk have IDF1 81.2 instead of 84.4; cameras left out hardly tell both apart."""
+dusk have IDF1 81.2 instead of 84.6; cameras left out hardly tell both apart."""
 _VANISHED_AFTER = 4
 """Misses in plain sight in a row by which it vanished: 1 in 16 by chance at a rate of a half."""
 _WAIT = 0.5
