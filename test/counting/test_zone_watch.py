@@ -18,11 +18,11 @@ def edge(*corners):
     return ZoneEdge(CountingZone("zone", corners))
 
 
-def shown(*ys, modes=None, watch=None):
+def shown(*ys, begin=0, watch=None):
     """Show a watch a point a second at x = 100; return it, and the directions it has returned."""
     watch = watch or ZoneWatch(edge(*SQUARE))
     found = []
-    for second, y in enumerate(ys):
+    for second, y in enumerate(ys, start=begin):
         at = FootPoint((100.0, y), second * 10**9, TrackMode.TRACKING, (30.0, 20.0))
         path = RecentPath()
         path.add(at)
@@ -87,7 +87,17 @@ def test_a_way_through_between_two_images_enters_and_leaves_on_the_outline():
 
 def test_a_gap_is_passed_in_the_way_of_the_line():
     before, _ = shown(0.0, 30.0)
-    after, _ = shown(100.0, 110.0)
+    after, _ = shown(100.0, 110.0, begin=5)
     ((direction, at),) = after.resume(before)
     assert (direction, at.mode) == ("entry", TrackMode.LOST)
     assert after.is_inside
+
+
+def test_a_way_back_out_in_the_gap_is_measured_across_the_nearest_side():
+    before, entered = shown(0.0, 90.0)
+    assert [direction for direction, _ in entered] == ["entry"]
+    after, _ = shown(20.0, 10.0, begin=5)
+    # It was 40 px inside and comes out 30 px beyond the side: more than its height of 20 px.
+    ((direction, at),) = after.resume(before)
+    assert (direction, at.point) == ("exit", (100.0, pytest.approx(50.0)))
+    assert not after.is_inside
