@@ -127,6 +127,8 @@ def test_files_hold_means_over_seeds(results, tmp_path):
     assert [row[0] for row in rows] == ["traffic", "sort"]
     assert rows[0][header.index("switches")] == "3"
     assert rows[1][header.index("ms")] == "1.0"
+    assert rows[1][header.index("never found")] == "4 of 4"  # the baseline tracks nothing
+    assert rows[1][header.index("false numbers")] == "0"
     assert "## few, good" in (tmp_path / "traffic.md").read_text()
     assert (tmp_path / "traffic.csv").read_text().count("\n") == 5
     document = json.loads((tmp_path / "traffic.json").read_text())

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.evaluation.traffic.baselines import TRAFFIC_BASELINES, TrafficWorker
 from vehicle_pf_tracker.evaluation.traffic.case_run import MOTION_SOURCE, Case, Maker, follow
+from vehicle_pf_tracker.evaluation.traffic.followed import false_numbers, never_found
 from vehicle_pf_tracker.evaluation.traffic.identities import kept_identities
 from vehicle_pf_tracker.evaluation.traffic.line_counts import LineCounts, held_and_width
 from vehicle_pf_tracker.evaluation.traffic.middle_line import middle_crossings
@@ -35,11 +36,12 @@ class TrafficResult:
     values : dict of str to float
         TrackEval's scores by name. ``kept``, percent of total occlusions with the same identity
         afterwards, and ``count_error``, percent of the true crossings of the middle line, where
-        there are any. ``held`` and ``width``, percent of the lines' intervals that hold the true
-        count, and their mean width. ``step_ms``, mean processor time per frame; without detection,
-        except for `MOTION_SOURCE`.
-    occlusions, true : int
-        Total occlusions that are judged, and true crossings.
+        there are any. ``never_found``, vehicles that no box fitted, and ``false_numbers``,
+        identities that were on none. ``held`` and ``width``, percent of the lines' intervals that
+        hold the true count, and their mean width. ``step_ms``, mean processor time per frame;
+        without detection, except for `MOTION_SOURCE`.
+    occlusions, true, vehicles : int
+        Total occlusions that are judged, true crossings, and vehicles that were in sight.
     runs : int
         Number of runs.
     """
@@ -51,6 +53,7 @@ class TrafficResult:
     values: dict[str, float]
     occlusions: int
     true: int
+    vehicles: int
     runs: int = 1
 
 
@@ -125,9 +128,12 @@ def judge(
     values = worker.score(sequence, tracks)
     kept, occlusions = kept_identities(sequence, tracks)
     counted, true = middle_crossings(sequence, tracks)
+    missed, vehicles = never_found(sequence, tracks)
     if occlusions:
         values["kept"] = 100 * kept / occlusions
     if true:
         values["count_error"] = 100 * (counted / true - 1)
+    values["never_found"] = missed
+    values["false_numbers"] = false_numbers(sequence, tracks)
     values["step_ms"] = 1e3 * seconds
-    return TrafficResult(sequence.name, source, system, seed, values, occlusions, true)
+    return TrafficResult(sequence.name, source, system, seed, values, occlusions, true, vehicles)

@@ -28,6 +28,8 @@ COLUMNS: Mapping[str, tuple[str, int]] = {
     "Frag": ("fragm.", 1),
     "kept": ("identity kept", 0),
     "count_error": ("count error", 1),
+    "never_found": ("never found", 1),
+    "false_numbers": ("false numbers", 1),
     "held": ("held", 0),
     "width": ("width", 1),
     "step_ms": ("ms", 1),
@@ -38,10 +40,11 @@ RULES = """\
 HOTA, DetA, AssA, IDF1 and MOTA (percent), identity switches and fragmentations are TrackEval's, at
 an overlap of a half where they need one; means over seeds. Totally hidden vehicles are not scored.
 *Identity kept*: share of total occlusions after which a vehicle has the identity it had before.
-*Count error*: crossings of a line through the middle of the image, against the true ones. *Held*:
-percent of the 90 % intervals at 16 lines that hold the true count, where anything crossed, and
-*width*, their mean width in vehicles. *ms* is processor time per frame: of `traffic` with its work
-on pixels, of the baselines for boxes alone.
+*Count error*: crossings of a line through the middle of the image, against the true ones. *Never
+found*: vehicles that no box fitted in any image. *False numbers*: those of whose boxes less than
+30 % fitted a vehicle. *Held*: percent of the 90 % intervals at 16 lines that hold the true count,
+where anything crossed, and *width*, their mean width in vehicles. *ms* is processor time per frame:
+of `traffic` with its work on pixels, of the baselines for boxes alone.
 "-low" are baselines with thresholds lowered by hand for CenterNet's scores.
 """
 
@@ -102,10 +105,11 @@ def write_traffic_report(
             *(line.values.get(name) for name in COLUMNS),
             line.occlusions,
             line.true,
+            line.vehicles,
         ]
         for line in lines
     ]
-    header = ["scene", "detections", "system", "runs", *COLUMNS, "occlusions", "true"]
+    header = ["scene", "detections", "system", "runs", *COLUMNS, "occlusions", "true", "vehicles"]
     write_text(folder / f"{NAME}.md", "\n".join(["# Many vehicles\n", RULES, *parts]))
     write_csv(folder / f"{NAME}.csv", header, rows)
     document = {
@@ -133,5 +137,6 @@ def _text(line: TrafficResult, name: str) -> str:
         return f"{value:.{decimals}f} % of {line.occlusions}"
     if name == "count_error":
         return f"{value:+.{decimals}f} % of {line.true}"
-    is_count = name in {"IDSW", "Frag"} and value == int(value)
-    return str(int(value)) if is_count else f"{value:.{decimals}f}"
+    is_count = name in {"IDSW", "Frag", "never_found", "false_numbers"} and value == int(value)
+    text = str(int(value)) if is_count else f"{value:.{decimals}f}"
+    return f"{text} of {line.vehicles}" if name == "never_found" else text
