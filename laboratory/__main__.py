@@ -24,6 +24,7 @@ PROGRAM = "python -m laboratory"
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line `argv`, that of the process if None, and return the exit status."""
+    # Kept as words: reports state the command that made them.
     words = sys.argv[1:] if argv is None else list(argv)
     return exit_status(lambda: _run(words), PROGRAM)
 

@@ -48,6 +48,7 @@ class Runs:
 
     def __init__(self, paths: list[Path]) -> None:
         tables = [_read(path) for path in paths]
+        # The first frame of each run is the truth that it starts on: no error to judge.
         self._values = np.concatenate([table[1:] for table in tables])
         self.hidden_for = np.concatenate([_hidden_for(table)[1:] for table in tables])
         self.change = np.concatenate([_change(table)[1:] for table in tables])
@@ -68,11 +69,14 @@ class Runs:
 
     def squares(self, spread: Spread) -> tuple[Array, Array]:
         """Return squared Mahalanobis distances of the errors, and determinants, px⁴."""
+        # Independent parts of the error add as variances: the box's size times a share, what the
+        # tracker doubts, how the size has changed since the start, and the time since TRACKING.
         doubt = spread.doubt * (1 - self["confidence"])
         level = self["width"] * self["height"]
         grown = spread.growth * self.hidden_for
         changed = spread.change * self.change
         level = level * (spread.size**2 + doubt**2 + changed**2 + grown**2)
+        # Along the predicted way: an error of the speed grows with the distance covered.
         way = spread.drift * self.hidden_for / self["period"]
         vx = way * self["vx"]
         vy = way * self["vy"]
@@ -82,6 +86,7 @@ class Runs:
         x, y = self["error_x"], self["error_y"]
         # A cloud of one point, as mean shift has, and a size that the search takes to nothing.
         area = np.maximum(xx * yy - xy * xy, 1e-12)
+        # d² = e' S^-1 e, with the inverse of two by two written out for all frames at once.
         return (yy * x * x - 2 * xy * x * y + xx * y * y) / area, area
 
     def calibrated(self, calibration: Calibration) -> tuple[Array, Array]:
@@ -105,6 +110,7 @@ def _hidden_for(table: Array) -> Array:
     """Return the time since the last claim of TRACKING, s."""
     stamps = table[:, 0]
     visible = table[:, COVERAGE_COLUMNS.index("mode")] == 0
+    # The stamp of the last visible frame so far, carried on through the hidden ones.
     seen = np.maximum.accumulate(np.where(visible, stamps, stamps[0]))
     since: Array = stamps - seen
     return since
@@ -113,6 +119,7 @@ def _hidden_for(table: Array) -> Array:
 def _change(table: Array) -> Array:
     """Return the logarithm of the side, in those of the first box."""
     area = table[:, COVERAGE_COLUMNS.index("width")] * table[:, COVERAGE_COLUMNS.index("height")]
+    # Half the logarithm of the area is that of its side.
     change: Array = np.log(area / area[0]) / 2
     return change
 
@@ -141,17 +148,20 @@ def fit(runs: Runs) -> Calibration:
 def _fit(runs: Runs, used: npt.NDArray[np.bool_]) -> Spread:
     def cost(logarithms: Array) -> float:
         squares, areas = runs.squares(Spread(*np.exp(logarithms).tolist()))
+        # Student's distribution in two dimensions: log det / 2 + (nu + 2) / 2 log(1 + d² / nu).
         tail = (_TAIL + 2) / 2 * np.log1p(squares[used] / _TAIL)
         likelihood = float(np.mean(np.log(areas[used]) / 2 + tail))
         return likelihood + _PULL * float(logarithms @ logarithms)
 
     options = {"maxiter": 4000, "xatol": 1e-3, "fatol": 1e-7}
+    # From two starts, as the search may end in a valley of its own; the better one counts.
     found = min(
         (minimize(cost, np.log(first), method="Nelder-Mead", options=options) for first in _FIRST),
         key=lambda result: float(result.fun),
     )
     numbers = np.exp(found.x)
     squares, _ = runs.squares(Spread(*numbers.tolist()))
+    # The tail is not normal: a factor makes the share that the ellipse is published for right.
     factor = np.sqrt(np.quantile(squares[used], 0.95) / INSIDE_95)
     if not runs.hidden_for[used].any():  # visible: nothing grows
         numbers[4:] = 0
@@ -214,6 +224,7 @@ def _coverage_row(
 ) -> tuple[str, ...]:
     squares, areas = runs.calibrated(calibrations[name])
     inside = squares <= INSIDE_95
+    # Radius of the circle as large as the 95 % ellipse, in sides of the box.
     radius = np.sqrt(INSIDE_95 * np.sqrt(areas) / (runs["width"] * runs["height"]))
     everything = np.ones(len(inside), bool)
     groups = (everything, runs.is_visible, ~runs.is_visible, runs.is_occluded)

@@ -59,6 +59,7 @@ def _draw_levels(axes: Axes, runs: Mapping[str, Runs]) -> None:
         style |= {"color": _SHOWN[name], "label": name, "lw": 2} if name in _SHOWN else {}
         axes.plot(_LEVELS, shares, **style)
     axes.plot([0, 1], [0, 1], "k:", lw=1)
+    # A band from 90 to 99 % of the frames around the published level of 95 %.
     axes.fill_between([0.94, 0.96], 0.9, 0.99, color="tab:green", alpha=0.4, lw=0)
     axes.set(
         xlabel="level of the ellipse",
@@ -78,6 +79,7 @@ def _draw_drive(axes: Axes, paths: Mapping[str, list[Path]]) -> None:
             continue
         run = Runs(files[:1])
         _, areas = run.calibrated(CALIBRATIONS[name])
+        # The first frame is left out of a run.
         frames = np.arange(2, len(areas) + 2)
         radius = np.sqrt(INSIDE_95 * np.sqrt(areas))
         axes.fill_between(
@@ -90,6 +92,7 @@ def _draw_drive(axes: Axes, paths: Mapping[str, list[Path]]) -> None:
             label=f"{name}: radius of the 95 % ellipse",
         )
         error = np.hypot(run["error_x"], run["error_y"])
+        # On a logarithmic axis, which has no 0.
         axes.plot(frames, np.maximum(error, 0.05), color=colour, label=f"{name}: error")
         hidden = frames[run.is_occluded]
     axes.axvspan(hidden[0], hidden[-1], color="0.9", zorder=0, label="out of sight")

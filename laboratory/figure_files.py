@@ -26,6 +26,7 @@ def save(figure: Figure, path: Path) -> None:
     InputError
         If it cannot be written.
     """
+    # Only SVG files state a date.
     metadata = {"Date": None} if path.suffix == ".svg" else {}
     with replacing(path) as partial, rc_context({"svg.hashsalt": "vehicle_pf_tracker"}):
         figure.savefig(partial, dpi=_DPI, metadata=metadata)

@@ -69,6 +69,7 @@ def row(name: str, results: Sequence[Result]) -> list[str]:
         f"{statistics.fmean(s.mean_iou or 0.0 for s in scores):.3f}", f"{recovered} of {judged}",
     ]  # fmt: skip
     for measure in MEASURES:
+        # Paired by case: what makes a case hard is in both.
         found = difference(results, name, DEFAULT, measure) if name != DEFAULT else None
         cells.append(_interval(found) if found else "–")
     return cells
@@ -92,6 +93,7 @@ def main() -> int:
     parser = make_parser(__doc__)
     parser.add_argument("--changes", nargs="+", default=list(CHANGES), choices=list(CHANGES))
     options = parsed(parser)
+    # The default always runs: everything is compared with it.
     names = dict.fromkeys([DEFAULT, *options.changes])
     systems = [variant_system("fusion", CHANGES[name], name) for name in names]
     results = run_battery(

@@ -99,9 +99,11 @@ class Run:
         true = boxes[self.identity].get(frame)
         box = estimate.box
         assert box is not None
+        # 1. While it is there: on target as everywhere, within half the diagonal.
         if frame <= self.last and true is not None:
             off = np.subtract(box.centre, true.centre)
             self.seen.append(bool(np.hypot(*off) < np.hypot(true.width, true.height) / 2))
+        # 2. Long enough after it has left: any claim of TRACKING is wrong.
         elif frame > self.judged_from:
             self.claims.append(tracking)
             others = (own.get(frame) for own in boxes.values())
@@ -114,6 +116,7 @@ def filmed(path: Path, model: str, output: Path) -> Clip:
     """Read a clip, and let `traffic` say where vehicles are, or read what it said before."""
     footage = open_footage(path)
     folder = output / path.stem
+    # Read again where it is there: following a clip with a network takes minutes.
     if not (folder / TRACKS_FILE).exists():
         status = run_command(["traffic", str(path), "--model", model, "-o", str(folder)])
         if status:
@@ -126,6 +129,7 @@ def filmed(path: Path, model: str, output: Path) -> Clip:
             if math.isnan(score):  # predicted
                 continue
             identity = int(row["id"])
+            # Rows count from 1, frames from 0.
             frame = int(row["frame"]) - 1
             x, y, width, height = (float(row[name]) for name in ("x", "y", "width", "height"))
             boxes[identity][frame] = Box.around((x, y), width, height)
@@ -138,6 +142,7 @@ def look_alikes(frames: int = 600) -> Clip:
     """Make a road with cars of one kind and paint, of which some twenty drive each way."""
     rng = np.random.default_rng(0)
     actors = []
+    # Two lanes, one each way, at 4 px a frame, so that some twenty pass each way.
     for lane in (
         Lane(100.0, PX_PER_METRE, rightward=True),
         Lane(175.0, PX_PER_METRE, rightward=False),
@@ -145,12 +150,14 @@ def look_alikes(frames: int = 600) -> Clip:
         actors += convoy(
             lane, 4.0, frames, WIDTH, rng, (60, 160), (lambda _: saloon(CAR_PAINTS[4]),)
         )
+    # The camera and the road of any scene will do: its vehicles are replaced.
     scene = make_traffic_scene("traffic-pair", settings={"frames": frames})
     scene = replace(scene, vehicles=tuple(zip(actors[::2], actors[1::2], strict=True)))
     boxes: Boxes = defaultdict(dict)
     for frame in range(frames):
         for one in scene.truth(frame):
             boxes[one.identity][frame] = one.box
+    # Every true box is sure.
     return Clip("look-alikes", scene.images, boxes, {one: set(own) for one, own in boxes.items()})
 
 
@@ -162,11 +169,13 @@ def leaving(
     for identity, own in boxes.items():
         last = max(own)
         starts = [
+            # A start on a box that is cut or shared would teach the tracker another vehicle.
             frame for frame in sorted(sure[identity])
             if is_free(identity, frame, boxes) and not is_at_border(own[frame], size)
         ]  # fmt: skip
         if not starts or last - starts[0] < FEWEST or last + GRACE + FEWEST > frames:
             continue
+        # Judged by its motion: a vehicle that stops at the border has not left.
         before = own[min(frame for frame in own if frame >= last - GRACE)]
         out = 2 * np.array(own[last].centre) - before.centre  # where it is as much later
         outside = ((out < 0) | (out > size)).any()
@@ -193,6 +202,7 @@ def is_at_border(box: Box, size: tuple[int, int]) -> bool:
 
 def followed(clip: Clip, seeds: int) -> list[Run]:
     """Follow vehicles of a clip that leave it, side by side."""
+    # Decoded twice: the number of frames is known only at the end.
     sizes = [frame_size(frame) for frame in clip.frames() if frame is not None]
     chosen = leaving(clip.boxes, clip.sure, sizes[0], len(sizes))
     runs = [replace(run, seed=seed) for run in chosen for seed in range(seeds)]
@@ -200,6 +210,7 @@ def followed(clip: Clip, seeds: int) -> list[Run]:
     for number, frame in enumerate(clip.frames()):
         if frame is None:
             continue
+        # Side by side, so that each image is decoded once for all of them.
         for run in runs:
             if number == run.first:
                 trackers[run] = variant_system("fusion").make(run.seed)

@@ -60,12 +60,15 @@ def draw_settings(budget: int, seed: int) -> list[Setting]:
     """Draw settings around the defaults, which are the first."""
     rng = np.random.default_rng(seed)
     table = tuned_parameters()
+    # The defaults take part as one of the settings.
     settings: list[Setting] = [{name: float(spec.default) for name, spec in table.items()}]
     for _ in range(budget - 1):
+        # Factors: parameters are rates and scales, of which half and double are equally far.
         factors = np.exp(SPREAD * rng.normal(size=len(table)))
         drawn = {}
         for (name, spec), factor in zip(table.items(), factors, strict=True):
             assert isinstance(spec.tuned, tuple)
+            # The table's range holds for the fit, too.
             drawn[name] = float(np.clip(float(spec.default) * factor, *spec.tuned))
         settings.append(drawn)
     return settings
@@ -78,6 +81,7 @@ def objective(score: Score) -> float:
     """
     value = (score.on_target or 0.0) + (score.mean_iou or 0.0)
     value -= (score.doubted or 0.0) + (score.claimed_hidden or 0.0)
+    # Without a judged occlusion the share is full: cases without one differ by the rest alone.
     return value + (score.recovered / score.judged if score.judged else 1.0)
 
 
@@ -90,11 +94,13 @@ def fitted(
         for scores in by_camera
     ]
     order = sorted(range(len(settings)), key=lambda index: -means[index])
+    # One setting at least, also of a small budget.
     best = [settings[index] for index in order[: max(len(settings) // ELITE, 1)]]
     return {name: _geometric_mean([one[name] for one in best]) for name in settings[0]}
 
 
 def _geometric_mean(values: Sequence[float]) -> float:
+    # A 0 has no logarithm.
     if min(values) <= 0:
         return statistics.fmean(values)
     return float(f"{math.exp(statistics.fmean(map(math.log, values))):.3g}")
@@ -107,6 +113,7 @@ def camera_means(results: Sequence[Result]) -> dict[str, float]:
     for camera in cameras:
         own = [result for result in results if result.case.camera == camera]
         kinds = dict.fromkeys(result.case.kind for result in own)
+        # Kinds weigh alike, however many cases of each a sequence gives.
         means[camera] = statistics.fmean(
             statistics.fmean(objective(r.score) for r in own if r.case.kind == kind)
             for kind in kinds
@@ -122,6 +129,7 @@ def listed_cases(
     options: argparse.Namespace, name: str, kinds: Sequence[str], **limits: int
 ) -> list[Case]:
     """List cases, or read those of a run before: listing takes a minute."""
+    # Named by the caller: another selection needs another name or another folder.
     path = options.output / f"{name}.pickle"
     if not path.exists():
         sources = find_sequences(options.sequences, options.cameras)
@@ -146,6 +154,7 @@ def fit(options: argparse.Namespace) -> dict[str, Setting]:
         camera_means([result for result in results if result.system == system.label])
         for system in systems
     ]
+    # The key "" is no camera: the fit by all of them.
     chosen = {"": fitted(settings, by_camera)}
     for camera in by_camera[0]:
         chosen[camera] = fitted(settings, by_camera, camera)
@@ -171,9 +180,11 @@ def judge(options: argparse.Namespace, chosen: Mapping[str, Setting]) -> list[Re
     """Run the settings that were fitted without a camera on that camera."""
     results: list[Result] = []
     plain = listed_cases(options, "plain_cases", ("plain",))
+    # The plain kind is listed whole, the hard ones a few of each sequence.
     hard = listed_cases(options, "judged_cases", JUDGED_KINDS[1:], per_sequence=options.hard)
     for cases, seeds in ((plain, range(options.seeds)), (hard, range(1))):
         for camera, setting in chosen.items():
+            # Each camera by the setting that was fitted without it.
             own = [case for case in cases if camera and case.camera == camera]
             if own:
                 results += run_battery(

@@ -39,6 +39,7 @@ def shipped_results(options: argparse.Namespace) -> list[Result]:
     plain = listed_cases(options, "plain_cases", ("plain",))
     hard = listed_cases(options, "judged_cases", JUDGED_KINDS[1:], per_sequence=options.hard)
     results: list[Result] = []
+    # Seeds on the plain sequences only: of the hard cases there are many.
     for cases, seeds in ((plain, range(options.seeds)), (hard, range(1))):
         results += run_battery(
             cases,
@@ -62,6 +63,7 @@ def reliability_table(results: Sequence[Result]) -> str:
     for kind in ("", *JUDGED_KINDS):
         own = [result for result in results if not kind or result.case.kind == kind]
         rows.append(_row(kind or "all", own))
+    # Without the worst sequence: one that is lost with confidence outweighs all others.
     worst = max(
         dict.fromkeys(result.case.sequence for result in results),
         key=lambda name: (
@@ -88,6 +90,7 @@ def reliability_figure(results: Sequence[Result]) -> Figure:
         "sequences": [result for result in results if result.case.kind == "plain"],
         "shifted boxes, painted occluders": [r for r in results if r.case.kind != "plain"],
     }
+    # Two lines apart, as painted occluders are harder than what is filmed.
     for (name, part), style in zip(parts.items(), LINE_STYLES, strict=False):
         points = pooled(part).diagram()
         confidence = [point["confidence"] for point in points]

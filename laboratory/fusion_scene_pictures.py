@@ -96,6 +96,7 @@ def draw_pictures(folder: Path, pictures: Sequence[Picture]) -> None:
     make_folder(folder)
     for picture in pictures:
         frames = list(make_scene(picture.scene, seed=picture.seed).frames())
+        # Tracked from the first frame: the shown ones are late in the run.
         figure = _figure(picture, frames, track(frames, picture.seed))
         with replacing(folder / f"{picture.name}.webp") as partial:
             figure.savefig(partial, dpi=_DPI, pil_kwargs={"quality": _QUALITY})
@@ -121,12 +122,14 @@ def _draw(axes: Axes, made: SceneFrame, row: EstimateRow) -> None:
     left, top = _corner(made, _box(row))
     right = left + _VIEW[0]
     bottom = top + _VIEW[1]
+    # Cut before it is drawn: matplotlib would resample the whole frame.
     part = np.ascontiguousarray(made.frame[top:bottom, left:right])
     axes.imshow(part, extent=(left, right, bottom, top), interpolation="bicubic")
     axes.set(xlim=(left, right), ylim=(bottom, top), xticks=[], yticks=[])
     _draw_corners(axes, made.truth.box)
     colour, line = _LINES[row.mode]
     box = _box(row)
+    # A dark, wider line under the coloured one keeps it visible on any ground.
     for each, width, style in (("black", 3.2, "-"), (colour, 1.8, line)):
         axes.add_patch(
             Rectangle(
@@ -151,6 +154,7 @@ def _draw(axes: Axes, made: SceneFrame, row: EstimateRow) -> None:
 
 def _corner(made: SceneFrame, box: Box) -> tuple[int, int]:
     """Return the top left corner of the view between the true and the estimated box."""
+    # Halfway, so that both are in view where they are apart.
     middle = (np.array(made.truth.box.centre) + box.centre) / 2
     last = np.array(frame_size(made.frame)) - _VIEW
     x, y = np.clip(np.rint(middle - np.array(_VIEW) / 2), 0, last).astype(int).tolist()

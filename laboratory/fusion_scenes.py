@@ -69,6 +69,7 @@ def score_scene(name: str, seed: int) -> Score:
     InputError
         If there is no such scene.
     """
+    # Kept in memory: tracker and scores both need them.
     frames = list(make_scene(name, seed=seed).frames())
     return score_estimates([each.truth for each in frames], track(frames, seed))
 
@@ -82,6 +83,7 @@ def track(frames: Sequence[SceneFrame], seed: int) -> list[EstimateRow]:
 
 
 def _row(name: str, scores: Sequence[Score]) -> list[str]:
+    # Scenes without a total occlusion have nothing to recover from.
     judged = [score for score in scores if score.judged]
     return [
         name,
@@ -102,6 +104,7 @@ def _spread(
     known = [value for value in values if value is not None]
     if not known:
         return NO_SCORE
+    # Compared as shown: a range of equal numbers says nothing.
     text, low, high = (f"{one:.2f}" for one in (middle(known), min(known), max(known)))
     return text if low == high else f"{text} ({low}-{high})"
 

@@ -82,11 +82,13 @@ def main() -> int:
     """Run what is missing, and print the table."""
     options = parsed(make_parser(__doc__, *NUMBERS))
     folder = options.sequences[0].resolve()
+    # Fitted on all, shown on the first folder alone, whose sequences the baselines were run on.
     cases = [
         case
         for case in listed_cases(options, "plain_cases", ("plain",))
         if folder in Path(case.origin.source.path).resolve().parents
     ]
+    # Fewer seeds for the fits; see `FITTED_SEEDS`.
     few = argparse.Namespace(**vars(options) | {"seeds": min(options.seeds, FITTED_SEEDS)})
     rows = {FITTED: of_results(judge(few, fit(few)), cases)}
     results = run_battery(
@@ -98,6 +100,7 @@ def main() -> int:
         rows[shown] = of_results((result for result in results if result.system == name), cases)
     for name, own in of_baselines(folder / "baselines.csv").items():
         rows[BASELINES[name]] = own
+    # Best last, and then turned round: the table begins with the best.
     table = sorted((cells(name, own) for name, own in rows.items() if own), key=_on_target)
     text = markdown(HEAD, table[::-1])
     write_text(options.output / "readme.md", text)

@@ -54,6 +54,7 @@ class ResultStore:
         with output_errors(self._path), self._path.open("a", encoding="utf-8") as file:
             file.write(line + "\n")
             file.flush()
+            # On the disk before the next run begins: a power failure costs one result.
             os.fsync(file.fileno())
         # As read back, so that a result is the same whether it was made now or before.
         self._results[key] = json.loads(line)["result"]
@@ -62,10 +63,12 @@ class ResultStore:
 def _read(path: Path) -> Iterator[tuple[str, Result]]:
     if not path.exists():
         return
+    # What follows the last newline was being written when the run was killed.
     whole, newline, unfinished = path.read_bytes().rpartition(b"\n")
     if unfinished:
         os.truncate(path, len(whole) + len(newline))
     for line in whole.splitlines():
+        # A line that is damaged is computed again.
         with contextlib.suppress(ValueError, KeyError, TypeError, RecursionError):
             entry = json.loads(line)
             yield entry["key"], entry["result"]

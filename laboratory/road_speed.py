@@ -73,6 +73,7 @@ def main() -> int:
     parser.add_argument("--variant", default="fusion")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE.md")
     args = parser.parse_args()
+    # One thread: steps are alike on every machine, whatever its cores.
     cv2.setNumThreads(1)
     try:
         seeds = range(args.first_seed, args.first_seed + args.seeds)
@@ -108,6 +109,7 @@ def settings_of(speed: float, number: int) -> RoadSceneParameters:
 
     There are twelve combinations, and five from seed to seed leave none of them out at any speed.
     """
+    # Periods of 2, 3, 4 and 6 in the number, so that all combinations come up.
     return RoadSceneParameters(
         speed=speed,
         vehicle=("car", "saloon", "suv")[number % 3],
@@ -119,6 +121,7 @@ def settings_of(speed: float, number: int) -> RoadSceneParameters:
 
 def judge(variant: str, settings: RoadSceneParameters, seed: int) -> dict[str, list[Judged]]:
     """Track one scene with each way to give the road; returns the judged frames by that."""
+    # Both roads see the same estimates: what they differ by is the road's error alone.
     roads = roads_of(camera_of(settings, seed), seed)
     places = {source: Localisation(variant, one) for source, one in roads.items()}
     session: Session | None = None
@@ -131,6 +134,7 @@ def judge(variant: str, settings: RoadSceneParameters, seed: int) -> dict[str, l
         assert estimate is not None
         for source, place in places.items():
             place.follow(estimate, each.truth.stamp_ns, session.tracker.frame_period)
+            # A speed needs some frames: at the start there is only one position.
             if place.road is not None and each.truth.stamp_ns - start >= SETTLED * 1e9:
                 found = place.road
                 judged[source].append(Judged(settings.speed, found.speed, found.speed_deviation))
@@ -152,6 +156,7 @@ def roads_of(camera: RoadCamera, seed: int) -> Mapping[str, RoadParameters]:
         "distortion_model": lens.model,
         "distortion": ",".join(map(repr, lens.coefficients)),
     }
+    # Where the points are in the image, and where a person would click.
     pixels = camera.plane.to_image(np.array(PLACES))
     read = pixels + np.random.default_rng(seed).normal(scale=READING, size=pixels.shape)
     pairs = tuple(Pair((u, v), place) for (u, v), place in zip(read.tolist(), PLACES, strict=True))
@@ -184,6 +189,7 @@ def _row(speed: str, source: str, judged: Sequence[Judged]) -> list[str]:
         return [speed, source, "0", *[NO_SCORE] * 4]
     errors = [one.error for one in judged]
     sizes = [abs(error) for error in errors]
+    # Two standard deviations should hold 95 %.
     within = [abs(one.speed - one.true) <= 2 * one.deviation for one in judged]
     return [
         speed,

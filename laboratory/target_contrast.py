@@ -35,11 +35,13 @@ def measured(folder: Path) -> tuple[list[float], list[float]]:
         if index % EVERY or not isinstance(picture, Picture):
             continue
         truth = picture.truth
+        # A hidden vehicle's box shows something else.
         if truth is None or truth.occlusion is Occlusion.TOTAL:
             continue
         box = truth.box
         width, height = frame_size(picture.frame)
         true.append(contrast(picture.frame, box))
+        # Below the upper two fifths, where sky and houses often are.
         top = min(0.4 * height, height - box.height)
         for _ in range(THROWN):
             x, y = rng.uniform(0, width - box.width), rng.uniform(top, height - box.height)

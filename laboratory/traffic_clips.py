@@ -76,6 +76,7 @@ def follow(clip: Path, parameters: TrafficParameters) -> list[np.ndarray]:
         read, image = video.read()
         if not read:
             return found
+        # Frames before the run's start: no tracks, so that indices stay those of the clip.
         if len(found) < parameters.seed:
             found.append(np.empty((0, 5)))
             continue
@@ -90,6 +91,7 @@ def follow(clip: Path, parameters: TrafficParameters) -> list[np.ndarray]:
                 estimate.box.height,
             )
             for estimate in estimates
+            # Lost and tentative ones are no claim about where the vehicle is.
             if estimate.mode in {TrackMode.TRACKING, TrackMode.OCCLUDED}
         ]
         found.append(np.array(rows, dtype=float).reshape(-1, 5))
@@ -99,6 +101,7 @@ def read_truth(path: Path, first: int) -> list[Row]:
     """Read the truth of a frame folder; its row of frame 1 is the clip's frame `first`."""
     with path.open(newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["w"]]
+    # The deepest occlusion that the truth has: total ones, or partial ones where none is total.
     deepest = max(int(row["occ"]) for row in rows)
     return [
         Row(
@@ -126,9 +129,11 @@ def report(path: Path, seed: int, truth: list[Row], tracks: list[np.ndarray]) ->
     under = {row.frame: identity(row, tracks) for row in truth if not row.hidden}
     followed = sum(one is not None for one in under.values()) / len(under)
     identities = len({one for one in under.values() if one is not None})
+    # Three spells in a row: visible, hidden, visible again.
     for before, hidden, after in zip(spells, spells[1:], spells[2:], strict=False):
         if before[0].hidden:
             continue
+        # The last identity before, and the commonest soon after: single frames may have another.
         known = [one for row in before if (one := under[row.frame]) is not None]
         then = Counter(one for row in after[:WINDOW] if (one := under[row.frame]) is not None)
         first = known[-1] if known else None

@@ -157,18 +157,21 @@ def scores_of(
     shipped = decision.get()
     without = () if decision.without is None else (decision.without,)
     found: dict[float, dict[str, float]] = {}
+    # Shipped first: `row` takes the first value for it.
     for value in dict.fromkeys((shipped, *decision.values, *without)):
         cameras: dict[str, list[float]] = {}
         for clip in clips:
             # All decisions share the run in which all are as shipped.
             name = "shipped" if value == shipped else f"{decision.place}={value:g}"
             key = f"{name} {clip.sequence.folder.resolve()} {clip.boxes}"
+            # Scored once for all decisions, and kept as soon as it is there.
             if key not in store:
                 with decision.at(value):
                     tracks, _, _ = follow((clip.sequence, clip.boxes), TrafficParameters())
                 scores = worker.score(clip.sequence, tracks)
                 store.add(key, key, {"HOTA": scores["HOTA"], "IDF1": scores["IDF1"]})
             result = store[key]
+            # HOTA weighs detection and association alike, IDF1 how long identities are kept.
             cameras.setdefault(clip.camera, []).append((result["HOTA"] + result["IDF1"]) / 2)
         found[value] = {camera: statistics.fmean(each) for camera, each in cameras.items()}
     return found
@@ -182,6 +185,7 @@ cameras, *left out* the mean of what each scores on the camera that it has not s
 def row(decision: Decision, scores: Mapping[float, Mapping[str, float]]) -> list[str]:
     """Summarise one decision."""
     shipped = next(iter(scores))
+    # Without the decision is no candidate: it shows what the decision is worth.
     candidates = [value for value in scores if value != decision.without or value == shipped]
     cameras = list(scores[shipped])
     chosen = {camera: best_for_others(scores, candidates, camera) for camera in cameras}
@@ -200,6 +204,7 @@ def best_for_others(
     """Return the value with the best mean over all other cameras; the first of equal ones."""
 
     def others(value: float) -> float:
+        # With a single camera nothing is left to decide by: the shipped value, which is first.
         each = [score for name, score in scores[value].items() if name != camera]
         return statistics.fmean(each) if each else 0.0
 

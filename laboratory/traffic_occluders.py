@@ -48,10 +48,12 @@ def judged(sequence: TrafficSequence, source: str) -> Counter[str]:
     names: dict[int, int] = {}
     counts: Counter[str] = Counter()
     for number, frame in enumerate(sequence.frames(), start=1):
+        # The boxes of this frame, as a detector would publish them.
         now = given[given[:, 0] == number]
         stamp_ns = round(number * 1e9 / sequence.frame_rate)
         estimates = session.feed(frame, stamp_ns, Detections.make(now[:, 1:5], now[:, 5]))
         rows = sequence.truth[:, 0] == number
+        # Tracks get their vehicle's name while it is visible; hidden ones keep the last.
         _name(names, sequence.truth[rows & ~sequence.hidden], estimates)
         by_vehicle = {
             names[estimate.identity]: estimate
@@ -84,8 +86,10 @@ def _name(names: dict[int, int], seen: Array, estimates: tuple[TrackEstimate, ..
 
 
 def _verdict(one: TrackEstimate, true: str, names: dict[int, int]) -> str:
+    # The tracker must know that it is hidden before it can say by whom.
     if one.mode not in {TrackMode.OCCLUDED, TrackMode.LOST}:
         return "seen"
+    # The name of the true vehicle, as tracks have numbers of their own.
     claimed = (
         SCENE_OCCLUDER
         if one.hidden_by == SCENE_OCCLUDER

@@ -35,11 +35,13 @@ enough, and a clip of 820 frames has four gaps."""
 
 
 def _dropped(rows: Array) -> Array:
+    # By its own generator: every detector and scene loses rows of the same numbers.
     kept: Array = rows[np.random.default_rng(_SEED).uniform(size=len(rows)) >= DROPPED]
     return kept
 
 
 def _with_gaps(length: int, rows: Array) -> Array:
+    # Nothing is missing before the first gap.
     late = rows[:, 0] - _FIRST
     kept: Array = rows[(late < 0) | (late % _PERIOD >= length)]
     return kept
@@ -50,6 +52,7 @@ PERTURBATIONS: Mapping[str, Callable[[Array], Array]] = MappingProxyType(
         "dropped": _dropped,
         "gap20": partial(_with_gaps, 20),
         "gap40": partial(_with_gaps, 40),
+        # Other scores in the same order: what a threshold that is fixed makes of them.
         "squared": lambda rows: np.column_stack([rows[:, :5], rows[:, 5] ** 2]),
         "halved": lambda rows: np.column_stack([rows[:, :5], rows[:, 5] / 2]),
     }

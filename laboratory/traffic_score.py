@@ -33,6 +33,7 @@ def main() -> None:
         print("|---|---|" + "---:|" * len(COLUMNS))
         for folder in folders:
             sequence = read_sequence(folder)
+            # Each file against each folder: the names of files say nothing about scenes.
             for path in args.paths:
                 if path.is_file():
                     row(sequence.name, str(path), worker.score(sequence, read_table(path, 6)))

@@ -47,6 +47,7 @@ class Run:
 
 def shortened(sequence: TrafficSequence, first: int, last: int) -> TrafficSequence:
     """Leave out the truth before frame `first`, and all after `last`."""
+    # Hidden vehicles are a mask over the rows of the truth, and are cut with them.
     inside = (sequence.truth[:, 0] >= first) & (sequence.truth[:, 0] <= last)
     return replace(
         sequence,
@@ -66,8 +67,10 @@ def follow(sequence: TrafficSequence, source: str, number: int) -> Array:
     )
     rows = []
     for frame, image in enumerate(sequence.frames(), start=1):
+        # A later start is a change that ought to change nothing.
         if frame <= number:
             continue
+        # With motion the session detects by itself; else it gets the rows of this frame.
         given = None
         if source != MOTION_SOURCE:
             boxes = sequence.detections[source]
@@ -85,6 +88,7 @@ def follow(sequence: TrafficSequence, source: str, number: int) -> Array:
 def judged(worker: TrafficWorker, sequence: TrafficSequence, source: str, number: int) -> Run:
     """Follow all vehicles in run `number`, and score it."""
     tracks = follow(sequence, source, number)
+    # The truth from the run's own start: frames that it has not seen are no misses.
     seen = shortened(sequence, number + 1, sequence.frame_count)
     scores = worker.score(seen, tracks)
     kept, occlusions = kept_identities(seen, tracks)
@@ -102,6 +106,7 @@ def summary(runs: Sequence[Run]) -> str:
     """Return the cells of a table: means, and in brackets the standard deviations."""
 
     def cell(values: Sequence[float]) -> str:
+        # One run without occlusions is as good as all: they have the same scene.
         if np.isnan(values).any():
             return "–"
         spread = f" ({statistics.stdev(values):.1f})" if len(values) > 1 else ""

@@ -91,12 +91,14 @@ def _run(args: argparse.Namespace) -> None:
     args.folder.mkdir(parents=True, exist_ok=True)
     for seed in range(args.first_seed, args.first_seed + args.seeds):
         for name, addition, settings in _scenes(args.scenes):
+            # Asked before the scene is made: one that no run needs is not rendered.
             left = [
                 (VARIANTS[one], args.folder / f"{one}.{name}{addition}.{seed}.npy")
                 for one in args.variants
                 if not (args.folder / f"{one}.{name}{addition}.{seed}.npy").exists()
             ]
             if left:
+                # Once for all variants, which so see the very same images.
                 frames = list(make_scene(name, seed=seed, settings=settings).frames())
                 for variant, path in left:
                     np.save(path, np.array(list(rows_of(variant, frames, seed))))
@@ -107,6 +109,7 @@ def _scenes(names: Sequence[str]) -> Iterator[tuple[str, str, dict[str, object]]
     for name in names:
         known = specs(LABORATORY_SCENES[name].parameters)
         for addition, settings in CAMERAS.items():
+            # A scene that does not know a setting has no such view.
             if not settings or all(
                 key in known and value in known[key].choices for key, value in settings.items()
             ):
@@ -114,7 +117,7 @@ def _scenes(names: Sequence[str]) -> Iterator[tuple[str, str, dict[str, object]]
 
 
 def rows_of(variant: Variant, frames: Sequence[SceneFrame], seed: int) -> Iterator[Any]:
-    """Track a scene, and give for each frame the numbers named in `coverage.COVERAGE_COLUMNS`."""
+    """Track a scene, and give for each frame the numbers of `COVERAGE_COLUMNS`."""
     box = frames[0].truth.box
     target = TargetParameters(box.x, box.y, box.width, box.height)
     session = Session(
@@ -124,6 +127,7 @@ def rows_of(variant: Variant, frames: Sequence[SceneFrame], seed: int) -> Iterat
     )
     for each in frames:
         estimate = session.feed(each.frame, each.truth.stamp_ns)
+        # A target was given, and so there is an estimate from the first frame on.
         assert estimate is not None
         yield _row(estimate, each, session.tracker.frame_period)
 
@@ -132,6 +136,7 @@ def _row(estimate: Estimate, each: SceneFrame, period: float) -> tuple[float, ..
     truth = each.truth
     x, y = estimate.position
     true_x, true_y = truth.box.centre
+    # Symmetric: the element below the diagonal is left out.
     (xx, xy), (_, yy) = cloud_covariance(estimate)
     return (
         truth.stamp_ns * 1e-9,

@@ -32,7 +32,9 @@ TOY_FOLDER = Path("results/bench_toy")
 def main() -> int:
     """Run the benchmarks; 1 where something that they need is missing."""
     args = _arguments()
+    # One thread: with more, OpenCV's share of the cores would decide a ratio.
     cv2.setNumThreads(1)
+    # A domain of its own: nodes of another run on this machine are not heard.
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
     effort = TOY if args.toy else QUICK if args.quick else FULL
@@ -47,6 +49,7 @@ def main() -> int:
     except InputError as error:
         print(f"bench: {error}", file=sys.stderr)
         return 1
+    # The results before the page, which may fail and is made again from them.
     results.save(args.output)
     performance_page.write_targets(results, args.output.parent)
     print(f"wrote {args.output}")
@@ -70,6 +73,7 @@ def _measure(
     of_steps, results.on_target = steps.measure(wanted, effort, args.baselines)
     results.cases += _told(of_steps)
     results.cases += _told(costs.measure(wanted, effort))
+    # In processes of their own, whatever this one has loaded by now.
     results.memory += memory.measure(wanted)
     if find_spec("rclpy") is None:
         print("no rclpy here: the nodes are left out", file=sys.stderr)
@@ -130,6 +134,7 @@ def _arguments() -> argparse.Namespace:
         "that became slower than its figures",
     )
     args = parser.parse_args()
+    # A toy run must not replace results or pages of a run that counts.
     if args.toy is not None:
         args.output = args.toy / OUTPUT.name
         args.docs = args.toy

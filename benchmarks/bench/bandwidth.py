@@ -41,6 +41,7 @@ def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:
     names = [name for name in MEASURED if wanted(f"bandwidth/{name}")]
     if not names:
         return
+    # The best kernels of this machine: the question is what is left to gain.
     route = next(iter(routes()))
     makers = contests(route)
     memory = np.ones(_LARGER_THAN_CACHES, np.uint8)
@@ -49,7 +50,9 @@ def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:
         count = touched_bytes(int(name.rpartition("/n")[2]))
 
         def read(number: int, count: int = count) -> object:
+            # Another part each time, so that no cache has it.
             first = number * _STRIDE % (_LARGER_THAN_CACHES - count)
+            # The maximum touches every byte, and does little else.
             return memory[first : first + count].max()
 
         yield compare(f"bandwidth/{name}", kernel, read, effort.case_seconds)
@@ -57,6 +60,7 @@ def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:
 
 def touched_bytes(particles: int) -> int:
     """Count the bytes of the frame that the windows of a cloud cover together."""
+    # In the middle of the drive, where the whole cloud is in the image.
     first = len(drive().frames) // 2
     frame = drive().frames[first]
     centre = drive().boxes[first].centre

@@ -45,6 +45,7 @@ class Camera:
 
     def __init__(self, nodes: dict[str, str]) -> None:
         self._context = Context()
+        # Shared memory for the images of all nodes; see `image_transport`.
         bytes_of_one = drive().frames[0].nbytes * len(nodes)
         middleware = rclpy.get_rmw_implementation_identifier()
         with image_transport(bytes_of_one, middleware):
@@ -64,6 +65,7 @@ class Camera:
                 lambda _, topic=topic: self._heard(topic),
                 QoSProfile(depth=_HEARD),
             )
+        # Made before: what a message costs to build is not the node's.
         there = [image_message(_header(0), frame) for frame in drive().frames]
         self._shown = there + there[-2:0:-1]  # and back, since a vehicle does not jump
         self.sent = dict.fromkeys(nodes, 0)
@@ -81,6 +83,7 @@ class Camera:
         InputError
             If one does not.
         """
+        # Shown again and again: until discovery is over, images are lost on the way.
         deadline = time.monotonic() + _TIMEOUT
         for topic in self._images:
             while not self.answered[topic]:
@@ -88,6 +91,7 @@ class Camera:
                     raise InputError(f"the node on {topic} answers no image")
                 self.show(topic)
                 self.listen(0.1)
+        # The answers to repeated images, which would be taken for those of the next ones.
         self.listen(0.5)
 
     def show(self, topic: str) -> None:
@@ -113,6 +117,7 @@ class Camera:
             If an answer does not come.
         """
         for _ in range(count):
+            # At a camera's rate and not faster: caches are cold between two images, as in use.
             due = time.monotonic() + 1 / rate
             wanted = self.answered[topic] + 1
             self.show(topic)
@@ -126,9 +131,11 @@ class Camera:
         """Show every node `rate` images per second, spread over the period, without waiting."""
         topics = list(self._images)
         began = time.monotonic()
+        # Spread over the period: cameras are not synchronised.
         for number in range(round(seconds * rate) * len(topics)):
             self.listen(began + number / (rate * len(topics)) - time.monotonic())
             self.show(topics[number % len(topics)])
+        # Late answers still count: only what never comes is lost.
         self.listen(_SETTLE)
 
     def __enter__(self) -> Camera:
@@ -144,6 +151,7 @@ class Camera:
 
 
 def _header(number: int) -> Header:
+    # Increasing stamps, from 1 s on: a stamp of 0 means "none" to many tools.
     header = Header(frame_id="camera")
     header.stamp.sec, header.stamp.nanosec = divmod(10**9 + number * _PERIOD_NS, 10**9)
     return header

@@ -36,6 +36,7 @@ class Case:
     def of(cls, name: str, ours: Sequence[float], baseline: Sequence[float]) -> Case:
         """Sum up the rounds: in each, one time of ours and one of the baseline, in seconds."""
         ours_ms, baseline_ms = (statistics.median(times) * 1e3 for times in (ours, baseline))
+        # Round by round for the spread: what slows a round down slows both of its times.
         ratios = [theirs / own for own, theirs in zip(ours, baseline, strict=True)]
         return cls(name, ours_ms, baseline_ms, baseline_ms / ours_ms, interquartile_range(ratios))
 
@@ -44,5 +45,6 @@ def interquartile_range(values: Sequence[float]) -> float:
     """Distance of the quartiles; 0 for a single value."""
     if len(values) < 2:
         return 0.0
+    # Inclusive, as the rounds are all there are, and no sample of more.
     low, _, high = statistics.quantiles(values, n=4, method="inclusive")
     return high - low

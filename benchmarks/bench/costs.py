@@ -52,7 +52,9 @@ def _compared(
     chosen = [name for name in settings if name != base and wanted(f"{prefix}/{name}")]
     if not chosen:
         return
+    # The default runs beside the chosen ones in turns, and only where there are any.
     followers = {name: settings[name] for name in (base, *chosen)}
+    # One pass: each setting runs through the whole drive.
     times, _ = follow(followers, range(1), effort.frames)
     for name in chosen:
         yield Case.of(f"{prefix}/{name}", times[name], times[base])

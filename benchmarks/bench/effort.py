@@ -45,6 +45,7 @@ class Effort:
 
 # `FULL` follows the whole drive of 112 frames, three times; `QUICK` shows within minutes whether a
 # change is worth a full run.
+# `TOY` has 21 frames: the first and two turns of ten.
 FULL = Effort(
     case_seconds=2.0,
     frames=112,

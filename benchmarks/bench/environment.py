@@ -25,12 +25,14 @@ def describe() -> dict[str, Any]:
         "rclpy": _rclpy(),
         "processor": _processor(),
         "cores": os.cpu_count(),
+        # Well above 0 other programs ran, too, and times are less certain.
         "load_average": round(os.getloadavg()[0], 2),
     }
 
 
 def _processor() -> str:
     lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    # Linux on other processors than x86 has no such line.
     names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
     return next(names, "unknown")
 

@@ -19,10 +19,12 @@ def steps_figure(results: Results) -> Figure:
         for case in results.cases
         if (words := case.name.split("/"))[0] == "step" and words[2] == "csrt"
     }
+    # Sorted by what is shown: the order of the variants says nothing here.
     names = sorted(found, key=found.__getitem__)
     figure = Figure(figsize=(7, 0.6 + 0.32 * max(len(names), 1)), layout="constrained")
     axes = figure.add_subplot()
     axes.barh(names, [found[name] for name in names], color=LINE_STYLES[0].colour, height=0.65)
+    # Only variants with a target have a mark.
     wanted = [(STEPS[name], index) for index, name in enumerate(names) if name in STEPS]
     if wanted:
         axes.plot(

@@ -36,6 +36,7 @@ class FloorNode(Node):  # type: ignore[misc]
 
 def main() -> None:
     """Spin until a signal comes."""
+    # As a tracker node does, so that the floor has the same allocator.
     keep_image_memory()
     rclpy.init(args=sys.argv)
     executor = SingleThreadedExecutor()

@@ -30,12 +30,14 @@ def compare(name: str, ours: Work, baseline: Work, seconds: float) -> Case:
     and the order within it changes from round to round.
     """
     works = ours, baseline
+    # Repeated by its own length: a round of the shorter work is not lost in the clock's steps.
     calls = [_calls(work) for work in works]
     times: tuple[list[float], list[float]] = ([], [])
     deadline = time.monotonic() + seconds
     for number in range(_MOST_ROUNDS):
         if number >= _LEAST_ROUNDS and time.monotonic() > deadline:
             break
+        # The order alternates: the second may find caches that the first has warmed, or emptied.
         for side in (0, 1) if number % 2 else (1, 0):
             times[side].append(_cpu_seconds(works[side], number, calls[side]))
     return Case.of(name, *times)
@@ -43,10 +45,12 @@ def compare(name: str, ours: Work, baseline: Work, seconds: float) -> Case:
 
 def _calls(work: Work) -> int:
     work(0)
+    # At least 0.1 µs: a clock that has not moved would ask for endless repetitions.
     return max(round(_CALLS_FOR / max(_cpu_seconds(work, 0, 1), 1e-7)), 1)
 
 
 def _cpu_seconds(work: Work, number: int, calls: int) -> float:
+    # Of the thread: what other processes take from the machine does not count.
     before = time.thread_time()
     for index in range(calls):
         work(number + index)

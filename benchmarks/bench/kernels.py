@@ -60,6 +60,7 @@ def contests(route: Route) -> dict[str, Callable[[], tuple[Work, Work]]]:
 def _joint(route: Route, size: str, window: str, count: int) -> Callable[[], tuple[Work, Work]]:
     def make() -> tuple[Work, Work]:
         inputs = _inputs(size, window, count)
+        # Both compare with one histogram, that of the naive way.
         histogram = naive.joint_histogram(inputs.frames[0], *_target(), inputs.window)
         reference = Reference(histogram)
         return (
@@ -72,6 +73,7 @@ def _joint(route: Route, size: str, window: str, count: int) -> Callable[[], tup
 
 def _sizes(route: Route) -> Callable[[], tuple[Work, Work]]:
     def make() -> tuple[Work, Work]:
+        # One reference for both sizes: windows and particles are the same, only the image grows.
         large, small = (_inputs(size, "41x31", 200) for size in ("1080p", "vga"))
         reference = Reference(naive.joint_histogram(small.frames[0], *_target(), small.window))
         return (
@@ -97,6 +99,7 @@ def _three(route: Route) -> Callable[[], tuple[Work, Work]]:
 
 def _inputs(size: str, window: str, count: int) -> _Inputs:
     first = len(drive().frames) // 2  # the whole cloud is far from the border there
+    # The vehicle in each image differs by what it drives; the reference is that of the first.
     frames = [enlarged(frame, size) for frame in drive().frames[first : first + _VARIETY]]
     centre = drive().boxes[first].centre
     return _Inputs(frames, clouds(centre, count, _VARIETY), WINDOWS[window])

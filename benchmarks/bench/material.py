@@ -33,6 +33,7 @@ class Drive(NamedTuple):
 @functools.cache
 def drive() -> Drive:
     """Draw the artificial video of the APF paper without its bar: 5 px a frame, a little noise."""
+    # Without the bar: a tracker that loses its vehicle would be timed at other work.
     scene = make_scene("bar", seed=1, settings={"width": 0.0})
     shown = list(scene.frames())
     return Drive(tuple(one.frame for one in shown), tuple(one.truth.box for one in shown))
@@ -43,8 +44,10 @@ def enlarged(frame: Frame, size: str) -> Frame:
     width, height = FRAME_SIZES[size]
     below = max(height - frame.shape[0], 0)
     beside = max(width - frame.shape[1], 0)
+    # In steps, as a mirror image is no larger than what it mirrors.
     while below or beside:
         more = min(below, frame.shape[0]), min(beside, frame.shape[1])
+        # Mirrored, and not black: border windows then have as many colours to count.
         frame = np.pad(frame, ((0, more[0]), (0, more[1]), (0, 0)), mode="symmetric")
         below, beside = below - more[0], beside - more[1]
     return frame
@@ -52,5 +55,6 @@ def enlarged(frame: Frame, size: str) -> Frame:
 
 def clouds(centre: tuple[float, float], count: int, variety: int = 16) -> list[Positions]:
     """Draw several clouds of `count` particles around `centre`, px."""
+    # The same clouds in every run.
     rng = np.random.default_rng(0)
     return [rng.normal(centre, CLOUD_SIGMA, (count, 2)) for _ in range(variety)]

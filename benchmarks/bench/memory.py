@@ -37,6 +37,7 @@ def measure(wanted: Callable[[str], bool]) -> Iterator[MemoryCase]:
         name = f"memory/trackers/{variant}/{TRACKERS}"
         if wanted(name):
             words = [sys.executable, "-m", "benchmarks.bench.memory", variant, str(TRACKERS)]
+            # A process of its own: allocators keep what earlier work has freed.
             done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True)
             one, many = map(float, done.stdout.split())
             yield MemoryCase(name, many, one)
@@ -45,6 +46,7 @@ def measure(wanted: Callable[[str], bool]) -> Iterator[MemoryCase]:
 def main(variant: str, count: int) -> None:
     """Let one tracker follow, then `count` more, and print what was resident each time."""
     frames, boxes = drive()
+    # Kept, so that the second figure has the first tracker in it, too: 65 against 1.
     kept = []
     for number in (1, count):
         trackers = Own(variant, count=number)

@@ -27,9 +27,11 @@ def meter_steps(path: Path) -> None:
     """Add up in `path` what `BaseTracker.step` takes from now on."""
     with path.open("r+b") as file:
         shared = mmap.mmap(file.fileno(), METER_RECORD.size)
+    # In the base class: whatever starts a tracker, each of its steps comes by here.
     original = BaseTracker.step
 
     def step(self: Any, *arguments: Any) -> Any:
+        # Of the stepping thread: the executor's threads belong to the node's cost.
         before = time.thread_time()
         estimate = original(self, *arguments)
         seconds, steps = METER_RECORD.unpack(shared)

@@ -49,8 +49,10 @@ def three_histograms(frame: Frame, x: float, y: float, window: Window) -> ThreeH
     colour = np.concatenate(
         [cv2.calcHist([crop], [channel], None, [21], [0, 256]).ravel() for channel in range(3)]
     )
+    # A pixel more on each side, for the gradients at the window's border.
     around = cv2.cvtColor(_crop(frame, x, y, window, margin=1), cv2.COLOR_RGB2GRAY)
     grey = around[1:-1, 1:-1]
+    # Eight levels, and pairs of neighbours along the rows: 64 bins.
     levels = grey // 32
     texture = np.bincount((8 * levels[:, :-1] + levels[:, 1:]).ravel(), minlength=64)
     return ThreeHistograms(colour / colour.sum(), _edge_directions(around), texture / texture.sum())
@@ -73,13 +75,16 @@ def _edge_directions(around: np.ndarray) -> Histogram:
     gx = cv2.Sobel(around, cv2.CV_32F, 1, 0)[1:-1, 1:-1]
     gy = cv2.Sobel(around, cv2.CV_32F, 0, 1)[1:-1, 1:-1]
     square = gx * gx + gy * gy
+    # Squares are compared, without a root of each; flat windows have no edges.
     chosen = (square >= np.float32(_EDGE_SHARE) ** 2 * square.max()) & (square > 0)
     turns = np.arctan2(gy[chosen], gx[chosen]) / (2 * np.pi) + 0.5
+    # A direction of just one turn is that of 0.
     counts = np.bincount((turns * 64).astype(np.intp) % 64, minlength=64)
     return np.asarray(counts / max(counts.sum(), 1))
 
 
 def _crop(frame: Frame, x: float, y: float, window: Window, margin: int = 0) -> Frame:
+    # The pixel whose area has the position in it: centres are at halves.
     column = round(x - 0.5)
     row = round(y - 0.5)
     half_width = window.half_width + margin

@@ -54,12 +54,14 @@ def measure(wanted: Callable[[str], bool], effort: Effort) -> tuple[list[Case], 
         If a node does not start or answer.
     """
     names = "node/apf/without_step", "node/apf/with_step", "node/apf/all_heard"
+    # Two runs serve all cases; see `_alternate`.
     if not any(map(wanted, (*names, "memory/node/apf"))):
         return [], []
     batches, memory = _alternate("apf", effort)
     heard, _ = _alternate("apf", effort, _OUTPUTS)
     floor = [batch.floor for batch in batches]
     cases = [
+        # The step is measured within the node, and taken off.
         Case.of(names[0], [batch.node - batch.step for batch in batches], floor),
         Case.of(names[1], [batch.node for batch in batches], floor),
         Case.of(names[2], [batch.node for batch in heard], [batch.floor for batch in heard]),
@@ -80,8 +82,10 @@ def _alternate(
         Camera(topics) as camera,
     ):
         camera.hear({f"/{variant}_tracker/{name}": kind for name, kind in outputs.items()})
+        # All answer before anything counts: kernels are compiled, discovery is over.
         camera.wait()
         batches = []
+        # The two in turns, so that what slows the machine down slows both.
         for _ in range(effort.batches + 1):
             before = floor.cpu_seconds
             camera.batch("/bench/floor", count, RATE)
@@ -107,6 +111,7 @@ def fleet(wanted: Callable[[str], bool], effort: Effort) -> list[Delivery]:
         If a node does not start or answer.
     """
     count = effort.fleet_nodes
+    # Reliable with a queue of 10: what is lost then was dropped by an overloaded node.
     images = [f"/bench/camera_{number}" for number in range(count)]
     reliable = [f"qos_overrides.{one}.subscription.reliability:=reliable" for one in images]
     options = [word for one in reliable for word in ("-p", one)]
@@ -138,6 +143,7 @@ def _delivery(
         nodes = [stack.enter_context(NodeProcess(words)) for words in processes]
         camera = stack.enter_context(Camera(topics))
         camera.wait()
+        # Counted from here: images of the wait are not of the stream.
         sent = dict(camera.sent)
         answered = dict(camera.answered)
         before = sum(node.cpu_seconds for node in nodes)
@@ -145,5 +151,6 @@ def _delivery(
         cpu = sum(node.cpu_seconds for node in nodes) - before
         total = sum(camera.sent.values()) - sum(sent.values())
         lost = total - (sum(camera.answered.values()) - sum(answered.values()))
+        # Proportional, as nodes share most of their libraries.
         memory = sum(proportional_mb(node.pid) for node in nodes)
     return Delivery(name, len(topics), FLEET_RATE, total, lost, cpu / total * 1e3, memory)

@@ -77,6 +77,7 @@ def write(results: Results, folder: Path) -> str:
     str
         Table of the steps that are dearer than on the page that is replaced; it is on the new one.
     """
+    # Read before it is replaced.
     last = (folder / PAGE).read_text(encoding="utf-8") if (folder / PAGE).exists() else ""
     images = folder / IMAGES
     images.mkdir(parents=True, exist_ok=True)
@@ -113,6 +114,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def _environment(results: Results) -> str:
+    # A copy: the results keep the date that is taken out here.
     machine = dict(results.environment)
     made = machine.pop("made", "unknown date")
     facts = ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in machine.items())
@@ -152,14 +154,17 @@ def _costs(results: Results) -> _Cells:
     for case in results.cases:
         if case.name.startswith("cost/"):
             _, changed, variant, value = case.name.split("/")
+            # Particles are `n200` in cases of kernels, too; a table shows the number.
             value = value.removeprefix("n") if changed == "particles" else value
             cells.setdefault(f"{changed}: {value}", {})[f"`{variant}`"] = case
     return cells
 
 
 def _pivot(cells: _Cells, corner: str) -> str:
+    # Columns in the order in which they first come up, each once.
     columns = list(dict.fromkeys(name for row in cells.values() for name in row))
     rows = [
+        # A case that was not measured leaves its cell empty.
         (name, *(_ratio_and_time(row[column]) if column in row else "" for column in columns))
         for name, row in cells.items()
     ]
@@ -194,6 +199,7 @@ def _steps(results: Results) -> str:
     rows = []
     for variant in dict.fromkeys(name.split("/")[1] for name in found):
         cases = [found.get(f"step/{variant}/{baseline}") for baseline in baselines]
+        # The same step was timed once beside all baselines.
         own = next(case.ours_ms for case in cases if case is not None)
         ratios = [_ratio(case) if case else "" for case in cases]
         share = f"{100 * results.on_target.get(variant, 0):.0f} %"
@@ -209,6 +215,7 @@ def _steps(results: Results) -> str:
 def _dearer(results: Results, last: str) -> str:
     """Write the steps that became dearer than on the last page, or that none did."""
     head = "## Dearer than the last page\n"
+    # A page without the table of steps is none to compare with.
     if not last_ratios(last):
         return head + "There was no page to compare with.\n"
     factors = slower_steps(results, last)

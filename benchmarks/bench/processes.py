@@ -45,6 +45,7 @@ class NodeProcess:
     """
 
     def __init__(self, words: Sequence[str], environment: Mapping[str, str] | None = None) -> None:
+        # A file: nobody reads it while the node runs, and a full pipe would stop it.
         self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - open as long as the process
         variables = {**os.environ, **(environment or {})}
         self._process = subprocess.Popen(
@@ -57,6 +58,7 @@ class NodeProcess:
         )
         assert self._process.stderr is not None
         said = []
+        # Line by line until it is ready; a node that ends before has closed its stream.
         for line in self._process.stderr:
             said.append(line)
             if _READY in line:
@@ -81,6 +83,7 @@ class NodeProcess:
 
     def end(self) -> None:
         """End the process."""
+        # Asked first, and killed if it does not answer.
         self._process.terminate()
         wait_or_kill(self._process)
         assert self._process.stderr is not None
@@ -100,6 +103,7 @@ class StepMeter:
     def __init__(self) -> None:
         self._file = tempfile.NamedTemporaryFile()  # noqa: SIM115 - as long as this object
         self._file.write(METER_RECORD.pack(0.0, 0.0))
+        # Zeros before the node starts: it may be read before the first step.
         self._file.flush()
 
     @property
@@ -127,6 +131,7 @@ def tracker_words(
     if meter is not None:
         words = ["-m", "benchmarks.bench.metered_node", meter.path, variant]
     box = drive().boxes[0]
+    # Floats, as a parameter of a node has one type.
     values: dict[str, object] = {
         **{f"target.{name}": float(getattr(box, name)) for name in _SIDES},
         **{name.replace("__", "."): value for name, value in parameters.items()},

@@ -11,6 +11,7 @@ from pathlib import Path
 
 def resident_mb(process: int | str = "self") -> float:
     """Resident memory of a process in MB, shared libraries included."""
+    # The second number is the resident set, in pages.
     pages = int(Path("/proc", str(process), "statm").read_text().split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
 

@@ -31,6 +31,7 @@ def last_ratios(page: str) -> dict[str, float]:
             break
         # Behind the empty cell before the first bar come the name and the time.
         for baseline, cell in zip(baselines, cells[3:], strict=False):
+            # Without its spread, which is not compared.
             if ratio := _RATIO.match(cell):
                 found[f"step/{cells[1].strip('`')}/{baseline}"] = float(ratio[1])
     return found
@@ -46,6 +47,7 @@ def slower_steps(results: Results, page: str) -> dict[str, float]:
     factors: dict[str, list[float]] = {}
     for case in results.cases:
         if case.name in last:
+            # By the ratio and not by the time: another machine has other times.
             factors.setdefault(case.name.split("/")[1], []).append(last[case.name] / case.ratio)
     medians = {variant: statistics.median(values) for variant, values in factors.items()}
     return {variant: factor for variant, factor in medians.items() if factor > SLOWER_RATIO}

@@ -36,6 +36,7 @@ def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:
     kinds = sorted({kind for pair in chosen.values() for kind in pair})
     if not kinds:
         return
+    # Not counted: it leaves compiled kernels behind for those that are.
     _start("warm")
     times: dict[str, list[float]] = {kind: [] for kind in kinds}
     for number in range(effort.starts):
@@ -43,6 +44,7 @@ def measure(wanted: Callable[[str], bool], effort: Effort) -> Iterator[Case]:
             if kind != "cold" or number % 2 == 0:  # it takes as long as all the others
                 times[kind].append(_start(kind))
     for name, (ours, baseline) in chosen.items():
+        # In pairs: of cold starts there are half as many.
         rounds = min(len(times[ours]), len(times[baseline]))
         yield Case.of(name, times[ours][:rounds], times[baseline][:rounds])
 
@@ -54,6 +56,7 @@ def _start(kind: str) -> float:
     if kind == "floor":
         words = floor_words(_IMAGE)
     with tempfile.TemporaryDirectory() as empty:
+        # An empty cache: numba has to compile everything.
         environment = {"NUMBA_CACHE_DIR": empty} if kind == "cold" else {}
         with NodeProcess(words, environment) as node:
             return node.cpu_seconds

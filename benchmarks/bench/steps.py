@@ -38,6 +38,7 @@ def measure(
     if not pairs:
         return [], {}
     with contextlib.ExitStack() as stack:
+        # Each baseline once, however many variants it is compared with: all take turns.
         followers: dict[str, Follower] = {own: Own(own) for own, _ in pairs}
         for _, baseline in pairs:
             if baseline not in followers:

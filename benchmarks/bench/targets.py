@@ -13,22 +13,22 @@ from benchmarks.bench.results import Results
 
 @dataclass(frozen=True)
 class Target:
-    """One thing that is wanted.
+    """A speed target.
 
     Attributes
     ----------
     case : str
-        Name of the case that tells.
+        Name of the case that is judged.
     words : str
         Text of the target.
     value : callable
-        Takes it from the results; None where it was not measured.
+        Takes the measured value from the results; None where it was not measured.
     limit : float
-        The least value, or the most.
+        Least value where more is better, else the largest one.
     is_least : bool
         True if more is better.
     unit : str
-        Stands behind the value.
+        Unit behind the value, its space included.
     """
 
     case: str
@@ -79,6 +79,7 @@ def _loses_nothing(case: str) -> Target:
     return Target(case, "loses no image", value, 0.0, False, " lost")
 
 
+# As ratios to CSRT in the same run: they carry over to other machines, and times do not.
 STEPS = {
     "pf": 80,
     "apf": 40,

@@ -49,7 +49,7 @@ class Own:
     count : int
         Trackers in this process.
     size : str or None
-        Images that the frames stand in, one of `SIZES`; None: they are taken as they are.
+        Size that the frames are enlarged to, one of `FRAME_SIZES`; None takes them as they are.
     """
 
     def __init__(
@@ -79,12 +79,14 @@ class Own:
 
     def step(self, frame: Frame) -> float:
         """Follow into the next frame."""
+        # Enlarged outside of the measured time.
         image = self._shown(frame)
         before = time.thread_time()
         for tracker in self._trackers:
             estimate = tracker.step(image)
         seconds = time.thread_time() - before
         self.centre = estimate.position
+        # One of several has its share of what all take.
         return seconds / self._count
 
     def _shown(self, frame: Frame) -> Frame:
@@ -135,11 +137,14 @@ def follow(
     for seed in seeds:
         for follower in followers.values():
             follower.start(shown[0], boxes[0], seed)
+        # Whole turns only: a shorter one would have cold caches for most of its frames.
         for first in range(1, min(len(shown), most_frames) - TURN_FRAMES + 1, TURN_FRAMES):
+            # Another one begins each turn: the first may find the caches of the last.
             turn = first // TURN_FRAMES % len(names)
             for name in names[turn:] + names[:turn]:
                 seconds = 0.0
                 for index in range(first, first + TURN_FRAMES):
+                    # Judged outside of the time that a follower reports.
                     seconds += followers[name].step(shown[index])
                     hits[name].append(_is_close(followers[name].centre, boxes[index]))
                 times[name].append(seconds / TURN_FRAMES)

@@ -18,6 +18,7 @@ def run(request: Request) -> int:
     from laboratory.faults.giving import give  # noqa: PLC0415 - needs ROS
 
     rows = []
+    # One folder for all kinds: built messages are used again.
     with tempfile.TemporaryDirectory(prefix="faults_") as folder:
         for kind in request.kinds or FAULT_KINDS:
             print(f"## {kind}", flush=True)

@@ -53,6 +53,7 @@ Fault = Callable[[Header, Array], object]
 def vision(folder: Path) -> Any:
     """Import vision_msgs.msg, built in `folder` from its definitions where it is not installed."""
     if find_spec("vision_msgs") is None:
+        # Built by the tests' helper: vision_msgs is not installed everywhere.
         sys.path.append(str(Path(__file__).resolve().parents[2] / "test" / "ros"))
         built = import_module("built_messages")
         with contextlib.redirect_stdout(io.StringIO()):  # each file that is written
@@ -66,6 +67,7 @@ def vision(folder: Path) -> Any:
 
 def sightings(cloud: PointCloud2) -> list[Sighting]:
     """Read ~/tracks by the fields that the message itself names."""
+    # By the fields that the message states, as a subscriber that knows nothing else reads it.
     kind = np.dtype(
         {
             "names": [field.name for field in cloud.fields],
@@ -121,14 +123,17 @@ class Detector:
 
     def _flood(self, count: int) -> Fault:
         rows = np.random.default_rng(3).uniform(0, 150, (count, 4))
+        # Serialized once, and only stamped anew: so many boxes take Python long to build.
         serialized = bytearray(serialize_message(self.message(Header(), rows, LOW)))
 
         def flood(header: Header, boxes: Array) -> None:
             stamp = header.stamp
             self._turn += 1
+            # Once a second; with every other image the detector is as it should be.
             if self._turn % self._rate:
                 self.right(header, boxes)
                 return
+            # The stamp follows the four bytes that say how a message is encoded.
             struct.pack_into("<iI", serialized, STAMP, stamp.sec, stamp.nanosec)
             self._topic.publish(bytes(serialized))
 
@@ -140,6 +145,7 @@ class Detector:
     def _stray(self, header: Header, boxes: Array) -> None:
         other = Header(frame_id=header.frame_id)
         other.stamp.sec = header.stamp.sec
+        # A nanosecond beside: near enough for the eye, and never equal.
         other.stamp.nanosec = header.stamp.nanosec ^ 1
         self.right(other, boxes)
 

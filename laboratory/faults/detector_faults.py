@@ -84,7 +84,7 @@ class Trial:
     tester : Tester
         Sends and hears.
     kind : str
-        Where the node's detections come from.
+        Source of the node's detections, ``topic`` or ``motion``.
     seconds : float
         Length of a fault.
     right : Fault
@@ -95,12 +95,14 @@ class Trial:
         self._tester = tester
         self._right = right
         self._count = round(seconds * RATE)
+        # 20 images may wait: a flood keeps the node busy for longer than an image lasts.
         self._node = NodeProcess(
             tester, TRAFFIC_VARIANT.name, f"detector.kind:={kind}", "queue_depth:=20"
         )
         self._ledger = Ledger(self._node, may_wait=True)
         self._traffic = Traffic(ROAD, 10**6, 0)
         self._tracks = tester.collect(PointCloud2, f"{self._node.name}/tracks")
+        # Coarse blocks for a camera's motion to be measured by, and fine noise over them.
         texture = np.random.default_rng(5).integers(80, 130, (6, 10, 3), np.uint8)
         self._empty = np.kron(texture, np.ones((30, 32, 1), np.uint8)) + ROAD.empty() // 8
         self._number = self._offset = 0
@@ -111,17 +113,21 @@ class Trial:
 
     def give(self, words: str, fault: Fault | None = None, shift: int = 0) -> None:
         """Give a fault for a while, then none, and print what came of it."""
+        # 1. The numbers before, then the fault, then a detector that works again.
         before = self._vehicles()
         said = len(self._node.output)
         began = time.monotonic()
         self._play(self._count, fault or self._right, shift)
         self._play(AFTER, self._right, 0)
+        # 2. The same vehicles with the same numbers after it.
         after = self._vehicles()
         both = before.keys() & after.keys()
         kept = sum(before[vehicle] == after[vehicle] for vehicle in both)
+        # 3. What the node said, without numbers and log heads, so that equal ones are counted.
         sentences = Counter(
             VARYING_PARTS.sub(_shortened, line) for line in self._node.output[said:].splitlines()
         )
+        # A sentence at the beginning and one at the end are right in any case.
         allowed = 2 + (time.monotonic() - began) / INTERVAL
         self._is_good &= max(sentences.values(), default=0) <= allowed
         count = self._count + AFTER
@@ -140,6 +146,7 @@ class Trial:
 
     def _play(self, count: int, detect: Fault, shift: int) -> None:
         """Show images; with a shift the camera moves by so many px each time, for a second."""
+        # A shift ends after `MOVING`, where the camera then stands.
         still = self._offset
         for step in range(1, count + 1):
             began = time.monotonic()
@@ -149,11 +156,14 @@ class Trial:
             self._offset = still + shift * min(step, round(RATE * MOVING))
             header = header_at(round(self._number * 1e9 / RATE))
             self._corners[stamp_ns(header)] = corners
+            # Rolled: what leaves on one side comes in on the other, so that no border appears.
             image = image_message(header, np.roll(frame, self._offset, axis=1))
             self._ledger.note(image, is_good=True)
             self._tester.show(image)
             boxes = self._traffic.detect(corners)
+            # Slivers at the border are nothing that a detector finds.
             detect(header, boxes[boxes[:, 2] >= 3])
+            # In step with the node's answers, but no faster than a camera.
             while self._ledger.unanswered or time.monotonic() - began < 1 / RATE:
                 self._tester.spin(0.01)
                 self._ledger.hear()
@@ -182,15 +192,18 @@ class Trial:
         corners = {
             vehicle: (x + self._offset, y)
             for vehicle, (x, y) in self._corners[stamp_ns(self._tracks[-1].header)].items()
+            # Wholly in view: of others the centre is not that of the true box.
             if x >= 0 and x + self._offset <= last
         }
         for sighting in sightings(self._tracks[-1]):
             vehicle = ROAD.nearest(sighting.x, sighting.y, corners)
             if sighting.is_confirmed and vehicle is not None:
+                # Of several tracks on one vehicle the oldest counts.
                 found[vehicle] = min(sighting.identity, found.get(vehicle, sighting.identity))
         del self._tracks[:-1]
         return found
 
 
 def _shortened(found: re.Match[str]) -> str:
+    # A log's head ends in "]: "; everything else that matched is a number.
     return "" if "]" in found[0] else "N"

@@ -51,6 +51,7 @@ class Drive:
 
     def frame(self, number: int) -> Frame:
         """Frame of the image `number`."""
+        # To and fro: the way back is the way there, without its two ends.
         place = number % (2 * _TURN - 2)
         return self._frames[min(place, 2 * _TURN - 2 - place)]
 
@@ -93,7 +94,9 @@ class Faults:
     def image(self, number: int) -> Image:
         """Draw a faulty image that comes between the good ones `number` - 1 and `number`."""
         image = self._draw(number)
+        # Between two good images in time, so that its stamp alone is no fault.
         image.header = header_at(stamp_ns(image.header) - PERIOD_NS // 2)
+        # The last two kinds of the list look real.
         last = len(self._kinds) - (2 if self._looks_real else 0)
         kind = self._random.randrange(last)
         self._looks_real = self._looks_real or kind >= len(self._kinds) - 2
@@ -112,6 +115,7 @@ class Faults:
         return array.array("B", self._random.randbytes(count))
 
     def _encoding(self, image: Image) -> None:
+        # Almost right, other people's, none, and far too long.
         junk = (
             "",
             "rgb",
@@ -133,11 +137,13 @@ class Faults:
         image.width = 0 if image.height else self._random.choice((0, image.width))
 
     def _huge(self, image: Image) -> None:
+        # Sizes whose product overflows 32 bits, or asks for more memory than there is.
         image.height = self._random.choice((image.height, 32_767, _LARGEST))
         image.width = self._random.choice((32_767, 65_535, 2**31, _LARGEST))
         image.step = self._random.choice((image.step, _LARGEST, 3 * image.width % 2**32))
 
     def _step(self, image: Image) -> None:
+        # Around the right one, and where a sum would overflow.
         wrong = (0, 1, image.step - 1, image.step + 1, 2**31, _LARGEST)
         image.step = self._random.choice(wrong)
 
@@ -163,6 +169,7 @@ class Faults:
         image.data = self._bytes(image.step * image.height)
 
     def _other_time(self, image: Image) -> None:
+        # The ends of what a stamp can say, a day off, and just before the images.
         now = FIRST_NS
         early = -(2**31) * 10**9
         late = (2**31 - 1) * 10**9
@@ -180,10 +187,12 @@ class Faults:
         )
 
     def _number(self) -> float:
+        # Three tenths extreme numbers; else points in the image and around it.
         draw = self._random
         return draw.choice(_NUMBERS) if draw.random() < 0.3 else draw.uniform(-20, 80)
 
     def _polygon(self) -> PolygonStamped:
+        # Frames: none, that of the images, and another.
         made = PolygonStamped(header=header_at(0, self._random.choice(("", "camera", "map"))))
         count = self._random.choice((0, 1, 2, 3, 4, 100))
         made.polygon.points = [Point32(x=self._number(), y=self._number()) for _ in range(count)]

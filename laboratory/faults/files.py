@@ -55,11 +55,13 @@ _VALUES = (
 
 def spoil_text(text: str, draw: random.Random) -> bytes:
     """Change a YAML file in up to three places."""
+    # Without comments: a change in one is no fault.
     lines = [line for line in text.splitlines() if "#" not in line]
     for _ in range(draw.randint(1, 3)):
         index = draw.randrange(len(lines))
         name, colon, _ = lines[index].partition(":")
         lines[index : index + 1] = draw.choice(
+            # Another value, a line less, another indent, a letter, lines again, another node.
             [
                 [f"{name}{colon} {draw.choice(_VALUES)}"] * draw.randint(1, 2),
                 [],
@@ -71,6 +73,7 @@ def spoil_text(text: str, draw: random.Random) -> bytes:
         )
         lines = lines or [""]
     data = "\n".join(lines).encode()
+    # At times bytes on top, as of a disk that failed.
     return spoil_bytes(data, draw) if draw.random() < 0.3 else data
 
 
@@ -88,6 +91,7 @@ def spoil_bytes(data: bytes, draw: random.Random) -> bytes:
         elif kind == 2:
             made[place:place] = draw.choice((b"\0", b"\xff", draw.randbytes(1))) * length
         elif kind == 3:
+            # Bytes from earlier in the file, as of a block that was written twice.
             made[place:place] = made[place // 2 : place // 2 + length]
         else:
             del made[draw.choice((place, len(made) - 1, len(made))) :]
@@ -107,6 +111,7 @@ def _in_python(path: Path) -> str:
         given = Configuration.of(VARIANT).updated(values).to_mapping()
     except InputError:
         return "refused"
+    # Names that the command line passes over on purpose are no fault; other values are.
     wrong = {name: one for name, one in values.items() if name in given and given[name] != one}
     if wrong:
         raise FaultError(f"taken for other values: {wrong}")
@@ -138,8 +143,10 @@ def _in_node(path: Path) -> str:
 def try_recording(path: Path, folder: Path) -> str:
     """Track a recording; return what came of it."""
     out = folder / "out"
+    # Of the file before: a folder that is not empty would be refused for that.
     shutil.rmtree(out, ignore_errors=True)
     target = ",".join(map(str, TARGET_BOX))
+    # Few particles: it is the reading that is tested.
     words = ["run", str(path), "--variant", "pf", "--set", "num_particles=20"]
     with _captured() as (told, errors):
         status = command([*words, "--target", target, "-o", str(out)])
@@ -150,6 +157,7 @@ def try_recording(path: Path, folder: Path) -> str:
         raise FaultError(f"status {status}: {complaint}")
     with (out / "estimates.csv").open() as file:
         rows = list(csv.DictReader(file))
+    # Fewer rows need a word; all of them need none.
     if not rows or (len(rows) != FRAMES and not complaint.strip()):
         raise FaultError(f"{len(rows)} rows of {FRAMES} without a word: {told.getvalue()}")
     return "tracked whole" if len(rows) == FRAMES else "tracked in part, and said so"
@@ -166,6 +174,7 @@ def _captured() -> Iterator[tuple[io.StringIO, io.StringIO]]:
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
     """Keep what C libraries write from the terminal."""
+    # By the file descriptor: C libraries do not write through Python's `sys.stderr`.
     kept = os.dup(2)
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 2)
@@ -201,9 +210,11 @@ def give_files(kind: str, count: int, seed: int) -> bool:
         path = Path(folder, f"fuzzed{suffix}")
         for number in range(count):
             path.write_bytes(make(draw))
+            # By a thread in C: Python's own timers cannot end a loop in a library.
             faulthandler.dump_traceback_later(LONGEST, exit=True)
             try:
                 results[judge(path, Path(folder))] += 1
+            # Whatever it was: the file that caused it is worth more than a tidy folder.
             except BaseException as error:
                 kept = Path(tempfile.gettempdir(), f"fuzzed_{number}{suffix}")
                 shutil.copy(path, kept)
@@ -220,6 +231,7 @@ def _kinds(
 ) -> dict[str, tuple[Callable[[random.Random], bytes], Callable[[Path, Path], str], str]]:
     """Return how files of each kind are made and judged, and how their names end."""
     text = default_yaml(VARIANT)
+    # In each way to pack a chunk, as each has a reader of its own.
     whole = [recording(folder / kind.name, kind) for kind in CompressionType]
     return {
         "parameters": (lambda draw: spoil_text(text, draw), try_parameters, ".yaml"),

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 def give(kind: str, request: Request, folder: Path) -> bool:
     """Give the faults of a kind and print what came of them; return whether all held."""
+    # A tester for each kind: nothing of one is heard in the next.
     tester = Tester()
     give_kind = {
         "messages": partial(_messages, tester, request),

@@ -61,6 +61,7 @@ class Road:
         width, height = self.size
         for number, (x, y) in corners.items():
             columns = slice(max(int(x), 0), max(int(x + width), 0))
+            # Factors without a common divisor with 200: neighbours in number look different.
             colour = [(37 * number) % 200 + 30, (91 * number) % 200 + 30, (53 * number) % 200 + 30]
             frame[int(y) : int(y + height), columns] = colour
         return frame
@@ -94,12 +95,14 @@ class Traffic:
         """Drive on by an image; returns the left upper corner of each vehicle in it, px."""
         road = self._road
         for number, (lane, x) in list(self._there.items()):
+            # Lanes of different speeds: vehicles overtake, and boxes of neighbours pass each other.
             moved = x + road.speed * (1 + 0.1 * lane)
             if moved < road.width:
                 self._there[number] = lane, moved
             else:
                 del self._there[number]
         while self.begun < self.total and image >= self.begun * road.every:
+            # Not all at whole pixels.
             x = -road.size[0] + float(self._rng.uniform(0, 2))
             self._there[self.begun] = self.begun % road.lanes, x
             self.begun += 1
@@ -120,8 +123,10 @@ class Traffic:
         rows = []
         for x, y in corners.values():
             if self._rng.random() >= self._road.missed:
+                # Cut at the borders, as a detector sees what is in the image only.
                 left = max(x, 0.0)
                 right = min(x + width, self._road.width)
+                # 0.3 px on each number, a choice: 2 % of the width of a vehicle.
                 noise = self._rng.normal(0, 0.3, 4)
                 rows.append(np.array([left, y, right - left, height]) + noise)
         if self._rng.random() < self._road.false:
@@ -149,7 +154,7 @@ class Numbers:
     reissued : int
         Numbers that came back after they were gone, or came below one that was issued before.
     of : array
-        How many numbers each vehicle had.
+        Count of the numbers that each vehicle had, shape (vehicles,).
     handed_on : int
         Numbers that went over to another vehicle.
     """
@@ -164,9 +169,12 @@ class Numbers:
         """Take the answer to an image, and where the vehicles are in it."""
         sightings = [one for one in answer if one.identity]  # tentative ones have no number yet
         identities = {sighting.identity for sighting in sightings}
+        # Two tracks of one answer must not have one number.
         self.reissued += len(sightings) - len(identities)
+        # A number that is gone is closed: memory must not grow with the hours.
         for gone in self._votes.keys() - identities:
             self._close(self._votes.pop(gone))
+        # The highest before this answer, as new ones come in any order within it.
         highest = self.issued
         for one in sightings:
             if one.identity not in self._votes:
@@ -181,6 +189,7 @@ class Numbers:
         """Note whose number it was."""
         if votes:
             ((vehicle, own),) = votes.most_common(1)
+            # Most of its images decide whose it was.
             self.of[vehicle] += 1
             self.handed_on += votes.total() - own > FOREIGN * votes.total()
 

@@ -101,9 +101,11 @@ class Ledger:
             key = stamp_ns(answer.header)
             if key == self._first:
                 continue
+            # The image has had its answer, or was never sent.
             if key not in self._waiting:
                 self.seconds.append(f"{key}: {answer}")
                 continue
+            # The oldest of those with this stamp.
             sent = self._waiting[key].popleft()
             if not self._waiting[key]:
                 del self._waiting[key]
@@ -115,6 +117,7 @@ class Ledger:
         mode = str(answer.status[0].message)
         values = {pair.key: pair.value for pair in answer.status[0].values}
         self.counts[f"{'good' if sent.is_good else 'faulty'}: {mode}"] += 1
+        # Faulty images are answered without a step, and would make the node look fast.
         if sent.is_good:
             self._latencies.append(time.monotonic() - sent.when)
         if not _is_right(mode, values, sent, may_wait=self.may_wait):
@@ -124,6 +127,7 @@ class Ledger:
         """Send an image and wait for its answer, and a moment longer for no second one."""
         self.note(image, is_good=is_good)
         tester.show(image)
+        # In lock-step: the answer has to be there before the next image.
         deadline = time.monotonic() + TIMEOUT
         while not self.hear():
             tester.spin(0.002)
@@ -163,12 +167,14 @@ class Ledger:
         print(f"  answers after {middle:.1f} ms (p50), {high:.1f} (p95), {most:.1f} (p99)")
         for words in [*self.seconds, *self.wrong][:_SHOWN]:
             print(f"  {words}")
+        # An image that DDS lost on its way needs no answer.
         is_complete = self.unanswered <= self.lost and not self.seconds and not self.wrong
         return is_complete and growth <= GROWTH and all(self.node.changes)
 
     def _growth(self) -> float:
         """Print how the memory went; return by how many MB it grew once settled."""
         times, sizes = np.array(self._sizes or [(0.0, 0)]).T
+        # A short run shows its second half, and is not judged by it.
         since = min(SETTLED, times[-1] / 2)
         settled = sizes[times >= since] / MB
         print(
@@ -184,9 +190,11 @@ def _is_loading(answer: DiagnosticArray) -> bool:
 
 def _is_right(mode: str, values: Mapping[str, str], sent: _Sent, *, may_wait: bool) -> bool:
     if mode == REJECTED_MESSAGE:
+        # A reason is needed, and one that the node has foreseen.
         return not sent.is_good and not values.get("reason", "unexpected").startswith("unexpected")
     if mode == WAITING_MESSAGE:
         return may_wait
+    # An estimate has a position; before there is a target there is none.
     if mode not in _TRACKED or "x" not in values:
         return may_wait
     x, y, confidence = (float(values[name]) for name in ("x", "y", "confidence"))

@@ -29,11 +29,13 @@ def give_messages(tester: Tester, variant: str, count: int, seed: int) -> bool:
     faults = Faults(drive.image, seed)
     sides = zip(("x", "y", "width", "height"), TARGET_BOX, strict=True)
     words = [f"target.{name}:={value}" for name, value in sides]
+    # A deep queue, so that none is dropped, and few particles, so that thousands are soon through.
     node = NodeProcess(tester, variant, "queue_depth:=50", "num_particles:=50", *words)
     ledger = Ledger(node)
     ledger.begin(tester, drive.image(0))
     weighed = 0.0
     for number in range(1, count + 1):
+        # Half good ones: a node has to come back to its work after every fault.
         kind = draw.choices(["good", "faulty", "target"], [5, 4, 1])[0]
         if kind == "target":
             node.give_target(faults.target())
@@ -42,8 +44,10 @@ def give_messages(tester: Tester, variant: str, count: int, seed: int) -> bool:
         is_good = kind == "good"
         image = drive.image(number) if is_good else faults.image(number)
         ledger.take(tester, image, is_good=is_good)
+        # Two faulty sizes or times that agree with no good image between have to be believed.
         if is_good:
             faults.good()
+        # Once a second: reading it costs time, too.
         if time.monotonic() >= weighed + 1:
             weighed = time.monotonic()
             ledger.weigh()

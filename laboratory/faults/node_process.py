@@ -49,6 +49,7 @@ class Tester:
     """One camera, and an ear for everything that nodes publish."""
 
     def __init__(self) -> None:
+        # Nodes of other machines must neither hear nor answer.
         os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
         rclpy.init()
         self._node = rclpy.create_node("tester")
@@ -114,6 +115,7 @@ class NodeProcess:
         self, tester: Tester, variant: str, *assignments: str, is_reliable: bool = True
     ) -> None:
         words = [*assignments, *([RELIABLE] if is_reliable else [])]
+        # A file and not a pipe: nobody reads while the node runs, and a full pipe would stop it.
         self._log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - open as long as the node
         code = (
             "from vehicle_pf_tracker.ros.executables import main;"
@@ -125,6 +127,7 @@ class NodeProcess:
             stdout=self._log,
             stderr=subprocess.STDOUT,
         )
+        # Also where this program ends by an exception.
         atexit.register(self._process.kill)
         self.name = own = f"/{variant}_tracker"
         self.modes: list[DiagnosticArray] = tester.collect(DiagnosticArray, f"{own}/mode")
@@ -150,6 +153,7 @@ class NodeProcess:
 
     def lost(self) -> int:
         """Count images that were sent and never reached the node, by their publication numbers."""
+        # Reports from now on: an older one does not count the last images.
         self._reports.clear()
         deadline = time.monotonic() + TIMEOUT
         while time.monotonic() < deadline:
@@ -188,6 +192,7 @@ class NodeProcess:
             If it says something of a traceback, or does not end well.
         """
         if self.is_alive:
+            # As Ctrl-C does: a node has to end well by that.
             self._process.send_signal(signal.SIGINT)
         status = self._process.wait(TIMEOUT)
         text = self.output

@@ -87,6 +87,7 @@ class Scene:
     def step(self, number: int) -> Image:
         """Drive on to the image `number`."""
         self.corners = self.traffic.step(number)
+        # The bridge after the vehicles: it covers them.
         self._frame = self.road.painted(self._empty, self.corners)
         self._frame[:, BRIDGE] = 60
         return self.image(number)
@@ -98,12 +99,14 @@ class Scene:
     def detect(self) -> Array:
         """Detect the vehicles that no bridge hides."""
         boxes = self.traffic.detect(self.corners)
+        # By the middle of the box: a vehicle that is half under the bridge is still found.
         middle = boxes[:, 0] + boxes[:, 2] / 2
         is_hidden = (middle >= BRIDGE.start) & (middle < BRIDGE.stop)
         return boxes[~is_hidden & (boxes[:, 2] >= LEAST)]
 
     def target(self) -> PolygonStamped | None:
         """Return a vehicle that has just come; None where there is none."""
+        # In the first part of the road, so that it is followed through the bridge.
         for x, y in self.corners.values():
             if 0 < x < BRIDGE.start / 2:
                 made = PolygonStamped(header=header_at(0))
@@ -127,6 +130,7 @@ class Soak:
     """
 
     def __init__(self, tester: Tester, request: Request, folder: Path) -> None:
+        # As many as come in the time; at least one, or it would be over at once.
         total = max(1, round(request.minutes * 60 * request.rate / request.every))
         self._tester = tester
         self._rate = request.rate
@@ -150,6 +154,7 @@ class Soak:
             words += [f"queue_depth:={_DEPTH if request.best_effort else _LONG_DEPTH}"]
             node = NodeProcess(tester, name, *words, is_reliable=not request.best_effort)
             self._ledgers[name] = Ledger(node, may_wait=True)
+        # Of the changes those that the node has a parameter for.
         self._changes = {
             name: [one for one in CHANGES if one[0] in Configuration.of(find_node(name)).specs()]
             for name in names
@@ -170,19 +175,25 @@ class Soak:
         number = 0
         while not self._scene.traffic.is_over:
             number += 1
+            # 1. At times a faulty image before the good one.
             if self._random.random() < self._share:
                 self._send(self._faults.image(number), is_good=False)
+            # 2. The good image, its detections, and what else is due.
             image = self._scene.step(number)
             self._corners[stamp_ns(image.header)] = self._scene.corners
             self._send(image, is_good=True)
             self._faults.good()
             self._detect(number, image)
             self._turn(number)
+            # 3. Until the next is due: by the clock of the whole run, so that delays do not add up.
             while (left := began + number / self._rate - time.monotonic()) > 0:
                 self._hear(min(left, 0.01))
+            # What has come is judged also where no time was left to listen.
             self._hear(0.0)
+        # Two seconds for the last answers.
         for _ in range(100):
             self._hear(0.02)
+        # An answer without vehicles closes all numbers.
         self._numbers.judge((), {})
         for ledger in self._ledgers.values():
             ledger.close()
@@ -211,6 +222,7 @@ class Soak:
             return
         boxes = self._scene.detect()
         since = number % round(FAULT_EVERY * self._rate)
+        # At first it works: the node must have vehicles before it can lose them.
         if not self._share or number < FAULT_EVERY * self._rate or since > LASTS * self._rate:
             self._detector.right(image.header, boxes)
             return
@@ -221,6 +233,7 @@ class Soak:
 
     def _turn(self, number: int) -> None:
         """Weigh the nodes, and give a target or a parameter to single trackers, in their turn."""
+        # Every ten seconds: six points a minute show growth well.
         if number % round(10 * self._rate) == 0:
             for ledger in self._ledgers.values():
                 ledger.weigh()
@@ -230,6 +243,7 @@ class Soak:
             if target is not None:
                 node.give_target(target)
             if self._is_due(number, CHANGE_EVERY):
+                # One after the other, from the first again.
                 node.set_parameter(*changes[number // round(5 * self._rate) % len(changes)])
 
     def _is_due(self, number: int, every: float, offset: int = 0) -> bool:
@@ -240,6 +254,7 @@ class Soak:
         for ledger in self._ledgers.values():
             ledger.hear()
         while self._tracks:
+            # In order; an image that was answered is not needed any more.
             cloud = self._tracks.pop(0)
             corners = self._corners.pop(stamp_ns(cloud.header), {})
             self._numbers.judge(sightings(cloud), corners)

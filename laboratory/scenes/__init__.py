@@ -51,6 +51,8 @@ def _traffic(summary: str, **settings: object) -> SceneKind[TrafficScene]:
     return SceneKind(TrafficSceneParameters, traffic, summary, settings)
 
 
+# Each scene has a difficulty of its own. Numbers of vehicles, gaps and frames are choices by which
+# it comes about several times.
 TRAFFIC_SCENES: dict[str, SceneKind[TrafficScene]] = {
     "traffic-pair": _traffic(
         "a car overtakes behind a lorry, which hides it",

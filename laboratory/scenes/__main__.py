@@ -33,6 +33,7 @@ def main() -> int:
         record_scene(make_scene(args.scene, seed=args.seed, settings=args.set), args.out)
     else:
         scene = make_traffic_scene(args.scene, seed=args.seed, settings=args.set)
+        # Only a close road has the blur and the short visits that `brief` stands for.
         more = {"brief": BRIEF} if isinstance(scene, CloseScene) else {}
         make = CONDITIONS[args.seen] if args.seen else None
         write_mot_folder(

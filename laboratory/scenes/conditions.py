@@ -59,10 +59,12 @@ def snow(size: tuple[int, int], seed: int) -> Condition:
     start = rng.uniform((0, 0), (width, height), (_FLAKES, 2))
     near = rng.random(_FLAKES)
     fall = _FLAKE_FALL[0] + near * (_FLAKE_FALL[1] - _FLAKE_FALL[0])
+    # Faster flakes, which are nearer, drift faster, too.
     drift = rng.normal(0.6, 0.4, _FLAKES) * fall / 4
 
     def apply(frame: Frame, index: int, truth: Truths, after: Truths) -> Frame:
         picture = _hazy(frame)
+        # Round the image, so that there are always as many flakes in it.
         xs = (start[:, 0] + drift * index) % width
         ys = (start[:, 1] + fall * index) % height
         for x, y, size_of in zip(xs.tolist(), ys.tolist(), (1 + 2 * near).tolist(), strict=True):
@@ -79,10 +81,12 @@ def rain(size: tuple[int, int], seed: int) -> Condition:
     def apply(frame: Frame, index: int, truth: Truths, after: Truths) -> Frame:
         picture = _hazy(frame)
         rng = stream(seed, "rain", index)
+        # From a streak's length above the image on, so that some are cut by its border.
         tops = rng.uniform((0, -_STREAK_LENGTH), (width, height), (_STREAKS, 2)).astype(int)
         streaks = np.zeros_like(picture)
         for x, y in tops.tolist():
             cv2.line(streaks, (x, y), (x + 2, y + _STREAK_LENGTH), (70, 72, 75))
+        # Added and cut at 255: drops are lit by the sky, and never darken what is behind them.
         return np.asarray(cv2.add(picture, streaks), np.uint8)
 
     return apply
@@ -93,9 +97,11 @@ def dusk(size: tuple[int, int], seed: int) -> Condition:
 
     def apply(frame: Frame, index: int, truth: Truths, after: Truths) -> Frame:
         light = np.zeros(frame.shape[:2])
+        # The next frame says where each drives to; one that has no next frame shines straight on.
         later = {one.identity: one.box.centre for one in after}
         for one in truth:
             _shine(light, one, later.get(one.identity, one.box.centre))
+        # 3 levels, against 2 by day: the camera's gain is higher in the dark.
         noise = stream(seed, "dusk", index).normal(0, 3.0, frame.shape)
         picture = frame * _DUSK + light[..., None] * (1.0, 0.96, 0.85) + noise
         return np.asarray(np.clip(np.rint(picture), 0, 255), np.uint8)
@@ -107,15 +113,19 @@ def _shine(light: Array, vehicle: VehicleTruth, to: tuple[float, float]) -> None
     """Add the light of a vehicle that drives to a centre: on the road, and its lamps in sight."""
     box = vehicle.box
     way = np.array(to) - box.centre
+    # A vehicle that stands has no direction; its beam is on its own spot.
     across, down = (way / max(float(np.hypot(*way)), 1e-9)).tolist()
+    # At the front bumper: the lower edge of the box of one that comes, higher up for one that goes.
     x, y = box.centre[0] + across * box.width / 2, box.y + box.height * (0.8 + 0.2 * down)
     beam = (x + across * box.width, y + down * box.width / 2)
     _add_spot(light, beam, (_BEAM[0] * box.width, _BEAM[1] * box.width), _BEAM_LIGHT)
     if down < _FACING:
         return
     radius = max(_LAMP * box.width, 1.0)
+    # Seen from the side, both lamps are at one place.
     for side in (-0.3, 0.3):
         lamp = (x + side * box.width * abs(down), y - 0.25 * box.height)
+        # Lamps are hidden in the same share as their vehicle.
         _add_spot(light, lamp, (radius, radius), _LAMP_LIGHT * vehicle.visible)
         _add_spot(light, lamp, (3 * radius, 3 * radius), _LAMP_LIGHT / 5 * vehicle.visible)
 
@@ -124,11 +134,13 @@ def _add_spot(
     light: Array, centre: tuple[float, float], axes: tuple[float, float], level: float
 ) -> None:
     """Add a Gaussian spot, as far as it can be seen."""
+    # Beyond 2.5 axes it is below 0.2 % of its level: less than a grey level.
     low = [max(int(middle - 2.5 * axis), 0) for middle, axis in zip(centre, axes, strict=True)]
     high = [max(int(middle + 2.5 * axis), 0) for middle, axis in zip(centre, axes, strict=True)]
     part = light[low[1] : high[1], low[0] : high[0]]
     columns = (np.arange(part.shape[1]) + low[0] + 0.5 - centre[0]) / axes[0]
     rows = (np.arange(part.shape[0]) + low[1] + 0.5 - centre[1]) / axes[1]
+    # A Gaussian is the product of one along the rows and one along the columns.
     part += level * np.exp(-(rows**2))[:, None] * np.exp(-(columns**2))
 
 
@@ -137,16 +149,21 @@ def foliage(size: tuple[int, int], seed: int) -> Condition:
     width = int(size[0] * _CROWN[0])
     height = int(size[1] * _CROWN[1])
     rng = stream(seed, "foliage")
+    # Twice the sway, so that the displaced picture never reaches the end of the drawn leaves.
     margin = int(2 * _SWAY)
     leaves = rng.normal(size=(height + 2 * margin, width + 2 * margin)).astype(np.float32)
+    # Blurred noise is correlated over about twice the blur's deviation.
     leaves = np.asarray(cv2.GaussianBlur(leaves, (0, 0), _LEAF / 2))
+    # Of unit deviation, so that the limit below, -0.6, leaves leaves on 73 % of the crown.
     leaves /= leaves.std()
     columns, rows = np.meshgrid(np.arange(width), np.arange(height))
+    # A quarter of an ellipse: the tree stands outside of the image.
     inside = (columns / width) ** 2 + (rows / height) ** 2 < 1
     phase = rng.uniform(0, 2 * np.pi, 2)
 
     def apply(frame: Frame, index: int, truth: Truths, after: Truths) -> Frame:
         gust = 0.5 + 0.5 * np.sin(2 * np.pi * index / _GUST)
+        # Periods of 13 and 17 frames, which together repeat after 628.
         bend = (np.sin(0.5 * index + phase[0]), np.sin(0.37 * index + phase[1]))
         # Neighbouring twigs do not move alike.
         wave = np.sin(columns / 23.0 + rows / 31.0 + 0.4 * index)
@@ -169,6 +186,7 @@ def compression(size: tuple[int, int], seed: int) -> Condition:
     """Send the images through a stream of few bits."""
 
     def apply(frame: Frame, index: int, truth: Truths, after: Truths) -> Frame:
+        # Red and blue are swapped on the way there and back: OpenCV takes the frame for BGR.
         _, code = cv2.imencode(".jpg", frame, (cv2.IMWRITE_JPEG_QUALITY, _QUALITY))
         return np.asarray(cv2.imdecode(code, cv2.IMREAD_COLOR), np.uint8)
 
@@ -176,6 +194,7 @@ def compression(size: tuple[int, int], seed: int) -> Condition:
 
 
 def _hazy(frame: Frame) -> Frame:
+    # Light that is scattered has the colour of the sky, wherever it comes from.
     grey = np.full_like(frame, 190)
     return np.asarray(cv2.addWeighted(frame, 1 - _HAZE, grey, _HAZE, 0), np.uint8)
 

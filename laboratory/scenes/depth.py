@@ -72,9 +72,12 @@ class Depth:
         """Place on the stage at a share of the way and `across` metres right of the middle."""
         scale = self.scale(share)
         gone = self._distance(share) - FOCAL / NEAREST
+        # A horizontal cut through a road that runs at an angle is wider than the road.
         aside = self.side * (gone / math.tan(BEARING)) + across / math.sin(BEARING)
         # The near end on one side leaves room for the road to go to the other.
         start = self.width * (0.5 - 0.2 * self.side)
+        # Scale and row below the horizon both go with 1 / distance: the row is linear in the
+        # scale.
         span = (BOTTOM - TOP) * self.height / (NEAREST - NEAREST / self.factor)
         return start + aside * scale, BOTTOM * self.height - span * (NEAREST - scale)
 
@@ -95,6 +98,7 @@ class IntoDepth:
         # Constant on the ground: in the image it slows down as it drives away.
         share = frame / self.frames if self.away else 1 - frame / self.frames
         heading = BEARING if self.depth.side > 0 else math.pi - BEARING
+        # Near the middle of the left lane: the dashed line is at 0.
         x, y = self.depth.point(share, -0.45 * HALF_WIDTH)
         return Pose(x, y, heading if self.away else heading - math.pi, self.depth.scale(share))
 
@@ -131,6 +135,7 @@ def _backdrop(depth: Depth, seed: int) -> Image:
     white = np.full_like(road, 208)
     for left in (-HALF_WIDTH + 0.3, HALF_WIDTH - 0.45):
         _fill(picture, depth, shares, (left, left + 0.15), white)
+    # A dash over the first half of each step; in the image they get shorter with the distance.
     for begin, end in pairwise(shares):
         dash = [begin, (begin + end) / 2]
         _fill(picture, depth, dash, (-0.08, 0.08), white)
@@ -141,6 +146,7 @@ def _fill(
     picture: Image, depth: Depth, shares: list[float], across: tuple[float, float], paint: Image
 ) -> None:
     """Fill the strip of the road between two distances from its middle (m)."""
+    # One side there, the other side back: together the outline of the strip.
     near, far = ([depth.point(share, side) for share in shares] for side in across)
     window, inside = cells_inside(np.array([*near, *far[::-1]]), *picture.shape[:2])
     picture[window.slices][inside] = paint[window.slices][inside]

@@ -64,6 +64,7 @@ class Cloud:
         """Give the gains of red, green and blue in `frame`."""
         into = (frame - self.start) / self.length
         cover = float(np.interp(into, (0, 0.2, 0.8, 1.0), (0, 1, 1, 0)))
+        # Behind the cloud the light is bluer, as the sky is left; then warmer, by 6 %. Choices.
         warmth = 0.06 * float(np.interp(into, (0.8, 1.0), (0, 1)))
         light = 1 - self.dimming * cover
         return light * (1 - 0.08 * cover + warmth), light, light * (1 + 0.1 * cover - warmth)
@@ -101,10 +102,12 @@ def tree_shadows(drive: Drive, shares: tuple[float, ...], depth: float) -> list[
     for share in shares:
         columns = round(rng.uniform(1.6, 2.4) * drive.target.size[0])
         rows = bottom - top
+        # 0 in the middle of the shadow, 1 at its sides, ragged as crowns are.
         rim = np.abs(np.linspace(-1, 1, columns)) + 0.25 * value_noise(
             (rows, columns), (16, 12), rng
         )
         sunflecks = value_noise((rows, columns), (6, 7), rng)
+        # Full depth inside, none within a tenth of the rim; sunflecks are holes in it.
         opacity = depth * np.clip(3 * (0.9 - rim), 0, 1) * np.clip(1.5 - 2.2 * sunflecks, 0, 1)
         place = Box(drive.x(drive.along(share)) - columns / 2, top, columns, rows)
         sprite = Sprite(np.tile(SHADOW_TINT, (rows, columns, 1)), opacity)
@@ -139,6 +142,7 @@ class AccelerationParameters(DriveParameters):
 
 def acceleration(parameters: AccelerationParameters, seed: int) -> Scene:
     """Make the scene: the target speeds up, holds the speed, and brakes."""
+    # 14 frames at the first speed to learn the target, then up and down within 1.3 and 1.1 s each.
     low = parameters.speed
     high = parameters.speed * parameters.change
     knots = (0.0, low), (14.0, low), (34.0, high), (48.0, high), (64.0, low)
@@ -150,15 +154,18 @@ def near_traffic(drive: Drive) -> list[Actor]:
     rng = stream(drive.seed, "near lane")
     speed = drive.parameters.speed * rng.uniform(1.5, 1.7)
     lane = drive.road.lane(TARGET_LANE + 1)
+    # Vans: from the nearer lane a car is too low to cover much of the target.
     others = convoy(lane, speed, drive.frame_count, drive.width, rng, (40, 130), (van,))
     return _clear_at_first(drive, others)
 
 
 def _clear_at_first(drive: Drive, others: list[Actor]) -> list[Actor]:
     """Leave out the vehicles that would hide the target before it has been seen for a while."""
+    # Without the driver's swaying, which moves it by 1.5 px at most.
     own = drive.target.on(drive.course(drive.start, drive.pace))[1]
     return [
         actor
+        # In pairs: shadow and body, as `convoy` makes them.
         for pair in zip(others[::2], others[1::2], strict=True)
         if not any(pair[1].path(frame).iou(own.path(frame)) > 0 for frame in range(CLEAR_FRAMES))
         for actor in pair
@@ -184,6 +191,7 @@ def dense(parameters: DriveParameters, seed: int) -> Scene:
 def _own_lane(drive: Drive, rng: np.random.Generator) -> list[Actor]:
     """Make the vehicles before and behind the target in its own lane, as fast as it is."""
     actors: list[Actor] = []
+    # Farther apart than a saloon is long, 53 px: nobody touches anybody, as all are as fast.
     for distance in (-200.0, -100.0, 100.0, 200.0):
         faces = (car, saloon)[rng.integers(2)](TARGET_PAINTS[rng.integers(len(TARGET_PAINTS))])
         place = drive.start + distance + rng.uniform(-15, 15)
@@ -196,6 +204,8 @@ def cross(parameters: DriveParameters, seed: int) -> Scene:
     base = Drive(parameters, seed)
     speed = parameters.speed
     slow = 0.5 * parameters.speed
+    # Braking over 12 frames to half the speed, kept for 14 more: in frame 22 of these the coach
+    # is right in front of it.
     brake = base.frame_at(base.along(0.33))
     pace = Pace(((0.0, speed), (brake, speed), (brake + 12, slow), (brake + 26, slow),
                  (brake + 38, speed)))  # fmt: skip
@@ -216,6 +226,7 @@ def _crossing_coach(drive: Drive, frame: float) -> list[Actor]:
 def _crossing(drive: Drive, frame: float) -> tuple[float, float]:
     """Place of the coach's middle in `frame`: a little nearer to the viewer than the target's."""
     target = drive.course(drive.start, drive.pace)(frame)
+    # 18 px nearer to the viewer, so that the coach is painted over the target and hides it.
     return target.x, target.y + 18
 
 
@@ -225,6 +236,7 @@ def _crossroads(drive: Drive, frame: float) -> Image:
     slope = math.tan(CROSSING) * math.sin(VIEW_ELEVATION) * (-1 if drive.rightward else 1)
     top = -1.0
     bottom = drive.height + 1.0
+    # The line through the coach's position, from above the stage to below it.
     ends = (x + (top - y) / slope, top), (x + (bottom - y) / slope, bottom)
     side_road(
         picture, *ends, 7.5 * drive.scale / math.sin(CROSSING), stream(drive.seed, "crossing")

@@ -107,6 +107,7 @@ class _Traffic:
     @property
     def progress(self) -> Array:
         """Share of the present change of lanes that is done, smooth at both ends."""
+        # 3 s² - 2 s³, whose slope is 0 at both ends: nobody jerks the wheel.
         share = np.clip((self.time - self.since) / _CHANGE, 0.0, 1.0)
         smooth: Array = share * share * (3 - 2 * share)
         return smooth
@@ -126,10 +127,13 @@ class _Traffic:
 
     def step(self, holds: Sequence[Hold]) -> None:
         """Advance by one frame."""
+        # Intelligent driver model (Treiber, Hennecke and Helbing 2000): the wanted gap has a fixed
+        # part, one for the reaction time, and one for the speed of closing in; its exponent is 4.
         gap, closing = self._ahead(holds)
         approach = self.speed * closing / (2 * math.sqrt(_ACCELERATION * _BRAKING))
         wanted_gap = _GAP + np.maximum(0.0, self.speed * _HEADWAY + approach)
         thrust = _ACCELERATION * (
+            # At least 0.1 m in the denominator: a gap of 0 would be an infinite thrust.
             1 - (self.speed / self.wanted) ** 4 - (wanted_gap / np.maximum(gap, 0.1)) ** 2
         )
         thrust = np.maximum(thrust, -_HARDEST)
@@ -142,9 +146,12 @@ class _Traffic:
     def change_lanes(self) -> None:
         """Let impatient drivers begin to change, the first ones first."""
         gap, _ = self._ahead(())
+        # Not below 2 m/s: in a queue the other lane is no faster.
         slow = (self.speed < _IMPATIENT * self.wanted) & (gap < _LOOK_AHEAD) & (self.speed > 2)
+        # A change that is under way comes to its end before the next is thought of.
         rested = self.time - self.since > _CHANGE + _PATIENCE
         for index in np.flatnonzero(slow & rested)[np.argsort(-self.front[slow & rested])]:
+            # The higher lane first; the order only matters where both have room.
             for lane in (self.goal[index] + 1, self.goal[index] - 1):
                 if 0 <= lane < self.lanes and self._has_room(int(index), int(lane)):
                     self.origin[index], self.goal[index] = self.goal[index], lane
@@ -154,12 +161,15 @@ class _Traffic:
     def _ahead(self, holds: Sequence[Hold]) -> tuple[Array, Array]:
         """Gap to what is ahead (m) and speed of closing in (m/s) of every driver."""
         occupied = self.occupies()
+        # Who is in two lanes during a change has a leader in each; the nearer one counts.
         shared = (occupied[:, None] & occupied[None]).any(axis=2)
         gaps = self.front[None] - self.length[None] - self.front[:, None]
         gaps = np.where(shared & (self.front[None] > self.front[:, None]), gaps, math.inf)
         leader = gaps.argmin(axis=1)
         gap = gaps[np.arange(len(gaps)), leader]
+        # Without a leader there is nothing to close in on.
         closing = np.where(np.isfinite(gap), self.speed - self.speed[leader], 0.0)
+        # A red light is a vehicle that stands, for all who can still stop before it.
         for hold in holds:
             if hold.begin <= self.time < hold.end:
                 distance = hold.place - self.front
@@ -170,6 +180,7 @@ class _Traffic:
 
     def _has_room(self, index: int, lane: int) -> bool:
         others = self.occupies()[:, lane]
+        # Nobody is in the way of oneself.
         others[index] = False
         ahead = self.front - self.length - self.front[index]
         behind = self.front[index] - self.length[index] - self.front
@@ -190,7 +201,7 @@ def simulate(
     Parameters
     ----------
     drivers : sequence of Driver
-        Who drives.
+        The drivers, of one direction.
     lanes : int
         Number of lanes of the one direction.
     frame_count : int
@@ -207,6 +218,7 @@ def simulate(
     traffic = _Traffic(drivers, lanes, 1 / frame_rate)
     front, lane = np.empty((2, len(drivers), frame_count))
     for index in range(frame_count):
+        # Noted before the step: frame 0 is as the drivers were placed.
         front[:, index] = traffic.front
         lane[:, index] = traffic.lane
         if changing:
@@ -280,7 +292,7 @@ def drive(
     lengths : sequence of float
         Lengths of the vehicles, m.
     is_lorry : sequence of bool
-        Which of them are lorries; where there are any, the last lane is theirs.
+        True for each lorry; where there are any, the last lane is theirs.
     parameters : TrafficSceneParameters
         Settings of the scene.
     visible : float
@@ -290,18 +302,22 @@ def drive(
     """
     own_lane = any(is_lorry) and parameters.lanes > 1 and not parameters.mixed
     slow = parameters.lanes - 1 if own_lane else parameters.lanes
+    # One entry more than lanes: without a lane of lorries `slow` is one that nobody drives in.
     ahead = rng.uniform(*_FIRST, parameters.lanes + 1) * visible
+    # Slow lorries begin ahead, so that cars overtake them; fast ones begin behind the cars.
     ahead[slow] += _LORRIES_AHEAD * visible * (1 if parameters.lorry_speed < 1 else -1)
     drivers = []
     car_count = 0
     for length, large in zip(lengths, is_lorry, strict=True):
         alone = large and not parameters.mixed
+        # Cars take the lanes in turns, lorries the last one unless they are mixed.
         lane = slow % parameters.lanes if alone else car_count % min(slow, parameters.lanes)
         car_count += not alone
         pace = parameters.lorry_speed if lane == slow or (large and parameters.mixed) else 1.0
         speed = parameters.speed / KMH_PER_MS * rng.uniform(*_SPREAD) * pace
         drivers.append(Driver(lane, float(ahead[lane]), length, float(speed)))
         gap = parameters.gap * rng.uniform(*_GAPS) * (_LORRY_GAP if lane == slow else 1.0)
+        # Each begins behind the one before it in its lane.
         ahead[lane] -= length + gap
     return simulate(
         drivers,
@@ -315,7 +331,9 @@ def drive(
 
 def _holds(parameters: TrafficSceneParameters, visible: float) -> tuple[Hold, ...]:
     if parameters.flow == "queue":
+        # At three quarters of the stretch: the whole queue is in the image.
         return (Hold(0.75 * visible, 2.0, 8.0),)
     if parameters.flow == "waves":
+        # Every 6 s for 2.5 s, which makes waves that travel back against the traffic.
         return tuple(Hold(0.85 * visible, begin, begin + 2.5) for begin in range(1, 200, 6))
     return ()

@@ -78,9 +78,11 @@ class SimulatedDetector:
         array, shape (N, 6)
             Frame from 1, left, top, width, height (px), score.
         """
+        # By identity, from frame to frame: a miss is a run of frames.
         missed: dict[int, bool] = {}
         rows: list[list[float]] = []
         for frame, now in enumerate(truths, start=1):
+            # A stream for each frame: what is drawn in one shifts nothing in the others.
             rng = stream(seed, "detector", frame)
             seen = [one for one in now if _found(one, self, missed, rng)]
             found = [(_noisy(boxes, self.noise, rng), _score(share, rng))
@@ -111,12 +113,15 @@ def _found(
 ) -> bool:
     """Decide on one vehicle: misses come in runs, and more often where much of it is hidden."""
     draw = rng.uniform()
+    # Two states with chances to change, begin and end. The share of time in the missed one is
+    # begin / (begin + end) = misses, and its mean length 1 / end.
     end = 1 / detector.miss_length
     begin = end * detector.misses / (1 - detector.misses)
     was = missed.get(one.identity, False)
     missed[one.identity] = draw > end if was else draw < begin
     share = float(np.clip((one.visible - _BLIND) / (_SURE - _BLIND), 0.0, 1.0))
     inside = one.box.area / one.whole.area
+    # Vehicles that the border cuts to less than a quarter are not detected either.
     return not missed[one.identity] and rng.uniform() < share and inside > _BLIND
 
 
@@ -127,6 +132,7 @@ def _merged(
     groups = [(_corners(one), one.visible) for one in seen]
     if merges == 0:
         return groups
+    # A merged box stays at its index: it may overlap a third vehicle.
     index = 0
     while index < len(groups):
         box, visible = groups[index]
@@ -140,6 +146,7 @@ def _merged(
             other, seen_of_it = groups.pop(others[0])
             low = np.minimum(box[:2], other[:2])
             high = np.maximum(box[2:], other[2:])
+            # As visible as the more visible one: it is what the detector finds.
             groups[index] = np.concatenate([low, high]), max(visible, seen_of_it)
         else:
             index += 1
@@ -155,6 +162,7 @@ def _noisy(corners: Array, noise: float, rng: np.random.Generator) -> Array:
     """Move each edge, and return left, top, width and height."""
     sides = np.tile(corners[2:] - corners[:2], 2)
     moved = corners + noise * sides * rng.standard_normal(4)
+    # A box keeps a side of 1 px at least, also where the noise swaps its edges.
     low = np.minimum(moved[:2], moved[2:] - 1)
     high = np.maximum(moved[2:], moved[:2] + 1)
     return np.concatenate([low, high - low])
@@ -167,6 +175,7 @@ def _score(visible: float, rng: np.random.Generator) -> float:
 
 def false_alarm(size: tuple[int, int], rng: np.random.Generator) -> tuple[Array, float]:
     """Place a box of a vehicle's size anywhere."""
+    # Around the size of cars in these scenes, which are about 30 px long.
     width = rng.uniform(15, 60)
     height = rng.uniform(10, 30)
     left = rng.uniform(0, size[0] - width)
@@ -220,11 +229,13 @@ def write_mot_folder(
             truths = []
             for index, (frame, truth) in enumerate(scene.frames()):
                 progress(index + 1, scene.frame_count)
+                # All frames are rendered: the scene's random streams go by their number.
                 if index % every:
                     continue
                 truths.append(truth)
                 picture = frame
                 if condition is not None:
+                    # Lamps shine where a vehicle drives to, which the next frame says.
                     after = scene.truth(min(index + 1, scene.frame_count - 1))
                     picture = condition(frame, index, truth, after)
                 (partial / "img1" / f"{len(truths):06d}.jpg").write_bytes(jpeg(picture))

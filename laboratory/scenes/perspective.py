@@ -63,6 +63,7 @@ class RoadCamera:
 
     def depth(self, points: Array) -> Array:
         """Return the distance (…,) along the view of points (…, 3), m."""
+        # The columns of the rotation are the camera's axes in the road's: right, down, ahead.
         depth: Array = (points - self.pose.position) @ self.pose.rotation[:, 2]
         return depth
 
@@ -78,6 +79,7 @@ def looking(position: tuple[float, float, float], at: tuple[float, float]) -> Po
     place = np.asarray(position)
     view = np.array([*at, 0.0]) - place
     view /= np.linalg.norm(view)
+    # Level: the right axis is on the ground's plane.
     right = np.cross(view, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
     return Pose(np.column_stack([right, np.cross(view, right), view]), place)
@@ -161,6 +163,7 @@ def _treads(faces: Sequence[Face], axles: Sequence[float]) -> list[Face]:
     return [
         Face(
             tuple(
+                # Before and behind the axle, where the tread is seen, and half the tyre's height.
                 (axle - middle + side * radius * 0.6, left - width / 2 + across, up)
                 for across, up in ((0, 0.0), (_TREAD, 0.0), (_TREAD, radius), (0, radius))
             ),
@@ -203,6 +206,7 @@ def draw(placed: tuple[Array, _Solid], camera: RoadCamera, opacity: float) -> Sp
     # Inverse depth, as it is linear across a face in the image; depth itself is not.
     nearness = 1 / camera.depth(corners)
     colour = np.zeros((rows, columns, 3), np.uint8)
+    # 0 is infinitely far: nothing there yet.
     nearest = np.zeros((rows, columns))
     for face, part in zip(solid.faces, solid.slices, strict=True):
         window, inside = cells_inside(cells[part], rows, columns)
@@ -211,6 +215,7 @@ def draw(placed: tuple[Array, _Solid], camera: RoadCamera, opacity: float) -> Sp
             kept = nearest[window.slices]
             # A depth buffer: no order of the faces is right from every side. Those in one place, as
             # a window in its wall, are told apart by their order.
+            # kept / (1 + s kept) = 1 / (1 / kept + s): s metres behind what is there.
             inside &= near > kept / (1 + SAME_PLACE * kept)
             kept[inside] = near[inside]
             colour[window.slices][inside] = _shaded(face, corners[part], camera)
@@ -219,6 +224,7 @@ def draw(placed: tuple[Array, _Solid], camera: RoadCamera, opacity: float) -> Sp
 
 def _over(points: Array, values: Array, left: int, top: int, shape: tuple[int, ...]) -> Array:
     """Spread values at the corners of a face over cells: inverse depth is linear in the image."""
+    # By least squares, as faces have three corners or many; for flat ones it is exact.
     design = np.column_stack([points, np.ones(len(points))])
     across, down, level = np.linalg.lstsq(design, values, rcond=None)[0]
     x = left + 0.5 + np.arange(shape[1])

@@ -88,10 +88,13 @@ def road(parameters: RoadSceneParameters, seed: int) -> Scene:
     """Make the scene."""
     rng = stream(seed, "road in perspective")
     camera = camera_of(parameters, seed)
+    # Metres from one frame to the next.
     step = parameters.speed / KMH / parameters.frame_rate
     count = min(int((FAR - NEAR) / step) + 1, LONGEST)
+    # Drivers do not keep exactly to the middle of their lane.
     shift = float(rng.uniform(-0.3, 0.3))
     coming = parameters.heading == "coming"
+    # One that comes ends at `NEAR`, also where `LONGEST` cuts its way: there it is largest.
     start, way = (NEAR + (count - 1) * step, -step) if coming else (NEAR, step)
     target = _vehicle(parameters.vehicle, (shift, start), way, camera, rng)
     others = _others(way, camera, rng)
@@ -109,14 +112,18 @@ def road(parameters: RoadSceneParameters, seed: int) -> Scene:
 
 def camera_of(parameters: RoadSceneParameters, seed: int) -> RoadCamera:
     """Return the camera of the scene of this seed."""
+    # A stream of its own: `road_speed` needs the camera without the rest of the scene.
     rng = stream(seed, "camera over a road")
     model, coefficients = _LENSES[parameters.lens]
+    # A field of view of about 35 degrees: a lens for a stretch of road, not for a panorama.
     focal = float(rng.uniform(950, 1050))
+    # Pixel centres are at whole numbers, so that the middle of the image is half a pixel less.
     lens = Lens((focal, focal), (WIDTH / 2 - 0.5, HEIGHT / 2 - 0.5), model, coefficients)
     if parameters.mount == "gantry":
         place = (float(rng.uniform(-3, 3)), 0.0, float(rng.uniform(6.5, 9)))
         return RoadCamera(lens, looking(place, (0.0, float(rng.uniform(30, 34)))))
     side = float(rng.choice([-1.0, 1.0]))
+    # 10 to 13 m aside: vehicles are seen from their side, too.
     place = (side * float(rng.uniform(10, 13)), 4.0, float(rng.uniform(7, 10)))
     return RoadCamera(lens, looking(place, (0.0, float(rng.uniform(34, 38)))))
 
@@ -138,6 +145,7 @@ def _vehicle(
 
 def _others(way: float, camera: RoadCamera, rng: np.random.Generator) -> list[Actor]:
     """Make the vehicles of the other lanes, far to near: they never hide the target."""
+    # Near where the target begins, so that all are in view together.
     first = FAR if way < 0 else NEAR
     places = [(lane, first + float(rng.uniform(-10, 10))) for lane in (LANES[0], LANES[2])]
     actors: list[Actor] = []

@@ -58,6 +58,8 @@ def ground_picture(
     width, height = size
     plane = camera.plane
     total = np.zeros((height, width, 3))
+    # Four points of each pixel: lines are thinner than a pixel far away, and one point would miss
+    # them in some rows.
     for down in (0.25, 0.75):
         for right in (0.25, 0.75):
             rows, columns = np.mgrid[0:height, 0:width] + 0.0
@@ -66,6 +68,7 @@ def ground_picture(
             ground = plane.homography.to_road(ideal)
             # Rays above the horizon meet the road behind the camera: they are sky.
             below = (plane.homography.nearness(ideal) > 1e-3)[..., np.newaxis]
+            # Any finite point: its colour is not used.
             points = np.where(below, ground, 0.0)
             total += np.where(below, _colours(points, marks, tar, green), _SKY)
     return (total / 4).astype(np.float32)
@@ -78,6 +81,7 @@ def _colours(points: Array, marks: RoadMarks, tar: Image, green: Image) -> Array
     for left, right in marks.tar:
         on_tar |= (x > left) & (x < right)
     colour = np.where(on_tar[..., np.newaxis], _sampled(tar, x, y), _sampled(green, x, y))
+    # Counted from y = 0, where a dash begins.
     dashed = _near(x, marks.dashed, _DASHED) & (y % _PERIOD < _DASH)
     line = dashed | _near(x, marks.solid, _SOLID)
     return np.where(line[..., np.newaxis], _MARK, colour)

@@ -62,6 +62,7 @@ class SpottingDetector(SimulatedDetector):
 
 def _standing_spot(frames: int, size: tuple[int, int], rng: np.random.Generator) -> Array:
     """Report a place of the background in every second or third frame, about the same box."""
+    # About the same box each time, by 1 px: what a network takes for a vehicle does not move.
     box, _ = false_alarm(size, rng)
     seen = 1 + np.flatnonzero(rng.uniform(size=frames) < _SPOT_RATE)
     rows = [
@@ -92,12 +93,14 @@ class CloseScene(TrafficScene):
         """Render every frame in order, with its truth."""
         backdrop = self.backdrop()
         for index in range(self.frame_count):
+            # The mean of a few moments is the blur of an open shutter.
             moments = [self._painted(backdrop, index + at) for at in _EXPOSURE]
             picture: Image = np.mean(moments, axis=0).astype(np.float32)
             yield self.camera.capture(picture, index), self.truth(index)
 
     def truth(self, index: int) -> tuple[VehicleTruth, ...]:
         """Exact truth about every vehicle in the image of frame `index`, by identity."""
+        # On the stage, as the shake brings parts of its margin into the image; cut afterwards.
         left, top = self.camera.offset(index)
         stage = replace(
             self, width=self.width + 2 * SHAKE_MARGIN, height=self.height + 2 * SHAKE_MARGIN
@@ -114,6 +117,7 @@ class CloseScene(TrafficScene):
 
     def _painted(self, backdrop: Image, moment: float) -> Image:
         picture: Image = backdrop.copy()
+        # One order for a moment between two frames: nobody overtakes within half a frame.
         order = self._far_to_near(round(moment))
         for part in (0, 1):
             for number in order:
@@ -129,12 +133,15 @@ def close_scene(parameters: CloseParameters, seed: int) -> CloseScene:
     size = (WIDTH + 2 * SHAKE_MARGIN, HEIGHT + 2 * SHAKE_MARGIN)
     focal = WIDTH / 2 / math.tan(_FIELD / 2)
     lens = Lens((focal, focal), (size[0] / 2 - 0.5, size[1] / 2 - 0.5))
+    # The camera looks at a point of the road 12 m away, at its angle to the road.
     ahead = 12.0
     look_at = (ahead * math.sin(angle), ahead * math.cos(angle))
     camera = RoadCamera(lens, looking((0.0, 0.0, float(rng.uniform(4.5, 7.0))), look_at), _CELLS)
+    # Where the edges of the view meet the far and the near side of the road, and a vehicle more.
     far = (aside + 2 * LANE_WIDTH) / math.tan(angle - _FIELD / 2) + _LONGEST
     near = aside / math.tan(angle + _FIELD / 2) - _LONGEST
     half = (parameters.vehicles + 1) // 2
+    # Traffic keeps to the right: those that come are in the nearer lane.
     ways = ((half, True, 0.5), (parameters.vehicles - half, False, 1.5))
     vehicles = [
         vehicle

@@ -86,6 +86,7 @@ class OnRoad:
     def place(self, x: Array, y: Array) -> None:
         """Set its way: the middle's position in each frame, m."""
         self.x = x
+        # Beyond the crest it waits below the image, where nobody sees it.
         self.y = np.where(y < _FARTHEST, np.maximum(y, _LOWEST), _LOWEST)
 
     def at(self, frame: float) -> tuple[float, float]:
@@ -96,6 +97,7 @@ class OnRoad:
         index = int(min(max(frame, 0), len(self.x) - 1))
         after = min(index + 1, len(self.x) - 1)
         share = frame - index
+        # Nobody drives 3.5 m in a frame (380 km/h at 30 frames/s): that is a leap.
         if not 0 < share < 1 or abs(self.y[after] - self.y[index]) > LANE_WIDTH:
             return float(self.x[index]), float(self.y[index])
         x, y = ((1 - share) * way[index] + share * way[after] for way in (self.x, self.y))
@@ -125,6 +127,7 @@ def perspective_scene(parameters: PerspectiveParameters, seed: int) -> Perspecti
     if parameters.bridges:
         raise InputError("a scene in perspective has no bridges; leave out the setting bridges")
     camera = camera_over(parameters, seed)
+    # One more of those that come, if the number is odd.
     count = parameters.vehicles if parameters.directions == 1 else (parameters.vehicles + 1) // 2
     coming = _direction(count, True, parameters, stream(seed, "coming traffic"))
     going = _direction(
@@ -152,6 +155,7 @@ def perspective_scene(parameters: PerspectiveParameters, seed: int) -> Perspecti
 
 def road_file(scene: PerspectiveScene) -> str:
     """Return a parameter file with pairs of the road: a grid below the horizon."""
+    # Nine pairs; four would do for a plane.
     columns, rows = np.meshgrid(
         np.linspace(0, scene.width, 3), np.linspace(_ROAD_FROM, 1, 3) * scene.height
     )
@@ -183,6 +187,7 @@ def _lanes(way: int, parameters: PerspectiveParameters) -> list[float]:
 
 
 def _marks(parameters: PerspectiveParameters) -> RoadMarks:
+    # The median is x = 0; the lanes of both directions are mirror images.
     inner = MEDIAN / 2
     outer = MEDIAN / 2 + LANE_WIDTH * parameters.lanes
     ways = (-1, 1)[: parameters.directions]
@@ -210,6 +215,7 @@ def _direction(
     flow = drive(lengths, is_lorry, parameters, FAR - NEAR, rng)
     lanes = _lanes(-1 if coming else 1, parameters)
     for number, vehicle in enumerate(vehicles):
+        # Between two lanes during a change, as the flow has it.
         x = np.interp(flow.lane[number], np.arange(len(lanes)), lanes)
         middle = flow.front[number] - vehicle.length / 2
         vehicle.place(x, FAR - middle if coming else NEAR + middle)
@@ -224,6 +230,7 @@ def any_car(rng: np.random.Generator) -> OnRoad:
 
 
 def _lorry(rng: np.random.Generator) -> OnRoad:
+    # Three different colours: a lorry of one would look like a box.
     cab, load, stripe = (
         CAR_PAINTS[number] for number in rng.choice(len(CAR_PAINTS), 3, replace=False)
     )
@@ -251,9 +258,12 @@ def order_of(vehicles: Sequence[OnRoad], camera_x: float) -> Callable[[int], lis
         x, y = np.array([vehicle.at(index) for vehicle in vehicles]).reshape(-1, 2).T
         aside = np.abs(x - camera_x) - [vehicle.width / 2 for vehicle in vehicles]
         half = np.array([vehicle.length / 2 for vehicle in vehicles])
+        # First: all of one is farther than all of the other along the road.
         behind = y[:, np.newaxis] - half[:, np.newaxis] >= y + half
+        # Else by the side, for those that overlap along the road.
         beside = (~behind & ~behind.T) & (aside[:, np.newaxis] > aside)
         first = behind | beside
+        # The order by repeated choice: of those that are left, one that waits for nobody else.
         left = list(range(len(vehicles)))
         ordered = []
         while left:

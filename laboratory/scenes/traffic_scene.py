@@ -30,7 +30,7 @@ _TOP = 66
 _MEDIAN = 34
 """Rows between the two carriageways, px."""
 SCENERY = "scene"
-"""Stands for whatever hides a vehicle and is none."""
+"""Name, in place of an identity, of whatever hides a vehicle and is no vehicle."""
 WIDTH, HEIGHT = 640, 360
 """Size of the images, px: that of a common stream of a traffic camera."""
 
@@ -97,6 +97,7 @@ class TrafficScene(Stage):
 
     def truth(self, index: int) -> tuple[VehicleTruth, ...]:
         """Exact truth about every vehicle in the image of frame `index`, by identity."""
+        # Near to far: whatever may hide a vehicle is known when it is its turn.
         inside = [
             (number, box, whole)
             for number in reversed(self._far_to_near(index))
@@ -135,6 +136,7 @@ class TrafficScene(Stage):
         """Share in sight; what hides most of the rest, and its share."""
         box = body.path(index)
         window = PixelWindow.of(box, self.width, self.height)
+        # Of the silhouette, not of the box; see `Scene`.
         own = body.seen(index).coverage(box, window)
         total = float(own.sum())
         if total <= 0:  # a corner of the box may hold nothing of the silhouette
@@ -146,7 +148,9 @@ class TrafficScene(Stage):
             if actor.hides and place.iou(box) > 0:
                 cover = actor.seen(index).coverage(place, window)
                 seen = seen * (1 - cover)
+                # By each alone: what two hide together counts for both, and the largest is named.
                 shares[name] = shares.get(name, 0.0) + float((own * cover).sum()) / total
+        # Rounded, as sums of floats make a free vehicle look 1e-16 hidden.
         visible = round(float(seen.sum()) / total, 9)
         most = max(shares, key=lambda name: shares[name], default=None)
         if most is None or shares[most] <= 0:
@@ -197,6 +201,7 @@ def _direction(
     lane = Lane(0.0, PX_PER_METRE, road.rightward)
     is_lorry = draw_lorries(count, parameters, rng)
     bodies = [_lorry(lane, rng) if large else any_car(lane, rng) for large in is_lorry]
+    # As long as it is drawn: bumpers of two vehicles touch in the image when they do in the flow.
     lengths = [body.size[0] / PX_PER_METRE for body in bodies]
     flow = drive(lengths, is_lorry, parameters, WIDTH / PX_PER_METRE, rng)
     return [
@@ -215,8 +220,10 @@ def _lorry(lane: Lane, rng: np.random.Generator) -> Vehicle:
 def _way(road: Carriageway, size: tuple[float, float], front: Array, lane: Array) -> Path:
     """Make the path of a vehicle; constant before its first and after its last frame."""
     x = front * PX_PER_METRE
+    # The front is the right edge of a vehicle that drives to the right, else the left edge.
     left = x - size[0] if road.rightward else WIDTH - x
     ground = [road.lane(number).ground for number in range(road.lanes)]
+    # `lane` has fractions during a change, and so has the row.
     top = np.interp(lane, np.arange(road.lanes), ground) - size[1]
     boxes = [Box(*corner, *size) for corner in zip(left.tolist(), top.tolist(), strict=True)]
     return lambda frame: boxes[min(max(round(frame), 0), len(boxes) - 1)]

@@ -58,6 +58,7 @@ class Bend:
         side = math.copysign(1.0, self.angle)
         turn = side * arc / self.radius
         # On the ground, where the arc is a circle; the view from above shortens it only afterwards.
+        # A circle: r sin along, r (1 - cos) across; then straight on in the new heading.
         along = before + self.radius * abs(math.sin(turn)) + after * math.cos(turn)
         across = side * self.radius * (1 - math.cos(turn)) + after * math.sin(turn)
         east, north = _rotated(along, across, self.start.heading)
@@ -87,6 +88,7 @@ def side_road(
     x1, y1 = end
     # The kerb first, and the asphalt over it.
     sides = (-width / 2 - 3, width / 2 + 3), (-width / 2, width / 2)
+    # The kerb is 3 px wide on each side, and lighter than the road.
     for (left, right), light in zip(sides, (1.25, 1.0), strict=True):
         outline = np.array([(x0 + left, y0), (x0 + right, y0), (x1 + right, y1), (x1 + left, y1)])
         window, inside = cells_inside(outline, *picture.shape[:2])
@@ -95,6 +97,7 @@ def side_road(
         ground = asphalt((columns, rows), rng).transpose(1, 0, 2) * np.float32(light)
         picture[window.slices][inside] = ground[inside]
     for row in range(max(round(y0), 0), min(round(y1), picture.shape[0])):
+        # Dashes of 13 rows every 24.
         if row % 24 < 13:
             column = round(x0 + (x1 - x0) * (row - y0) / (y1 - y0))
             picture[row, max(column - 1, 0) : max(column + 1, 0)] = (206, 206, 198)
@@ -115,11 +118,14 @@ class TurningDrive(Drive):
 
     def __init__(self, parameters: DriveParameters, seed: int) -> None:
         super().__init__(parameters, seed)
+        # The corner differs between seeds by 2 % of the image, and is before its middle.
         self.corner = self.along(0.42 + stream(seed, "corner").uniform(-0.02, 0.02))
 
     @property
     def _end(self) -> float:
+        # The way up the side road that is left in the image, whose depth is foreshortened.
         up = (self.row - SHAKE_MARGIN - FREE_PX - self.target.size[0]) / math.sin(VIEW_ELEVATION)
+        # The quarter circle is pi/2 radii long, and one radius of `up` is driven in it.
         return self.corner + TURN_RADIUS * math.pi / 2 + up - TURN_RADIUS
 
     def course(self, s: float, pace: Pace, lane: int = TARGET_LANE) -> Course:
@@ -151,6 +157,7 @@ def turn_occluded(parameters: DriveParameters, seed: int) -> Scene:
 def house_at_corner(drive: TurningDrive) -> list[Actor]:
     """Build a house on the near side that hides the turn of `drive`."""
     length, height = drive.target.size
+    # From before the turn to after it, so that both straight parts are seen.
     near = drive.corner - 0.7 * length
     far = drive.corner + TURN_RADIUS + 0.6 * length
     left = min(drive.x(near), drive.x(far))
@@ -163,6 +170,7 @@ def house(box: Box, walls: Colour, rng: np.random.Generator) -> list[Actor]:
     """Make the rear of a house with two rows of windows under a roof of tiles, filling `box`."""
     rows = round(box.height)
     columns = round(box.width)
+    # `concrete` has a level of 164: divided by it, its texture is left, on any colour.
     colour = concrete((rows, columns), rng) / 164 * np.asarray(walls)
     eaves = round(rows * 0.3)
     colour[:eaves] = concrete((eaves, columns), rng) / 164 * np.asarray((138.0, 76.0, 58.0))

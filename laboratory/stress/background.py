@@ -102,6 +102,7 @@ def background_of(source: Source) -> Background:
 
 def _steps(footage: StressFootage) -> Iterator[tuple[Matrix, float, float]]:
     """Yield the similarity, the median flow (reduced px) and the agreeing share of each frame."""
+    # Of consecutive frames: over a longer time the corners of a moving camera are out of view.
     last, zoom = _reduced(footage.frame(0))
     for index in range(1, len(footage.truth)):
         present, _ = _reduced(footage.frame(index))
@@ -118,6 +119,7 @@ def _step(
     if len(before) < _LEAST_CORNERS:
         return np.eye(3), 0.0, 0.0
     median = float(np.median(np.hypot(*(after - before).T)))
+    # Four unknowns: occluders turn and grow with the background, and are never sheared.
     found = cv2.estimateAffinePartial2D(
         before, after, method=cv2.RANSAC, ransacReprojThreshold=_RANSAC_PX
     )
@@ -131,6 +133,8 @@ def _step(
 
 
 def _flow(last: Grey, present: Grey, mask: Grey) -> tuple[Matrix, Matrix]:
+    # Weak corners, too (1 % of the strongest), as roads have few; 7 px apart, so that they spread
+    # over the image and not over the best textured vehicle in it.
     found = cv2.goodFeaturesToTrack(last, _CORNERS, 0.01, 7, mask=mask)
     corners = cast(npt.NDArray[np.float32] | None, found)
     if corners is None:
@@ -156,7 +160,9 @@ def _without_target(grey: Grey, zoom: float, target: Box | None) -> Grey:
 
 def _reduced(frame: Frame) -> tuple[Grey, float]:
     width, height = frame_size(frame)
+    # Small images are not enlarged: that adds no detail.
     zoom = min(1.0, _WIDTH / width)
     size = round(width * zoom), round(height * zoom)
     grey = cv2.cvtColor(frame, cv2.COLOR_RGB2GRAY)
+    # Area means, as fine texture that is merely skipped would flow at random.
     return np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_AREA), np.uint8), zoom

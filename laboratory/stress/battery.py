@@ -68,6 +68,7 @@ def list_cases(
     """
     chosen = [_kind(name) for name in (kinds or STRESS_KINDS)]
     cases: list[Case] = []
+    # Cut before cases are chosen: those that a cut would spoil must not take a place of the few.
     for source in sources:
         own = [(kind, case) for kind in chosen for case in kind.cases(source, seed)]
         short = [(kind, cut) for kind, case in own if (cut := _cut(case, kind, max_frames))]
@@ -89,11 +90,13 @@ def _cut(case: Case, kind: Kind, max_frames: int | None) -> Case | None:
     beyond = 0 if max_frames is None else case.count - max_frames
     if beyond <= 0:
         return case
+    # Kinds without an occluder are as hard at their beginning as later.
     if kind.group != "occluder":
         return replace(case, count=case.count - beyond)
     occluded = [
         truth is not None and truth.occlusion is not Occlusion.NONE for truth in case.truths()
     ]
+    # Cut at the beginning: the frames after an occlusion are what it is judged by.
     if occluded.index(True) - beyond < LEAST_LEAD:
         return None
     return replace(case, first=case.first + beyond, count=case.count - beyond)
@@ -102,12 +105,14 @@ def _cut(case: Case, kind: Kind, max_frames: int | None) -> Case | None:
 def _in_turns(cases: Sequence[tuple[Kind, Case]], seed: int) -> Iterator[Case]:
     """Give all cases, those of different groups and kinds in turns, at random within a kind."""
     rng = stream(seed, "turns")
+    # Shuffled as a whole, then parted: the order within each kind is random, too.
     shuffled = [cases[i] for i in rng.permutation(len(cases))]
     by_group = {
         group: _alternating([(kind.name, case) for kind, case in shuffled if kind.group == group])
         for group in dict.fromkeys(_TURNS)
     }
     left = len(cases)
+    # A group that has no more cases is passed over, until none has.
     for group in itertools.cycle(_TURNS):
         if not left:
             return

@@ -41,6 +41,7 @@ class Reliability:
             return cls()
         confidence = np.clip([pair[0] for pair in pairs], 0.0, 1.0)
         hit = np.array([pair[1] for pair in pairs], float)
+        # A confidence of 1 belongs to the last bin.
         bins = np.minimum((confidence * BINS).astype(int), BINS - 1)
         sums = (np.bincount(bins, values, BINS) for values in (None, confidence, hit))
         counts, confidences, hits = (values.tolist() for values in sums)
@@ -69,6 +70,7 @@ class Reliability:
 
         Each bin counts by its frames; None without any.
         """
+        # Sums and not means: a bin's gap times its frames is the difference of its sums.
         gaps = zip(self.confidences, self.hits, strict=True)
         return sum(abs(c - h) for c, h in gaps) / self.frames if self.frames else None
 

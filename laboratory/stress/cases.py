@@ -28,6 +28,7 @@ class Start:
 
     def box(self, true: Box) -> Box:
         """Return the box to start on."""
+        # The very box of the truth: by way of its centre it would be rounded.
         if self == TRUE_START:
             return true
         x, y = true.centre
@@ -45,11 +46,11 @@ class StressFrame(NamedTuple):
     Attributes
     ----------
     frame : (H, W, 3) array of uint8
-        RGB.
+        RGB image.
     elapsed : float
         Nominal frame periods since the frame before; 1.0 in the first.
     truth : Truth or None
-        Its stamp belongs to the case's own time; None where the sequence has no truth.
+        True state, stamped in the case's own time; None where the sequence has no truth.
     """
 
     frame: Frame
@@ -114,6 +115,7 @@ class Case:
     @property
     def fps(self) -> float:
         """Nominal frames per second."""
+        # Every second frame of 30 frames/s is 15 frames/s.
         return open_footage(self.origin.source).fps / abs(self.step)
 
     def label(self, name: str) -> str:
@@ -141,6 +143,7 @@ class Case:
         footage = open_footage(self.origin.source)
         fps = self.fps
         painters = [change.painter(footage, self.seed) for change in self.changes]
+        # So that the first frame, at position 0, has an elapsed time of 1.
         last = -1
         for position, index in self._kept():
             frame = footage.frame(index)
@@ -152,6 +155,7 @@ class Case:
 
     def _kept(self) -> Iterator[tuple[int, int]]:
         """Yield the position in the case and the index in the sequence of each frame kept."""
+        # A draw for every position, dropped or not: another share drops more of the same frames.
         draws = stream(self.seed, "dropped").random(self.count)
         for position in range(self.count):
             if position == 0 or draws[position] >= self.dropped:
@@ -161,6 +165,7 @@ class Case:
         if truth is None:
             return None
         source = self.origin.source
+        # Each change sees the size that those before it made.
         size = source.width, source.height
         for change in self.changes:
             truth = change.truth(truth, index, size, self.seed)

@@ -62,6 +62,7 @@ class Brightness(Unmoved):
 
     def painter(self, _footage: StressFootage, _seed: int) -> Painter:
         """Prepare a look-up table."""
+        # Rounded and cut at 255, as a camera does that is exposed for too long.
         return _look_up(np.arange(256) * self.gain)
 
 
@@ -73,6 +74,7 @@ class Gamma(Unmoved):
 
     def painter(self, _footage: StressFootage, _seed: int) -> Painter:
         """Prepare a look-up table."""
+        # As shares of white: 0 and 255 stay what they are, whatever the exponent.
         return _look_up(255 * (np.arange(256) / 255) ** self.exponent)
 
 
@@ -105,6 +107,7 @@ class Jpeg(Unmoved):
         """Prepare nothing: every frame is coded on its own."""
 
         def paint(frame: Frame, _index: int) -> Frame:
+            # In OpenCV's order: JPEG weighs red and blue differently.
             image = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
             _, coded = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, self.quality])
             decoded = cv2.imdecode(coded, cv2.IMREAD_COLOR)
@@ -160,6 +163,7 @@ class Reduction:
 
     def truth(self, truth: Truth, _index: int, size: Size, _seed: int) -> Truth:
         """Scale the box by what the rounded size amounts to."""
+        # By the rounded size: with the factor itself boxes would drift by half a pixel.
         reduced = self.size(size)
         x, y = reduced[0] / size[0], reduced[1] / size[1]
         box = truth.box
@@ -195,6 +199,7 @@ class Shake:
 
     def shift(self, index: int, seed: int) -> tuple[float, float]:
         """Return the shift (x, y) of frame `index` in px."""
+        # Drawn anew for each frame, so that a frame does not depend on those made before.
         phases = stream(seed, "shake").uniform(0, 2 * math.pi, (len(_SWAYS), 2)).tolist()
         x, y = (
             self.amplitude

@@ -53,6 +53,7 @@ def run(request: Request) -> int:
     """Run the missing cases of the battery, write its report, and print its tables."""
     systems = _systems(request)
     cases = _cases(request)
+    # Few unless asked for: a battery has many cases, and its intervals are over cameras.
     count = request.seeds or FEW_SEEDS
     seeds = range(request.first_seed, request.first_seed + count)
     tell_notices([f"{len(cases)} cases of {len({case.sequence for case in cases})} sequences"])
@@ -80,6 +81,7 @@ def _cases(request: Request) -> list[Case]:
     return list_cases(
         find_sequences([Path(source) for source in request.sources], request.cameras),
         kinds=request.kinds.split(",") if request.kinds else None,
+        # A number that was given is stronger than the battery's.
         per_sequence=request.per_sequence or (QUICK_PER_SEQUENCE if is_quick else None),
         limit=request.limit,
         max_frames=request.max_frames or (QUICK_FRAMES if is_quick else None),

@@ -24,16 +24,18 @@ def visible_share(corners: Floats, box: Box, size: tuple[int, int]) -> float:
     Parameters
     ----------
     corners : (4, 2) array
-        Of the rectangle, clockwise.
+        Corners of the rectangle, clockwise, px.
     box : Box
-        The vehicle.
+        Box of the vehicle, px.
     size : (int, int)
         Width and height of the image in px.
     """
     left, right = _span(box.x, box.x + box.width, size[0])
     top, bottom = _span(box.y, box.y + box.height, size[1])
+    # Most frames end here: the occluder is somewhere else.
     if right <= left or bottom <= top or _is_beside(corners, (left, top, right, bottom)):
         return 1.0
+    # An upright box covers of a pixel the product of its shares along the axes.
     across = _share_of_pixels(left, right, box.x, box.x + box.width)
     down = _share_of_pixels(top, bottom, box.y, box.y + box.height)
     weight = down[:, np.newaxis] * across
@@ -51,18 +53,19 @@ def coverage(corners: Floats, region: tuple[int, int, int, int]) -> Floats:
     Parameters
     ----------
     corners : (4, 2) array
-        Clockwise in the image.
+        Corners, clockwise in the image, px.
     region : tuple of int
         Left, top, width and height of the region in px.
 
     Returns
     -------
     (height, width) array
-        0 to 1.
+        Shares, 0 to 1.
     """
     left, top, width, height = region
     x = left + 0.5 + np.arange(width, dtype=float)
     y = (top + 0.5 + np.arange(height, dtype=float))[:, np.newaxis]
+    # A convex shape is what is inside of all its edges.
     ends = np.roll(corners, -1, axis=0)
     inside = [_share_inside(one, end, x, y) for one, end in zip(corners, ends, strict=True)]
     # The parts of a pixel that two opposite edges cut off never overlap.
@@ -86,10 +89,13 @@ def _share_inside(one: Floats, end: Floats, x: Floats, y: Floats) -> Floats:
     """
     dx, dy = (float(each) for each in end - one)
     length = float(np.hypot(dx, dy)) or 1.0
+    # Signed distance of pixel centres to the edge, positive inside for corners that go clockwise.
     distance = (dx * (y - one[1]) - dy * (x - one[0])) / length
     low, high = sorted((abs(dx) / length, abs(dy) / length))
+    # An upright edge: the second variable has no width, and would be divided by.
     if low < _UPRIGHT:
         return np.asarray(np.clip(distance + 0.5, 0, 1))
+    # The distribution of that sum, a trapezium's integral: squares of ramps at its four corners.
     outer = (high + low) / 2
     inner = (high - low) / 2
     squares = [np.maximum(distance + each, 0.0) ** 2 for each in (outer, inner, -inner, -outer)]

@@ -105,8 +105,10 @@ def find_sequences(
     table = _read_cameras(cameras) if cameras else {}
     for root in map(Path, roots):
         own = root / CAMERAS
+        # A table that was given holds for all locations.
         known = table or (_read_cameras(own) if own.is_file() else {})
         for path in _sequences_in(root):
+            # By its path below the location: folders of data sets repeat names, as `img` and `gt`.
             name = path.relative_to(root).as_posix() if path != root else root.absolute().name
             name = name.removesuffix(".mcap")
             if name in found:
@@ -134,6 +136,7 @@ def _open_folder(source: Source, path: Path) -> StressFootage:
     folder = FrameFolder(path)
     files = list(folder.images.values())
     truths = [folder.truths.get(number) for number in folder.images]
+    # Even stamps: a case has times of its own, by position.
     truth = tuple(
         None if one is None else replace(one, stamp_ns=stamp_of(i, folder.fps))
         for i, one in enumerate(truths)
@@ -148,6 +151,7 @@ def _open_folder(source: Source, path: Path) -> StressFootage:
 
 def _open_recording(source: Source, path: Path) -> StressFootage:
     recording = Recording(path, source.topic)
+    # Images that cannot be read are left out here; a case needs every frame that it plays.
     images = [image for image in recording.frames() if image.frame is not None]
     stamps = [image.stamp_ns for image in images]
     truths = recording.truth()
@@ -159,6 +163,7 @@ def _open_recording(source: Source, path: Path) -> StressFootage:
         assert decoded is not None
         return decoded
 
+    # The median, as dropped images lengthen some of the intervals.
     fps = 1e9 / float(np.median(np.diff(stamps))) if len(stamps) > 1 else 30.0
     truth = tuple(truths[pairs[i]] if i in pairs else None for i in range(len(stamps)))
     return StressFootage(source, fps, truth, frame)
@@ -169,6 +174,7 @@ def _describe(name: str, path: Path) -> Source:
         folder = FrameFolder(path)
         if not folder.truths:
             raise InputError(f"the frame folder {path} has no truth to compare with")
+        # Truth and frame rate are part of the footage: a change of either makes other scores.
         files = [*folder.images.values(), path / "groundtruth.csv", path / "sequence.json"]
         unsized = Source(name, str(path.absolute()), "", len(folder.images), 0, 0, _digest(files))
     else:
@@ -193,6 +199,7 @@ def _first_frame(source: Source, path: Path) -> Frame:
 def _digest(files: Sequence[Path]) -> str:
     digest = hashlib.sha256()
     for file in files:
+        # Names, too: the same files in another order are another sequence.
         digest.update(file.name.encode() + b"\0")
         with file.open("rb") as stream:
             while block := stream.read(_BLOCK):
@@ -225,6 +232,7 @@ def _is_frame_folder(path: Path) -> bool:
 
 def _read_cameras(path: Path) -> Mapping[str, str]:
     try:
+        # With or without a byte order mark: spreadsheets write one.
         with path.open(newline="", encoding="utf-8-sig") as stream:
             rows = list(csv.DictReader(stream))
     except (OSError, UnicodeDecodeError) as error:

@@ -19,7 +19,7 @@ from laboratory.stress.occlusion_cases import lorries, poles, walls
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 
 LATER_STARTS = 20
-"""As in OTB's temporal robustness evaluation."""
+"""Starts within a sequence: as many as OTB's temporal robustness evaluation has."""
 _LAST_START = 0.8
 """Share of a recording in which runs start: a fifth of it at least is left to track."""
 _LEAST_FRAMES = 20
@@ -123,8 +123,10 @@ def later_starts(truths: Sequence[Truth | None], count: int) -> list[int]:
     known = [(index, truth) for index, truth in enumerate(truths) if truth is not None]
     found = []
     for number in range(1, count + 1):
+        # Evenly by index of frames with truth: gaps in it are no places to start.
         begin = round(number * _LAST_START * (len(known) - 1) / count)
         clear = (n for n in range(begin, len(known)) if known[n][1].occlusion is Occlusion.NONE)
+        # 0, the first frame, stands for "none": it is dropped below.
         found.append(next(clear, 0))
     return [known[n][0] for n in dict.fromkeys(found) if n]
 
@@ -151,6 +153,7 @@ def _shifted_box(origin: StressSource, seed: int) -> Iterator[Case]:
 def _changed(kind: str, variations: Mapping[str, Change]) -> Callable[..., Iterator[Case]]:
     def cases(origin: StressSource, seed: int) -> Iterator[Case]:
         for variation, change in variations.items():
+            # A seed by name: another kind or another variation leaves this case as it is.
             own = case_seed(seed, origin.name, kind, variation)
             yield from _playing(origin, kind, variation, seed=own, changes=(change,))
 
@@ -159,6 +162,7 @@ def _changed(kind: str, variations: Mapping[str, Change]) -> Callable[..., Itera
 
 def _shake(origin: StressSource, seed: int) -> Iterator[Case]:
     for share in _SHAKES:
+        # Rounded, as the number is part of the case's identity in the store.
         amplitude = round(share * origin.source.width, 2)
         variation = f"{share:g}"
         own = case_seed(seed, origin.name, "shake", variation)

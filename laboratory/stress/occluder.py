@@ -50,6 +50,7 @@ class Motion:
         # Its own motion first: the velocity is in px of the anchor frame, as it was measured there.
         moved = points + (index - self.anchor) * np.asarray(self.velocity)
         a, b, x, y = self.carried[index - self.first] if self.carried else _STANDING
+        # Points are rows: the matrix is transposed.
         turn = np.array([[a, b], [-b, a]])
         return np.asarray(moved @ turn + np.array([x, y]))
 
@@ -74,7 +75,7 @@ class Occluder:
     Attributes
     ----------
     rectangle : Box
-        In the coordinates of the motion's anchor frame, px.
+        Rectangle in the coordinates of the motion's anchor frame, px.
     motion : Motion
         Motion through the sequence.
     texture : Texture
@@ -99,6 +100,7 @@ class Occluder:
 
     def truth(self, truth: Truth, index: int, size: Size, _seed: int) -> Truth:
         """Combine what the sequence says about the vehicle with what the occluder hides."""
+        # Coverage of the box, as the shape of a filmed vehicle is not known.
         share = self.visible_share(truth.box, index, size)
         painted = Occlusion.of(share)
         if painted is Occlusion.NONE:
@@ -117,6 +119,7 @@ class Occluder:
 
 def similarities(matrices: Iterable[Floats]) -> tuple[Similarity, ...]:
     """Write (3, 3) similarities as plain numbers, to a thousandth of a pixel."""
+    # Six digits of turn and scale: a thousandth of a pixel, too, 1000 px from the origin.
     return tuple(
         (
             round(float(m[0, 0]), 6),

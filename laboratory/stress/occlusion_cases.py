@@ -67,8 +67,10 @@ def _cases(
     background = background_of(origin.source)
     size = origin.source.width, origin.source.height
     placer = Placer(footage.truth, background, size)
+    # By the case's name, so that another kind or length leaves this case as it is.
     own = zlib.crc32(f"{seed}/{origin.name}/{kind}/{variation}".encode())
     done = set[str]()
+    # Frames are tried until there is one case of each path, or none is left.
     for anchor in _anchors(len(footage.truth), own):
         placed = placer.place(spec, anchor, own)
         if placed is None or placed.path in done or _is_too_large(placed, footage):
@@ -108,6 +110,7 @@ def _is_too_large(placed: Placed, footage: StressFootage) -> bool:
     width = footage.source.width
     height = footage.source.height
     image = np.array([[0, 0], [width, 0], [width, height], [0, height]], np.float32)
+    # Every fifth frame: a rectangle's share of the image changes little in between.
     for index in range(placed.first, placed.first + placed.count, 5):
         corners = placed.occluder.corners(index).astype(np.float32)
         shared, _ = cv2.intersectConvexConvex(image, corners)
@@ -124,6 +127,7 @@ def _with_texture(placed: Placed, footage: StressFootage, seed: int) -> Occluder
     # Not larger than a quarter of the image, so that there is room for it beside the vehicle.
     width = int(np.clip(occluder.rectangle.width, 16, source.width // 2))
     height = int(np.clip(occluder.rectangle.height, 16, source.height // 2))
+    # A patch of no texture still wins over none: every try may show the vehicle.
     best = -1.0, 0, (0, 0, width, height)
     for _ in range(_PATCH_TRIES):
         index = int(rng.integers(len(footage.truth)))
@@ -133,6 +137,7 @@ def _with_texture(placed: Placed, footage: StressFootage, seed: int) -> Occluder
             continue
         part = footage.frame(index)[top : top + height, left : left + width]
         best = max(best, (float(part.std()), index, (left, top, width, height)))
+    # The cab leads: it is at the right unless the lorry drives to the left.
     velocity = occluder.motion.velocity[0]
     texture = replace(occluder.texture, frame=best[1], patch=best[2], is_mirrored=velocity < 0)
     return replace(occluder, texture=texture)
@@ -142,6 +147,7 @@ def _shows_the_vehicle(
     footage: StressFootage, index: int, patch: tuple[int, int, int, int]
 ) -> bool:
     truth = footage.truth[index]
+    # Unknown: the vehicle may well be in the patch.
     if truth is None:
         return True
     x, y, width, height = patch

@@ -99,11 +99,11 @@ def blend(frame: Frame, texture: Image, corners: Floats) -> Frame:
     Parameters
     ----------
     frame : (H, W, 3) array of uint8
-        RGB.
+        RGB image.
     texture : (h, w, 3) array
-        Its corners go to `corners`.
+        Texture, whose corners go to `corners`.
     corners : (4, 2) array
-        Clockwise from the texture's top left, px.
+        Corners, clockwise from the texture's top left, px.
     """
     width, height = frame_size(frame)
     left, top = np.clip(np.floor(corners.min(axis=0)), 0, (width, height)).astype(int).tolist()
@@ -127,6 +127,7 @@ def blend(frame: Frame, texture: Image, corners: Floats) -> Frame:
 
 def _wall(shape: tuple[int, int], patch: Image, rng: np.random.Generator) -> Image:
     """Draw concrete slabs with joints, lit from above."""
+    # Warm grey, as concrete is, from three quarters of the patch's level to a third above it.
     base = np.full(3, _level(patch)) * rng.uniform(0.75, 1.3) * (1.03, 1.0, 0.94)
     shade = 1 + 0.10 * value_noise(shape, (40, 25), rng) + 0.06 * value_noise(shape, (5, 4), rng)
     shade += _grain(patch) * rng.standard_normal(shape)
@@ -144,9 +145,11 @@ def _pole(shape: tuple[int, int], patch: Image, rng: np.random.Generator) -> Ima
     across = shape[1] if is_upright else shape[0]
     # Shaded across like a cylinder: a flat post would look like the border of a sign.
     position = (np.arange(across) + 0.5) / across
+    # The light comes from one side: the brightest flank is at a third of the width.
     flank = 0.55 + 0.65 * np.exp(-(((position - 0.35) / 0.28) ** 2))
     shade = (flank if is_upright else flank[:, np.newaxis]) * np.ones(shape)
     shade = shade * (1 + 0.05 * value_noise(shape, (6, 6), rng))
+    # Cool grey, as galvanised steel is.
     base = np.full(3, _level(patch)) * rng.uniform(0.7, 1.3) * (0.97, 1.0, 1.04)
     return _tint(base, shade)
 
@@ -160,6 +163,7 @@ def _lorry(shape: tuple[int, int], patch: Image, rng: np.random.Generator) -> Im
     shade = (
         1 + 0.05 * value_noise(shape, (12, 30), rng) + _grain(patch) * rng.standard_normal(shape)
     )
+    # Boards or ribs, 14 on a side.
     shade[:, :: max(5, columns // 14)] *= 0.8
     shade *= np.linspace(1.1, 0.85, rows)[:, np.newaxis]
     image = _outlined(_OWN_PAINT * _tint(paint, shade) + (1 - _OWN_PAINT) * side)
@@ -170,6 +174,7 @@ def _lorry(shape: tuple[int, int], patch: Image, rng: np.random.Generator) -> Im
 
 def _add_cab(image: Image, paint: Floats) -> None:
     rows, columns = image.shape[:2]
+    # A quarter of the length, but never longer than nine tenths of its height.
     begin = columns - max(3, min(columns // 4, round(0.9 * rows)))
     image[:, begin:] = 0.75 * paint + 0.25 * image[:, begin:]
     image[:, begin : begin + max(1, columns // 80)] *= 0.4
@@ -180,6 +185,7 @@ def _add_cab(image: Image, paint: Floats) -> None:
 
 def _add_wheels(image: Image) -> None:
     rows, columns = image.shape[:2]
+    # The underside is in shadow.
     image[round(0.86 * rows) :] *= 0.35
     radius = max(1, round(0.09 * rows))
     for share in (0.08, 0.2, 0.78, 0.9):
@@ -189,10 +195,12 @@ def _add_wheels(image: Image) -> None:
 
 
 def _outlined(image: Image) -> Image:
+    # Twice as wide on occluders that are large enough for it.
     thick = 1 if min(image.shape[:2]) < 60 else 2
     shade = np.full(image.shape[:2], _EDGE)
     shade[thick:-thick, thick:-thick] = 1.0
     image = _tint(image, shade)
+    # Light catches the upper edge.
     image[thick : 2 * thick] *= 1.2
     return image
 
@@ -204,6 +212,7 @@ def _tint(base: Floats | Image, shade: Floats) -> Image:
 def _grain(patch: Image) -> float:
     """Measure how much the footage varies from pixel to pixel, as a share of its level."""
     fine = patch - cv2.GaussianBlur(patch, (0, 0), _FINE_PX)
+    # Bounded: foliage in the patch would make a wall that flickers from pixel to pixel.
     return min(float(fine.std()) / _level(patch), _LARGEST_GRAIN)
 
 

@@ -65,7 +65,7 @@ class Placed:
     Attributes
     ----------
     occluder : Occluder
-        Its texture is still to be chosen.
+        The occluder, whose texture is still to be chosen.
     first, count : int
         The frames of the sequence to play.
     hidden : int
@@ -87,11 +87,11 @@ class Placer:
     Parameters
     ----------
     truth : sequence of Truth or None
-        Of every frame.
+        Truth of every frame.
     background : Background
-        Standing occluders move along with it; they are refused where it is not coherent.
+        Its motion carries standing occluders, which are refused where it is not coherent.
     size : (int, int)
-        Of the images in px.
+        Width and height of the images, px.
     """
 
     def __init__(
@@ -100,6 +100,7 @@ class Placer:
         self._truth = truth
         self._background = background
         self._size = size
+        # NaN: a frame without truth can be looked up, and takes part in nothing.
         nowhere = np.full((4, 2), np.nan)
         self._corners = np.array(
             [nowhere if each is None else each.box.corners for each in truth], float
@@ -110,24 +111,29 @@ class Placer:
         # A standing occluder that does not move as its surroundings do is seen through at once.
         if spec.style != LORRY and not self._background.coherent:
             return None
+        # 1. The frames in which an occlusion around the anchor could matter.
         span = self._span(anchor, spec.duration)
         if span is None:
             return None
+        # 2. The occluder's motion through them, and the vehicle as seen from it.
         rng = stream(seed, "place", anchor)
         motion = self._motion(spec, anchor, span, rng)
         boxes = self._relative(motion, span)
+        # 3. Rectangles of growing length, of which one hides it for about the right time.
         rectangles = _rectangles(spec, boxes, anchor - span.start, rng)
         # Counted by boxes first, which is cheap; only the best one is judged by its exact shape.
         counts = [(abs(_hidden(each, boxes) - spec.duration), each) for each in rectangles]
         miss, best = min(counts, key=lambda pair: pair[0])
         if miss > 2 * _slack(spec):  # far from it even by its outline, so nothing exact is computed
             return None
+        # 4. The exact truth with that one decides.
         occluder = Occluder(best, motion, Texture(spec.style, seed, anchor, (0, 0, 1, 1)))
         return self._judge(occluder, span, _near(best, boxes), spec)
 
     def _span(self, anchor: int, duration: int) -> range | None:
         """Return the frames around `anchor`, all with truth, that an occlusion could matter in."""
         # Without truth nobody knows what the occluder hides: the span ends at the first gap.
+        # Up to the occlusion's half, its ends, and what is played before or after it.
         reach = duration // 2 + _LONGEST_TOUCH + max(LEAD, TAIL)
         first = last = anchor
         while first > max(0, anchor - reach) and self._truth[first - 1] is not None:
@@ -150,6 +156,7 @@ class Placer:
         boxes = self._relative(standing, span)
         # Eleven frames, a third of a second: the difference of two boxes is noise of the truth.
         near = slice(max(0, anchor - span.start - 5), anchor - span.start + 6)
+        # In the background's coordinates: a panning camera is no motion of the vehicle.
         velocity = np.mean(np.diff(_centres(boxes[near]), axis=0), axis=0)
         extent = boxes[anchor - span.start, 2] - boxes[anchor - span.start, 0]
         # A lorry drives along the road as the vehicle does, and passes it at a speed of its own.
@@ -170,11 +177,13 @@ class Placer:
 
         Frames in which the occluder is not near the vehicle have nothing hidden.
         """
+        # 1. What it hides in each frame.
         shares = np.ones(len(span))
         for row in np.flatnonzero(near).tolist():
             shares[row] = self._share(occluder, span[row])
         hidden = np.flatnonzero(shares < TOTAL_BELOW)
         touched = np.flatnonzero(shares < 1.0)
+        # 2. Hidden for the right time, in one run, and after enough frames in full view.
         is_total = spec.style != POLE
         if not len(touched) or not _is_right(hidden, spec) or touched[0] < LEAST_LEAD:
             return None
@@ -182,8 +191,10 @@ class Placer:
         core = hidden if is_total else touched
         if np.ptp(touched) + 1 - len(hidden) > _LONGEST_TOUCH and not is_total:
             return None
+        # 3. The frames to play: some before the first touch, some after the last hidden one.
         first = max(span.start + int(touched[0]) - LEAD, span.start)
         last = min(span.start + int(core[-1]) + TAIL, span.stop - 1)
+        # 4. Neither slow ends nor an occlusion of the sequence's own in between.
         if core[0] - touched[0] > _LONGEST_TOUCH or not self._in_view(first, last):
             return None
         if last - (span.start + int(core[-1])) < LEAST_TAIL:
@@ -204,6 +215,7 @@ class Placer:
 
     def _path(self, motion: Motion, span: range, entry: int, leaving: int) -> str:
         """Compare the headings before row `entry` and after row `leaving` of the span."""
+        # In the background's coordinates, as a lorry's own motion is none of the vehicle's.
         standing = replace(motion, velocity=(0.0, 0.0))
         before = span[max(0, entry - _HEADING_FRAMES) : entry + 1]
         after = span[leaving : leaving + _HEADING_FRAMES + 1]
@@ -212,9 +224,11 @@ class Placer:
             boxes = self._relative(standing, frames)
             way = _centres(boxes)[-1] - _centres(boxes)[0]
             diagonal = float(np.hypot(*(boxes[0, 2:] - boxes[0, :2])))
+            # A vehicle that stands has no heading, and does not turn.
             if np.hypot(*way) < max(_LEAST_WAY[0] * diagonal, _LEAST_WAY[1]):
                 return "straight"
             headings.append(math.atan2(way[1], way[0]))
+        # The shorter way round, within 180 degrees.
         turn = math.degrees(abs(math.remainder(headings[1] - headings[0], 2 * math.pi)))
         return "turning" if turn > _TURNING_DEGREES else "straight"
 
@@ -228,6 +242,7 @@ def _rectangles(
     if spec.style == LORRY:
         margins = rng.uniform(0.05, 0.3, 4)
     share = rng.uniform(*_POLE_SHARES)
+    # The more frames of the vehicle's way a rectangle covers, the longer it hides it.
     for length in range(1, max(spec.duration, 1) + 1):
         # Grown around the anchor, in the occluder's coordinates, where a vehicle that drives away
         # from its camera is hidden for longer the farther away it is.
@@ -236,11 +251,13 @@ def _rectangles(
         low = inner[:, :2].min(axis=0)
         high = inner[:, 2:].max(axis=0)
         axis = _axis(boxes, anchor) if spec.style != LORRY else 0
+        # A post keeps a part of the vehicle in view at every moment.
         if spec.style == POLE:
             middle = (low[axis] + high[axis]) / 2
             extent = share * (high - low)[axis]
             low[axis] = middle - extent / 2
             high[axis] = middle + extent / 2
+        # Beyond the vehicle on both sides of its way, so that it cannot pass by in view.
         across = 1 - axis
         side = high[across] - low[across]
         low[across] -= margins[0] * side
@@ -281,6 +298,7 @@ def _is_right(hidden: npt.NDArray[np.intp], spec: OcclusionSpec) -> bool:
 
 
 def _slack(spec: OcclusionSpec) -> float:
+    # A frame at least: lengths are whole numbers.
     return max(1.0, _TOLERANCE * spec.duration)
 
 

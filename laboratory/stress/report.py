@@ -45,9 +45,9 @@ def write_report(
     Parameters
     ----------
     results : sequence of Result
-        Of all systems.
+        Results of all systems.
     folder : Path
-        Made where it is missing.
+        Folder of the report; made where it is missing.
     options : dict or None
         Plain values that say how the battery was chosen, for `JSON`.
 
@@ -80,10 +80,12 @@ def table_rows(
 ) -> tuple[list[str], list[list[str]]]:
     """Return the headings and the rows of a table of groups, a line for each."""
     is_named = found[0].by != ALL_CASES
+    # Columns that no group has a value for are left out.
     names = [name for name in CASE_MEASURES if any(group.summary(name) for group in found)]
     titles = [CASE_MEASURES[name].title for name in names]
     header = [*([found[0].by] if is_named else []), "system", "cases", *titles, "ECE"]
     rows = []
+    # Systems below each other for every group: they are what is compared.
     for group in sorted(found, key=lambda each: [f.name for f in found].index(each.name)):
         cells = [_cell(group, name, intervals) for name in names]
         error = group.reliability().calibration_error
@@ -100,6 +102,7 @@ def _cell(group: Group, measure: str, intervals: bool) -> str:
     text = _number(summary.mean, decimals)
     if intervals and summary.low is not None and summary.high is not None:
         text += f" ({_number(summary.low, decimals)}–{_number(summary.high, decimals)})"
+    # The mean alone does not say of how many.
     if measure == "recovered":
         recovered, judged = group.recoveries
         text += f", {recovered} of {judged}"
@@ -122,6 +125,7 @@ def _csv(found: Sequence[Group]) -> str:
     return text.getvalue()
 
 
+# Fields of `Summary`, in the order of the columns.
 _SUMMARY = ("count", "mean", "spread", "low", "high")
 
 

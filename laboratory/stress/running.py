@@ -46,6 +46,7 @@ class _Task(NamedTuple):
         return f"{self.case.name} {self.system.label} {self.seed}"
 
     def key(self) -> str:
+        # The digest and not the path: a sequence that was moved is still the same.
         facts = {
             "sequence": self.case.origin.source.digest,
             "case": repr([(name, value) for name, value in _fields(self.case) if name != "origin"]),
@@ -62,6 +63,7 @@ def run_case(case: Case, system: StressSystem, seed: int = 0) -> Score:
     try:
         tracker = system.make(seed)
         with contextlib.ExitStack() as stack:
+            # A baseline has a process, which must not outlive the case.
             if hasattr(tracker, "close"):
                 stack.callback(tracker.close)
             estimates.extend(follow(case, tracker))
@@ -74,6 +76,7 @@ def run_case(case: Case, system: StressSystem, seed: int = 0) -> Score:
 
 def follow(case: Case, tracker: Follower) -> Iterator[Estimate | EstimateRow]:
     """Run a tracker through a case: one estimate per frame."""
+    # Trackers of the package reckon in frame periods; others may know no time.
     if hasattr(tracker, "frame_period"):
         tracker.frame_period = 1.0 / case.fps
     box = case.start_box()
@@ -95,9 +98,9 @@ def run_battery(
     Parameters
     ----------
     cases : sequence of Case
-        See `battery`.
+        Cases to run; see `battery`.
     systems : sequence of StressSystem
-        Each with its own label.
+        Systems under test, each with its own label.
     seeds : sequence of int
         A deterministic system runs with the first.
     workers : int
@@ -134,6 +137,7 @@ def run_battery(
         if on_progress is not None:
             on_progress(len(scores), len(tasks))
     return [
+        # From plain values also where it was computed now: kept and new results are the same.
         Result(task.case, task.system.label, task.seed, Score.from_json(scores[key]))
         for task, key in tasks
     ]
@@ -172,6 +176,7 @@ def _score(task: _Keyed) -> dict[str, Any]:
 @contextlib.contextmanager
 def _single_threaded() -> Iterator[None]:
     """Let processes that begin now compute on one thread each."""
+    # Before they begin: the libraries read these variables when they are loaded.
     before = {name: os.environ.get(name) for name in _THREADS}
     os.environ.update(dict.fromkeys(_THREADS, "1"))
     try:

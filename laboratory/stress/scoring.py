@@ -59,7 +59,7 @@ class Score:
     estimates : str
         Digest of all estimates but for their times: equal for bit-identical runs.
     fault : str
-        Why the tracker did not come to the end; then no frame is on target. Empty if it did.
+        Reason why the tracker did not come to the end; then no frame is on target. Empty if it did.
     """
 
     frames: int
@@ -102,11 +102,11 @@ def score_case(case: Case, estimates: Iterable[Estimate | EstimateRow], fault: s
     Parameters
     ----------
     case : Case
-        Its truth is computed anew, without decoding an image.
+        Case, whose truth is computed anew without decoding an image.
     estimates : iterable of Estimate or EstimateRow
-        One per frame; fewer only if there was a fault.
+        Estimates, one per frame; fewer only if there was a fault.
     fault : str
-        Why there are fewer.
+        Reason why there are fewer.
     """
     return score_estimates(case.truths(), estimates, case.fps, fault)
 
@@ -118,8 +118,10 @@ def score_estimates(
     fault: str = "",
 ) -> Score:
     """Score estimates against the truth of the same frames; see `score_case`."""
+    # A frame without truth has an estimate, too, which needs a stamp.
     stamps = [t.stamp_ns if t else stamp_of(i, fps) for i, t in enumerate(truths)]
     rows = [_row(i, stamps[i - 1], each) for i, each in enumerate(estimates, start=1)]
+    # Fewer estimates without a fault would score the missing frames as lost, and hide the bug.
     assert len(rows) == len(truths) or fault, "a frame without an estimate"
     # A tracker that failed has lost its vehicle in all later frames, and is scored as that.
     rows += [
@@ -149,6 +151,7 @@ def _accuracy(visible: Sequence[FrameScore], fault: str) -> dict[str, Any]:
     on_target = _share([is_on_target(frame) and not fault for frame in visible])
     return {
         "on_target": on_target,
+        # Without a box there is no overlap.
         "mean_iou": statistics.fmean(f.overlap or 0.0 for f in visible) if visible else None,
         "rmse_visible_px": _rms([f.error for f in visible if f.error is not None]),
         "lost": None if on_target is None else on_target < LOST_BELOW,
@@ -175,6 +178,7 @@ def _modes(visible: Sequence[FrameScore], hidden: Sequence[FrameScore]) -> dict[
 
 def _row(number: int, stamp_ns: int, estimate: Estimate | EstimateRow) -> EstimateRow:
     if isinstance(estimate, EstimateRow):
+        # A baseline's row has no number and no stamp.
         return replace(estimate, frame=number, stamp_ns=stamp_ns)
     return EstimateRow.from_scalars(number, stamp_ns, estimate.scalars())
 
@@ -206,6 +210,7 @@ def _pairs(frames: Sequence[FrameScore], *, hidden: bool) -> list[tuple[float, b
 def _digest(rows: Sequence[EstimateRow]) -> str:
     # Without step times, which differ from run to run.
     words = ((r.x, r.y, r.width, r.height, r.mode, r.confidence) for r in rows)
+    # 16 digits are 64 bits: more than enough to tell runs of one battery apart.
     return hashlib.sha256(repr(list(words)).encode()).hexdigest()[:16]
 
 

@@ -106,6 +106,7 @@ class Group:
         mean is a sample; within one camera each case's mean over the seeds is.
         """
         take = CASE_MEASURES[measure].of
+        # Seeds of a case first: they are repetitions of one difficulty.
         by_case = _means((result.case.name, take(result.score)) for result in self.results)
         if self.by == "camera":
             return summarise(list(by_case.values()))
@@ -121,6 +122,7 @@ def groups(results: Sequence[Result]) -> list[Group]:
         own = [result for result in results if result.system == system]
         found.append(Group(system, ALL_CASES, ALL_CASES, tuple(own)))
         for by, name in _GROUPINGS.items():
+            # An empty name: the case is in no group of this property.
             for value in dict.fromkeys(filter(None, map(name, own))):
                 members = tuple(result for result in own if name(result) == value)
                 found.append(Group(system, by, value, members))
@@ -138,11 +140,13 @@ def difference(results: Sequence[Result], one: str, other: str, measure: str) ->
     seeds = sorted({result.seed for result in results})
     camera = {result.case.name: result.case.camera for result in results}
     pairs = []
+    # Paired: what makes a case hard is in both, and cancels out.
     for case, seed in itertools.product(camera, seeds):
         first = scores.get((one, case, seed))
         second = scores.get((other, case, seed))
         if first is not None and second is not None:
             pairs.append((case, first - second))
+    # Over cameras, as in `Group.summary`: cases of one camera share its difficulties.
     by_camera = _means((camera[case], mean) for case, mean in _means(pairs).items())
     return summarise(list(by_camera.values()))
 
@@ -150,6 +154,7 @@ def difference(results: Sequence[Result], one: str, other: str, measure: str) ->
 def _occlusion(result: Result) -> str:
     """Describe a painted total occlusion; empty for other cases."""
     case = result.case
+    # A post hides nothing wholly: it is no total occlusion.
     if not case.label("path") or case.label("hidden") == "0":
         return ""
     return " ".join(part for part in (case.label("speed"), case.kind, case.label("path")) if part)

@@ -70,9 +70,11 @@ class StressSystem:
         """Put a variant with its parameters, or a baseline, to the test."""
         facts = {"system": system.kind, "parameters": dict(system.parameters)}
         if system.is_baseline:
+            # Its worker is a program of its own that nothing imports: it is named here.
             code = (f"{_EVALUATION}.baselines", f"{_EVALUATION}.baseline_worker", __name__)
             make = functools.partial(BaselineFollower, system)
             return cls(system.label, make, facts, code, is_deterministic=True)
+        # Sorted: the same modules in another order are the same code.
         modules = tuple(sorted(variant_modules(find_variant(system.kind))))
         make_variant = functools.partial(_make_variant, system)
         return cls(system.label, make_variant, facts, modules, system.is_deterministic)
@@ -80,6 +82,7 @@ class StressSystem:
     def identity(self) -> dict[str, Any]:
         """Return what decides about its estimates, besides the seed and `modules`."""
         make = self.make.func if isinstance(self.make, functools.partial) else self.make
+        # Facts say all of the package's own systems; their code is in `modules`.
         if make in {_make_variant, BaselineFollower}:
             return dict(self.facts)
         try:
@@ -101,9 +104,9 @@ class BaselineFollower:
     Parameters
     ----------
     system : System
-        Which one.
+        Baseline to run.
     seed : int
-        Without effect.
+        Seed, without effect: baselines are deterministic.
     """
 
     def __init__(self, system: System, seed: int = 0) -> None:
@@ -134,7 +137,7 @@ def variant_system(
     Parameters
     ----------
     name : str
-        As in the registry.
+        Name of the variant in the registry.
     parameters : mapping of str to Value or None
         Parameters that differ from the defaults, by their dotted names.
     label : str or None
@@ -147,6 +150,7 @@ def variant_system(
     """
     kind = find_variant(name).parameters
     values = to_mapping(from_mapping(kind, dict(parameters or {})))
+    # The seed is that of a run, not of the system.
     values.pop("seed")
     overrides = tuple(sorted((parameters or {}).items()))
     made = System.of_variant(name, tuple(values.items()), "", overrides)

@@ -64,14 +64,17 @@ def _cvat_label(
     values = {name: number_of(where, name, stated.get(name)) for name in names}
     identity = values["id"]
     index = values["frame"]
+    # In "for images" the id is the image's, and counts from 0; its box has none, and is the only.
     if parent.tag == "image":
         identity, index = 1 if shape.tag == "box" else OTHER_SHAPES, identity
+    # By name where the file has one, as the names of a folder may not be numbers; else by index.
     number = images.names.get(stated.get("name", "").rpartition("/")[2])
     if number is None and index.is_integer():
         number = images.nth(int(index))
     left = values["xtl"]
     top = values["ytl"]
     sides = (left, top, values["xbr"] - left, values["ybr"] - top)
+    # CVAT writes the end of a track as a box that is outside: no position to trust.
     if is_absent := values["outside"] == 1:
         sides = ABSENT_SIDES
     return Label(
@@ -112,6 +115,7 @@ def _studio_labels(path: Path, document: Any, images: Images) -> Iterator[Label]
         done = [one["result"] for one in task["annotations"] if not one.get("was_cancelled")]
         # The first annotator's: the tool exports all, and a mean of two boxes is nobody's truth.
         regions = (done or [[]])[0]
+        # Other shapes have no number of their own here: one fault stands for all of them.
         for region in regions:
             where = f"a region of the truth {path}"
             kind = next((shape for shape in _STUDIO_SHAPES if shape in region["type"]), None)
@@ -135,6 +139,7 @@ def _named(
     data: Mapping[str, Any], value: Mapping[str, Any], images: Images
 ) -> Iterator[tuple[int, Mapping[str, Any]]]:
     """Yield the number of the image that a task names, perhaps with a prefix, and the box."""
+    # Uploaded files get a random prefix and a dash, and local ones a path or a query.
     words = [word for one in data.values() for word in re.split(r"[/=]", str(one))]
     names = (name for word in words for name in (word, word.partition("-")[2]))
     for name in [name for name in names if name in images.names][:1]:
@@ -154,7 +159,9 @@ def _key_frames(
     last = min(value.get("framesCount") or 0, count)
     for now, following in pairwise([*value["sequence"], None]):
         frame = now["frame"]
+        # From the last key frame the box stands still to the end of the video.
         end = following["frame"] if following else max(last, frame) + 1
+        # One that is not enabled is the last frame in which the box is there.
         end_shown = end if now["enabled"] else frame + 1
         for at in range(max(frame, 1), min(end_shown, count + 1)):
             share = (at - frame) / max(end - frame, 1) if following else 0.0

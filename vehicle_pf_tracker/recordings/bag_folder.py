@@ -74,6 +74,7 @@ def _folder_files(folder: Path) -> tuple[list[Path], list[str]]:
         return _listed_files(folder, information)
     # A recorder that was killed has written no metadata: the files are whole all the same.
     state = "damaged" if metadata.exists() else "missing"
+    # MCAP first: it is the format of our own recordings, should a folder have both.
     for suffix in (MCAP_SUFFIX, SQLITE_SUFFIX):
         present = [path for path in folder.glob(f"[!.]*{suffix}") if path.is_file()]
         if present:
@@ -178,6 +179,7 @@ def bag_information(
             }
             for name, (type_name, count) in topics.items()
         ],
+        # rosbag2's compression, of files or messages; that of MCAP's chunks is not named here.
         "compression_format": "",
         "compression_mode": "",
         "relative_file_paths": [file_name],

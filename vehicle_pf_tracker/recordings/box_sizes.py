@@ -48,12 +48,15 @@ def misfit(boxes: Array, size: tuple[int, int]) -> Misfit | None:
     if not count:
         return None
     image = f"the image of {size[0]}x{size[1]} px"
+    # Fatal reasons first; px are above 1 somewhere, whatever the vehicle.
     if (np.abs(boxes) <= 1).all():
         return Misfit(
             f"all {count} boxes are below one px; are they shares of the image? they must be in px",
             True,
         )
+    # Corners in place of sizes also reach beyond: what is called width is then the right edge.
     ends = boxes[:, :2] + boxes[:, 2:]
+    # One box inside is enough to be of this image: vehicles drive out of it, and their boxes too.
     if not ((boxes[:, :2] < size) & (ends > 0)).all(axis=1).any():
         return Misfit(f"no box lies in {image}; are they of another image size?", True)
     beyond = int((ends > np.add(size, _REACH_PX)).any(axis=1).sum())

@@ -36,8 +36,10 @@ def _flags(folder: Path) -> list[Occlusion | None]:
     columns = []
     for path, meaning in ((folder / name, meaning) for name, meaning in _FLAGS.items()):
         if path.is_file():
+            # A flag that the table does not have, as 0, says nothing: not occluded.
             columns.append([meaning.get(flag, Occlusion.NONE) for flag in _list(path)])
     # Flags may contradict each other: absent wins, then the more hidden.
+    # The longest file decides: where another ends before, it says nothing more.
     states = (set(row) for row in zip_longest(*columns, fillvalue=Occlusion.NONE))
     return [None if None in state else max(state - {None}) for state in states]  # type: ignore[type-var]
 
@@ -59,6 +61,7 @@ def own(path: Path, text: str, _: Images) -> Iterator[Label]:
         cells = dict(zip(names, row, strict=False))
         number, x, y, w, h = (number_of(where, name, cells.get(name)) for name in _REQUIRED)
         occlusion = number_of(where, "occ", cells.get("occ"))
+        # "Not visible" wins over a degree of occlusion.
         if number_of(where, "visible", cells.get("visible")) == 0:
             occlusion = Occlusion.TOTAL
         if not math.isnan(occlusion) and occlusion not in set(Occlusion):
@@ -122,8 +125,10 @@ def mot(path: Path, text: str, _: Images) -> Iterator[Label]:
         number, identity, x, y, w, h, *rest = numbers_in(where, cells)
         visible = rest[2] if len(rest) > 2 else 1.0
         if is_uavdt:
+            # Lists, so that a row without the column compares, and is not occluded.
             occlusion = Occlusion.PARTIAL if rest[1:2] > [1.0] else Occlusion.NONE
         else:
+            # Other data sets have -1 or a class there: no share, and so unknown.
             occlusion = Occlusion.of(visible) if 0 <= visible <= 1 else Occlusion.NONE
         yield Label(where, number, (x - first_px, y - first_px, w, h), occlusion, identity)
 
@@ -135,8 +140,10 @@ def kitti(path: Path, text: str, _: Images) -> Iterator[Label]:
     ``DontCare`` is -1 (readme of its development kit).
     """
     for where, (number, identity, _type, *cells) in table_rows(path, text, 10):
+        # Of the ten cells before the 3D box the type, which is a word, is left out.
         values = numbers_in(where, [number, identity, *cells[:7]])
         left, top, right, bottom = values[5:]
+        # Regions of ``DontCare`` are no target.
         if values[1] >= 0:
             occlusion = Occlusion.PARTIAL if values[3] in (1, 2) else Occlusion.NONE
             sides = (left, top, right - left, bottom - top)

@@ -103,9 +103,11 @@ class OpenCVDecoder:
             raise InputError("cannot be opened")
         self.fps = float(self._video.get(cv2.CAP_PROP_FPS))
         stated = self._video.get(cv2.CAP_PROP_FRAME_COUNT)
+        # Live sources state 0, less, or no number at all.
         self.frame_count = int(stated) if math.isfinite(stated) and stated > 0 else None
         sides = (cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT)
         self.size = (int(self._video.get(sides[0])), int(self._video.get(sides[1])))
+        # Masked: a code may be negative, which has no bytes.
         letters = int(self._video.get(cv2.CAP_PROP_FOURCC)) & 0xFFFFFFFF
         self.codec = letters.to_bytes(4, "little").decode("latin-1").strip("\0 ").upper()
 
@@ -149,6 +151,7 @@ class AvDecoder:
         if not self._container.streams.video:
             self._container.close()
             raise InputError("has no video")
+        # The first of several: a file may have a cover image beside its video.
         stream = self._container.streams.video[0]
         # Frames are decoded ahead in threads, in the same order.
         stream.thread_type = "AUTO"
@@ -157,6 +160,7 @@ class AvDecoder:
         self.size = (stream.width, stream.height)
         self.codec = stream.codec_context.name.upper()
         start = stream.start_time
+        # Some containers start late; the first frame is at 0 ms here, as with OpenCV.
         self._start_s = float(start * stream.time_base) if start is not None else 0.0
         self._frames = self._container.decode(stream)
 
@@ -190,10 +194,12 @@ def open_decoder(source: Path | str) -> Decoder:
     name = str(source) if is_url(source) else str(Path(source).absolute())
     codec, failure = _tried(OpenCVDecoder, name)
     if not failure:
+        # Opened anew, as the trial has read the first frame.
         return OpenCVDecoder(name)
     other_codec, other_failure = _tried(AvDecoder, name)
     if not other_failure:
         return AvDecoder(name)
+    # The codec is known even where its frames are not: it is what the user can do something about.
     codec = codec or other_codec
     if not codec:
         raise InputError(f"{source} is not a video file that can be decoded")

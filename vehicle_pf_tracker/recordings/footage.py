@@ -122,4 +122,5 @@ def stamp_of(index: int, fps: float) -> int:
             f"image {index} at {fps:g} frames per second is later than the last time that ROS can "
             "express, 2^31 s"
         )
+    # From the index, not from the stamp before: rounding errors do not add up.
     return START_NS + round(index * 1e9 / fps)

@@ -94,11 +94,13 @@ class FrameFolder(Footage):
         self.frame_count = len(self.images)
         self.stamps, self.fps = _stamps(named, stated)
         notices = named.notices
+        # Times in the names are a frame rate, too.
         if stated is None and named.times_ns is None:
             notices.append(
                 f"the folder {folder} states no frame rate; {ASSUMED_FPS:g} frames/s are assumed, "
                 "give --fps or a sequence.json to change that"
             )
+        # By name without the folder: truth files name images that way.
         names = {path.name: number for number, path in self.images.items()}
         images = Images(list(self.images), self._size, names)
         if truth is None:
@@ -110,6 +112,7 @@ class FrameFolder(Footage):
         notices += said
         numbered = zip(self.images, self.stamps, strict=True)
         self.truths = {n: replace(table[n], stamp_ns=at) for n, at in numbered if n in table}
+        # Rows of dropped images are no error: the rest of the truth is still right.
         if lost := len(table) - len(self.truths):
             notices.append(f"frames of the truth without an image: {lost}")
         self._notices = self._found = notices
@@ -133,6 +136,7 @@ class FrameFolder(Footage):
                 # A new list: whoever took the one before keeps it as it was.
                 self._notices = [*self._found, said]
             yield picture
+        # Only here: one that can be read, however late, makes the folder usable.
         if len(unread) == self.frame_count:
             raise InputError(unread[0])
 
@@ -184,11 +188,13 @@ def _stamps(named: NamedImages, stated: float | None) -> tuple[list[int], float]
     times = named.times_ns
     if times is None:
         fps = stated or ASSUMED_FPS
+        # Numbered from the smallest, which need not be 0 or 1; gaps stay gaps.
         first = min(named.images)
         return [stamp_of(number - first, fps) for number in named.images], fps
     # Times from an unknown start are moved to ours; those since 1970 mean something.
     origin = 0 if named.since_1970 else START_NS - times[0]
     if times[-1] + origin > LAST_STAMP_NS:
+        # Named by times, images count from 1: the last is number len(times).
         raise InputError(f"{named.images[len(times)]} is later than the last time of ROS, 2^31 s")
     steps = [after - before for before, after in pairwise(times)]
     # The median: dropped images lengthen some steps, and must not slow all down.
@@ -198,6 +204,7 @@ def _stamps(named: NamedImages, stated: float | None) -> tuple[list[int], float]
 
 def _frame_rate(folder: Path) -> float | None:
     """Return the frame rate that a file in the folder states, 1/s; None without such a file."""
+    # Ours first: it takes the place of another that lies beside it.
     for name, read in (("sequence.json", _of_json), ("seqinfo.ini", _of_ini)):
         path = folder / name
         if not path.exists():
@@ -218,11 +225,13 @@ _EXAMPLES = {"sequence.json": '{"fps": 30}', "seqinfo.ini": "[Sequence] frameRat
 
 def _of_json(text: str) -> float:
     fps = json.loads(text)["fps"]
+    # True is an int in Python, and no frame rate.
     is_number = isinstance(fps, int | float) and not isinstance(fps, bool)
     return fps if is_number else math.nan
 
 
 def _of_ini(text: str) -> float:
+    # Without interpolation a % in another line is text, and no error.
     parser = configparser.ConfigParser(interpolation=None)
     parser.read_string(text)
     return float(parser["Sequence"]["frameRate"])

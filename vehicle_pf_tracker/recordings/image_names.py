@@ -62,9 +62,11 @@ class NamedImages:
 
 def natural_key(name: str) -> tuple[tuple[str, Numeral], ...]:
     """Return a key that sorts names by their words and by the values of their numbers."""
+    # Words and numbers alternate, a word first and last; the last word has no number after it.
     *parts, last = _PARTS.split(name)
     words = parts[::2]
     numbers = map(_numeral, parts[1::2])
+    # A last pair without a number keeps the keys of short names comparable with longer ones.
     return (*zip(words, numbers, strict=True), (last, (0, "")))
 
 
@@ -91,6 +93,7 @@ def number_images(
     """
     # 1. The images whose names are numbers, if there are any, in natural order.
     paths = sorted(paths, key=lambda path: (natural_key(path.stem), path.name))
+    # A folder may hold a preview or a map beside its numbered images.
     numbered = [path for path in paths if _PARTS.fullmatch(path.stem)] or paths
     notices = []
     if others := [path for path in paths if path not in set(numbered)]:
@@ -116,6 +119,7 @@ def _sorted_by(
     column: Sequence[Numeral], paths: Sequence[Path]
 ) -> tuple[list[Numeral], list[Path]]:
     ordered = sorted(zip(column, paths, strict=True), key=lambda pair: pair[0])
+    # Two files of one number are two frames of one time: which is first cannot be known.
     for (value, path), (following, other) in pairwise(ordered):
         if value == following:
             raise InputError(f"{other} and {path.name} have the same number")
@@ -186,14 +190,17 @@ def _column(paths: Sequence[Path], *, is_given: bool) -> list[Numeral] | None:
     # Names of different words: only their last number can order all of them.
     if any(parts[::2] != names[0][::2] for parts in names):
         last = [_numeral(parts[-2]) for parts in names]
+        # A number at the very end orders names of different words, as `left1`, `right2`.
         if len(set(last)) > 1 and not any(parts[-1] for parts in names):
             return last
         if len(set(last)) in {1, len(last)} or is_given:
             return None
         raise InputError(_refusal(paths, "different words have the same numbers"))
     columns = _with_fractions(list(zip(*[parts[1::2] for parts in names], strict=True)))
+    # One image has no column that varies, and takes its last number.
     varying = [column for column in columns if len(set(column)) > 1] or columns[-1:]
     # Times since 1970 before others: a counter beside them says less.
+    # The last of those that vary: counters stand behind what they count in.
     chosen = next((column for column in varying if epoch_unit(column)), varying[-1])
     # Other numbers that change may only grow along, as of parts of one video.
     rows = sorted(zip(chosen, *varying, strict=True))
@@ -223,6 +230,7 @@ def _with_fractions(columns: list[tuple[str, ...]]) -> list[list[Numeral]]:
 def _is_fraction_of(seconds: Sequence[Numeral], column: Sequence[str]) -> bool:
     widths = {len(digits) for digits in column}
     is_whole = not any(fraction for _, fraction in seconds)
+    # Columns of one width only: a shorter one has lost leading zeros, and with them its unit.
     is_even = len(widths) == 1 and widths <= _FRACTION_WIDTHS
     return is_whole and is_even and epoch_unit(seconds) == "s"
 

@@ -75,6 +75,7 @@ def import_recording(  # noqa: PLR0913 - one for each option of the command
                 truths += 1
             if progress is not None:
                 progress(frames, footage.frame_count)
+        # Inside the block, so that a recording without its truth is not kept.
         _check_truth(footage, truths)
     made = f"{frames} frames of {size[0]}x{size[1]} px at {footage.fps:g} frames/s"
     return f"{made}, {truths} with truth", footage.notices
@@ -98,6 +99,7 @@ def _check_truth(footage: Footage, truths: int) -> None:
 
 
 def _pictures(footage: Footage) -> Iterator[Picture]:
+    # A recording is made once and read often: an image that cannot be read is an error here.
     for picture in footage.frames():
         if not isinstance(picture, Picture):
             raise InputError(footage.notices[-1])

@@ -51,6 +51,7 @@ class LiveCamera(Footage):
 
     def frames(self) -> Iterator[Picture]:
         """Yield frames until the source ends."""
+        # The smallest stamp: the first frame takes the clock's.
         last = 0
         try:
             while (frame := self._next()) is not None:

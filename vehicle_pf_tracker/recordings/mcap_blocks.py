@@ -24,6 +24,8 @@ from mcap.opcode import Opcode
 RECORD_HEAD = 9
 """Bytes before a record's content: its opcode (1) and its length (8)."""
 
+# Of a message: channel, sequence number, log time and publish time (ns). Of a chunk: first and last
+# log time (ns), bytes unpacked, CRC-32 of these, and letters of the compression's name.
 _MESSAGE_HEAD = struct.Struct("<HIQQ")
 _CHUNK_HEAD = struct.Struct("<QQQII")
 _MAX_CHUNK = 2**28
@@ -83,6 +85,7 @@ def read_block(path: Path, block: Block) -> Iterator[Message]:
         If the block cannot be read, is cut shorter than the index says, or its content is damaged.
     """
     try:
+        # The whole record at once: a chunk can only be unpacked as a whole.
         record = memoryview(read_span(path, block.offset, block.length))
     except OSError as error:
         raise DamageError(f"it cannot be read ({error.strerror})") from error
@@ -109,6 +112,7 @@ def block_records(opcode: int, content: memoryview) -> Iterator[tuple[int, memor
         return
     records = _unpack_chunk(content)
     position = 0
+    # Bytes that are too few for a head are the rest of a record that was cut.
     while position + RECORD_HEAD <= len(records):
         opcode, length = struct.unpack_from("<BQ", records, position)
         position += RECORD_HEAD
@@ -131,6 +135,7 @@ def parse_message(content: memoryview) -> Message:
     """
     if len(content) < _MESSAGE_HEAD.size:
         raise DamageError("a message is too short")
+    # The publish time is of no use here: recordings are ordered by the log time.
     channel_id, _, log_time, _ = _MESSAGE_HEAD.unpack_from(content)
     return Message(channel_id, log_time, content[_MESSAGE_HEAD.size :])
 
@@ -146,6 +151,7 @@ def _unpack_chunk(content: memoryview) -> memoryview:
     packed = content[name_end + 8 : name_end + 8 + packed_size]
     records = _decompress(compression, packed, size)
     # A checksum of 0 says that none was written.
+    # The size, too: a decompressor that ends early raises nothing.
     if len(records) != size or (checksum and zlib.crc32(records) != checksum):
         raise DamageError("its checksum is wrong")
     return records
@@ -153,6 +159,7 @@ def _unpack_chunk(content: memoryview) -> memoryview:
 
 def _decompress(compression: str, packed: memoryview, size: int) -> memoryview:
     """Unpack `size` bytes, and no more than one beyond: a chunk may hold more than it claims."""
+    # Before unpacking: a damaged size would ask for memory that is not there.
     if size > _MAX_CHUNK:
         raise DamageError(f"it claims to hold {size} bytes")
     try:

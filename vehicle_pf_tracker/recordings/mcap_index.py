@@ -106,6 +106,7 @@ def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
     summary = _read_summary(stream, size)
     if summary is None or not _is_complete(summary, size):
         return None
+    # `_is_complete` is false without statistics.
     assert summary.statistics is not None
     counts = Counter(summary.statistics.channel_message_counts)
     blocks = [
@@ -114,6 +115,7 @@ def _from_summary(path: Path, stream: BinaryIO, size: int) -> McapIndex | None:
             chunk.chunk_length,
             chunk.message_start_time,
             chunk.message_end_time,
+            # Offsets are optional: without them the channels are unknown, and not none.
             frozenset(chunk.message_index_offsets) or None,
         )
         for chunk in summary.chunk_indexes
@@ -126,10 +128,12 @@ def _read_summary(stream: BinaryIO, size: int) -> Summary | None:
     # The footer of a complete file has a fixed length, so that it is read from the end.
     stream.seek(max(size - _TAIL, 0))
     tail = stream.read()
+    # Three signs of a file that was closed: a cut one may end in anything.
     if not (len(tail) == _TAIL and tail.startswith(_FOOTER) and tail.endswith(MAGIC)):
         return None
     start, _, checksum = struct.unpack_from("<QQI", tail, len(_FOOTER))
     end = size - len(MAGIC) - 4  # the checksum covers the footer up to itself
+    # A start of 0 says that there is no summary.
     if not len(MAGIC) <= start < end:
         return None
     stream.seek(start)
@@ -152,10 +156,12 @@ def _is_complete(summary: Summary, size: int) -> bool:
         return False
     counts = statistics.channel_message_counts
     return (
+        # 1. Messages are counted, and all of them lie in chunks that are listed and in the file.
         sum(counts.values()) == statistics.message_count
         and (bool(chunks) or statistics.message_count == 0)
         and len(chunks) == statistics.chunk_count
         and all(chunk.chunk_start_offset + chunk.chunk_length <= size for chunk in chunks)
+        # 2. Every channel that has messages is described, and so is its schema; 0 says "none".
         and counts.keys() <= channels.keys()
         and {channel.schema_id for channel in channels.values()} <= {0, *summary.schemas}
     )
@@ -165,9 +171,11 @@ def _scanned(path: Path, stream: BinaryIO, size: int) -> McapIndex:
     """Make the index in one pass over a file whose summary is missing or wrong."""
     index = McapIndex(path, is_truncated=True)
     offset = len(MAGIC)
+    # From record to record by their lengths: contents that are not needed are never read.
     while True:
         stream.seek(offset)
         head = stream.read(RECORD_HEAD)
+        # Opcode 0 is none of the format's: it stands for a file that ends here.
         opcode, length = struct.unpack("<BQ", head) if len(head) == RECORD_HEAD else (0, 0)
         end = offset + RECORD_HEAD + length
         if not opcode or end > size:  # a file system leaves zeros after a power failure
@@ -199,6 +207,7 @@ def _add_record(index: McapIndex, opcode: int, offset: int, content: memoryview)
     except (DamageError, McapError, struct.error, ValueError) as error:
         index.damages.append(f"a part at byte {offset} was skipped: {error}")
         return
+    # A chunk with schemas alone is no block.
     if times:
         length = RECORD_HEAD + len(content)
         block = Block(offset, length, min(times), max(times), frozenset(channels))

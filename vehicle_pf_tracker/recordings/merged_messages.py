@@ -47,6 +47,7 @@ def merged_messages(
     on_damage : callable
         Called with a block that cannot be read; reading goes on after it.
     """
+    # Channels by file: one topic may have another number in each.
     chosen = [
         {number for number, one in index.channels.items() if topics is None or one.topic in topics}
         for index in files
@@ -60,6 +61,8 @@ def merged_messages(
         and block.start_ns < end_ns
         and (block.channels is None or block.channels & chosen[number])
     ]
+    # A heap of blocks and messages: a block stands for its first message until it is opened, and
+    # then its messages take its place.
     heapq.heapify(heap)
     while heap:
         _, number, offset, _, item = heapq.heappop(heap)
@@ -73,5 +76,6 @@ def merged_messages(
                     and first_ns <= message.log_time_ns < end_ns
                 ):
                     heapq.heappush(heap, (message.log_time_ns, number, offset, place, message))
+        # Messages before the damage are in the heap already, and are yielded.
         except DamageError as error:
             on_damage(files[number], item, error)

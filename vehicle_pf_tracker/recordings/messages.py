@@ -130,6 +130,7 @@ def type_hash(type_name: str) -> str:
 
 def as_token(name: str) -> str:
     """Return `name` as a part of a topic: letters, digits and underscores, no digit first."""
+    # Letters of other alphabets are not allowed in topics, as isalnum alone would have them.
     token = "".join(c if c.isascii() and c.isalnum() else "_" for c in name)
     return f"_{token}" if token[:1].isdigit() else token
 
@@ -203,7 +204,9 @@ def truth_to_messages(truth: Truth) -> dict[str, Any]:
     """Make the messages that carry `truth`, by topic."""
     stamp = truth.stamp_ns
     name = truth.occlusion.name.lower()
+    # NaN for "unknown": a diagnostic value is text, and a missing one may be an older recording.
     visible = math.nan if truth.visible_fraction is None else float(truth.visible_fraction)
+    # A warning: that a vehicle is hidden is no error.
     level = WARN if truth.occlusion is Occlusion.TOTAL else OK
     values = {"occlusion": name, "visible_fraction": repr(visible)}
     return {
@@ -233,6 +236,7 @@ def truth_from_messages(
     # By stamp, since the three topics of a frame are three messages, which may be interleaved.
     stamps = sorted(frames)
     if is_cut and stamps:
+        # With one stamp there is nothing to compare with but all the topics there are.
         complete = frames[stamps[0]].keys() if len(stamps) > 1 else TRUTH_TYPES.keys()
         if complete - frames[stamps[-1]].keys():
             stamps.pop()
@@ -253,6 +257,7 @@ def _box_of(stamp_ns: int, by_topic: dict[str, Any]) -> Box:
     points = by_topic[TRUTH_BOX_TOPIC].polygon.points
     xs = [point.x for point in points]
     ys = [point.y for point in points]
+    # Bounded, as a polygon is in single precision; see `LARGEST_PX`.
     if len(points) < 3 or not all(abs(side) <= LARGEST_PX for side in xs + ys):
         raise InputError(
             f"the truth box at stamp {stamp_ns} ns is not a polygon of corners within 2^24 px"
@@ -281,4 +286,5 @@ def _occlusion_of(stamp_ns: int, message: Any) -> tuple[Occlusion, float | None]
             f"the truth mode at stamp {stamp_ns} ns has no occlusion none, partial or total, "
             "or its visible_fraction is not a number"
         ) from None
+    # Not finite: unknown.
     return occlusion, visible if math.isfinite(visible) else None

@@ -81,10 +81,13 @@ def times_of(values: Sequence[Numeral], fps: float | None) -> Times | None:
     AmbiguousNamesError
         If they may be both.
     """
+    # 1. Times since 1970 are so large that they are nothing else.
     if since_1970 := epoch_unit(values):
         return Times(since_1970, True, [_ns(value, _UNITS[since_1970]) for value in values])
+    # 2. Counters have no fraction.
     if any(fraction for _, fraction in values):
         return _of_fractions(values)
+    # 3. Integers are told apart by their steps.
     integers = [integer for integer, _ in values]
     steps = [after - before for before, after in pairwise(integers)]
     unit = _unit_of(steps, fps) if steps else None
@@ -103,6 +106,7 @@ def epoch_unit(values: Sequence[Numeral]) -> str | None:
 
 def _ns(value: Numeral, length: int) -> int:
     """Return a number of a unit in ns; digits below 1 ns are dropped."""
+    # In integers, as above: a float64 of seconds since 1970 ends at 0.2 µs.
     integer, fraction = value
     return integer * length + int(fraction or "0") * length // int("1" + "0" * len(fraction))
 
@@ -110,6 +114,7 @@ def _ns(value: Numeral, length: int) -> int:
 def _of_fractions(values: Sequence[Numeral]) -> Times:
     ns = [_ns(value, _UNITS["s"]) for value in values]
     steps = [after - before for before, after in pairwise(ns)]
+    # median_low: a step that occurs, as the mean of two middle ones would be of no pair of images.
     least, most = (seconds * _UNITS["s"] for seconds in _FRACTIONS_S)
     if steps and not least <= statistics.median_low(steps) <= most:
         raise AmbiguousNamesError(
@@ -128,6 +133,7 @@ def _unit_of(steps: Sequence[int], fps: float | None) -> str | None:
         # Beside a stated rate a count is likelier than times of another rate.
         if step < _LONGEST_COUNT or len(steps) < _LEAST_STEPS:
             return None
+    # At such steps ms are implausible, and smaller units even more: a count.
     if step < _SHORTEST_MS:
         return None
     unit = next((unit for unit in _SMALLER_UNITS if _is_usual(step, unit)), None)
@@ -147,6 +153,7 @@ def _unit_of_period(step: int, fps: float) -> str | None:
     """Return the unit in which a step is the period of a frame rate; None without such."""
     periods = {unit: 1e9 / (fps * _UNITS[unit]) for unit in _SMALLER_UNITS}
     fits = (unit for unit, period in periods.items() if abs(step - period) < _SAME * period)
+    # A step of 1 is a count, also where the period is 1 ms.
     return next(fits, None) if step > 1 else None
 
 

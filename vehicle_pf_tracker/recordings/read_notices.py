@@ -35,8 +35,10 @@ class ReadNotices:
         self._image_topic = image_topic
         self._sentences = list(found)
         self._unreadable: dict[int, str] = {}
+        # By part of the file, so that reading it twice counts it once.
         self._damages: dict[tuple[Path, int], str] = {}
         frames = 0
+        # Added up over the files: a split recording is truncated after the frames of all before.
         for index in files:
             of_topic = (n for n, one in index.channels.items() if one.topic == image_topic)
             frames += sum(index.counts[number] for number in of_topic)
@@ -79,6 +81,7 @@ class ReadNotices:
         """Note images that should be there, unless a damage explains it."""
         # A damaged part explains what is missing; two sentences would be one too many.
         if count > 0 and not self._damages:
+            # No part of a file begins at -1.
             self._damages[self._path, -1] = (
                 f"recording {self._path}: {count} images that its index lists are missing"
             )

@@ -103,6 +103,7 @@ class Recording:
         self.image_topic = chosen.name
         self.image_type = chosen.type_name
         self.frame_count = chosen.message_count
+        # There is one at least: that was checked.
         blocks = [block for index in self.files for block in index.blocks]
         self.start_ns = min(block.start_ns for block in blocks)
         self.end_ns = max(block.end_ns for block in blocks)
@@ -127,6 +128,7 @@ class Recording:
         unsent: list[StampedFrame] = []
         readable = False
         count = 0
+        # An image that cannot be read is yielded, too: a tracker has to know that time passed.
         for count, (_, message) in enumerate(self._select({self.image_topic}), start=1):
             unsent.append(self._decode_or_note(message))
             readable = readable or unsent[-1].frame is not None
@@ -135,6 +137,7 @@ class Recording:
                 unsent.clear()
             elif count == _UNREADABLE_IN_A_ROW:
                 break
+        # Only where the whole topic was read: a loop that was left has missed the rest on purpose.
         else:
             self._notices.add_missing(self.frame_count - count)
         if not readable:
@@ -161,6 +164,8 @@ class Recording:
         """Read the earliest truth alone, without reading the whole recording."""
         if not self._has_truth():
             return None
+        # In the order of log times, so that the first stamp is among the first messages. Half a
+        # second is a choice: far more than a recorder needs for the three topics of one frame.
         early: list[tuple[McapIndex, Message]] = []
         for entry in self._select(messages.TRUTH_TOPICS):
             # Topics of one stamp may be recorded some time apart.
@@ -194,6 +199,7 @@ class Recording:
             info = types[index.channels[message.channel_id].topic]
             is_stamped = info.is_cdr and info.type_name in messages.STAMPED_TYPES
             stamp = header_stamp_ns(message.data) if is_stamped else None
+            # A copy: a view would keep its whole chunk in memory.
             yield RecordedMessage(
                 info.name, info.type_name, message.log_time_ns, stamp, bytes(message.data)
             )
@@ -221,11 +227,13 @@ class Recording:
             return StampedFrame(messages.stamp_ns(image), frame)
         except InputError as error:
             self._notices.add_image(message.log_time_ns, self.start_ns, error)
+            # The header may be sound where the image is not; else the time of recording.
             stamp = header_stamp_ns(message.data)
             return StampedFrame(message.log_time_ns if stamp is None else stamp, None)
 
     def _has_truth(self) -> bool:
         """Return whether there is truth; raise if its topics are there but cannot hold any."""
+        # A topic of that name but of another type is another's: its bytes would be misread.
         truth_topics = [info for info in self.topics if info.name in messages.TRUTH_TOPICS]
         for info in truth_topics:
             expected = messages.TRUTH_TYPES[info.name]
@@ -242,11 +250,13 @@ class Recording:
             (topic, deserialize(data, messages.TRUTH_TYPES[topic])) for topic, data in by_topic
         )
         try:
+            # Of the last file alone: in those before it a frame goes on in the next file.
             return messages.truth_from_messages(received, self.files[-1].is_truncated)
         except InputError as error:
             raise InputError(f"the truth of {self.path} is broken: {error}") from error
 
     def _check_readable(self) -> None:
+        # A recording that was cut gets another sentence than one that never had a message.
         if any(index.blocks for index in self.files):
             return
         if any(index.is_truncated or index.damages for index in self.files):

@@ -21,6 +21,7 @@ CONVERSION = "rosbags-convert --src {path} --dst converted --dst-storage mcap"
 
 def is_recording(path: Path) -> bool:
     """Return whether `path` is a rosbag2 folder or a file of one, by its name and content."""
+    # The name of a file is enough: whether it holds what it says is the reader's matter.
     return path.suffix in {MCAP_SUFFIX, SQLITE_SUFFIX} or (path / "metadata.yaml").exists()
 
 

@@ -54,6 +54,7 @@ def open_source(
         If there is no such source, or an option does not fit it.
     """
     path = Path(source)
+    # Recordings first: a rosbag2 folder is a folder, too, and has no images that could be listed.
     if is_recording(path):
         if fps is not None:
             raise InputError(f"{path} is a recording, whose images have stamps; leave --fps out")
@@ -61,6 +62,7 @@ def open_source(
             raise InputError(f"{path} is a recording, with its own truth; leave --truth, --id out")
         return Recording(path, topic)
     footage = open_footage(source, truth=truth, fps=fps, identity=identity, beside=beside)
+    # After it is opened: a source that is not there is the more important sentence.
     if topic is not None:
         raise InputError(f"{source} is not a recording and has no topics; leave --topic out")
     return footage
@@ -76,6 +78,7 @@ def frame_at(
     InputError
         If there are fewer frames, or it cannot be read.
     """
+    # From the first frame on: videos of most codecs cannot be entered in the middle.
     count = 0
     for count, picture in enumerate(source.frames(), start=1):
         progress(count, number)

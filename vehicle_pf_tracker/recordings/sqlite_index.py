@@ -40,7 +40,9 @@ def read_sqlite_index(path: Path) -> McapIndex:
         with closing(_connected(path)) as database:
             for number, name, kind, encoding, qos in database.execute(_TOPICS):
                 metadata = {"offered_qos_profiles": str(qos or "")}
+                # A topic's id serves as the channel's and the schema's, which SQLite has none of.
                 index.channels[number] = Channel(number, str(name), str(encoding), metadata, number)
+                # The definition is empty: it is not needed to read the types of our recordings.
                 index.schemas[number] = Schema(number, b"", "ros2msg", str(kind))
             _add_blocks(index, database)
     except sqlite3.Error as error:
@@ -63,12 +65,14 @@ def _add_blocks(index: McapIndex, database: sqlite3.Connection) -> None:
                 index.counts[topic] += 1
             else:
                 index.damages.append(f"message {number} was skipped: it has no topic, time or data")
+    # The query cannot go on behind a damaged page; the rows before it are used.
     except sqlite3.DatabaseError:
         index.is_truncated = True
 
 
 def _read_message(path: Path, block: Block) -> Iterator[Message]:
     """Read the message of a block."""
+    # Opened for each message: a block is read by its path alone, and iterators share nothing.
     try:
         with closing(_connected(path)) as database:
             row = database.execute(_MESSAGE, (block.offset,)).fetchone()

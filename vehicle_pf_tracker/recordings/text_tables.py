@@ -31,9 +31,11 @@ def cells_of(line: str) -> list[str]:
     Cells are apart by semicolons, else tabs, else commas, else spaces. Between semicolons or tabs a
     comma is a decimal comma, as in what spreadsheets write in most of Europe.
     """
+    # A separator at the end is followed by no cell, and is common in exports.
     words = line.strip().rstrip(" \t,;")
     if not words:
         return []
+    # What is in quotes does not decide: a name may have a comma in it.
     delimiter = _delimiter(_QUOTED.sub("", words) if '"' in words else words)
     if '"' in words:
         try:
@@ -43,6 +45,7 @@ def cells_of(line: str) -> list[str]:
     else:
         cells = words.split() if delimiter == " " else words.split(delimiter)
     cells = [cell.strip() for cell in cells]
+    # Commas between the separators: at a cell's end they are left over, within a number decimal.
     if delimiter in ";\t" and "," in words:
         cells = [cell.strip(" ,") for cell in cells]
         cells = [c.replace(",", ".") if _DECIMAL_COMMA.fullmatch(c) else c for c in cells]
@@ -52,6 +55,7 @@ def cells_of(line: str) -> list[str]:
 def _delimiter(words: str) -> str:
     if ";" in words:
         return ";"
+    # Tabs before commas only where they make a table by themselves.
     if "\t" in words and ("," not in words or words.count("\t") + 1 >= _FEWEST_CELLS):
         return "\t"
     return "," if "," in words else " "
@@ -75,6 +79,7 @@ def table_rows(
         if cells := cells_of(line):
             where = f"line {number} of {what} {path}"
             if len(cells) < least:
+                # Here and not where the cells are read: the place is still known.
                 raise InputError(f"{where} has {len(cells)} cells, of at least {least}")
             yield where, cells
 

@@ -58,7 +58,9 @@ def choose_image_topic(path: Path, topics: Sequence[TopicInfo], wanted: str | No
         If it does not exist, is empty or carries no images, or several could be meant.
     """
     images = [topic for topic in topics if topic.is_image]
+    # 1. A topic that was named must be right: a sentence for each way in which it is not.
     if wanted is not None:
+        # Among all topics: one that exists but has no images gets a sentence of its own.
         chosen = next((topic for topic in topics if topic.name == wanted), None)
         if chosen is None:
             names = _listed(images)
@@ -73,6 +75,7 @@ def choose_image_topic(path: Path, topics: Sequence[TopicInfo], wanted: str | No
         if not chosen.message_count:
             raise InputError(f"the image topic {wanted} of {path} has no messages")
         return chosen
+    # 2. Without a name there must be no choice.
     # Recorders list topics on which nothing came: those are no choice.
     filled = [topic for topic in images if topic.message_count]
     if not filled:

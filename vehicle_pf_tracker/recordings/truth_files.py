@@ -45,7 +45,7 @@ _PLACES = (
     "../../*/GT/{name}_gt_whole.txt",  # UAVDT-M
     *_ANYTHING,
 )
-"""Where truth lies, from the folder of the images."""
+"""Patterns of the files of truth, from the folder of the images."""
 _PARTS = ("../anno/{name}_[0-9].txt", "../../../anno/{parent}/{name}_[0-9].txt")
 """UAV123's truth of parts of a video. The images where they begin stand in its toolkit alone."""
 
@@ -90,15 +90,18 @@ def truth_beside(
     """
     if use is Beside.IGNORED:
         return {}, []
+    # Resolved: `.` has no name, and patterns with ``..`` go by the folder's own.
     folder = folder.resolve()
     notices = list[str]()
     seen: set[Path] = set()
     for pattern in _PLACES:
+        # Patterns overlap, and a file that was read and refused is refused once.
         paths = [path for path in _at(folder, pattern) if path not in seen]
         seen.update(paths)
         try:
             if paths:
                 table, said = read_truth(paths, images, identity)
+                # Of our own file nothing is said: it lies where it should.
                 read = [f"the truth is read from {paths[0]}"] if pattern != _OWN else []
                 return table, [*notices, *read, *said]
         except InputError as error:
@@ -117,6 +120,7 @@ def truth_beside(
 
 def _at(folder: Path, pattern: str) -> list[Path]:
     """Return the files that a pattern of `_PLACES` names, but hidden ones."""
+    # Escaped: a folder may have a * or [ in its name.
     names = {"name": glob.escape(folder.name), "parent": glob.escape(folder.parent.name)}
     paths = folder.glob(pattern.format_map(names))
     return sorted(path for path in paths if not path.name.startswith("."))
@@ -154,6 +158,7 @@ def read_truth(
         text = read_text(path, "the truth")
         reader = reader_of(path, text)
         labels = list(reader(path, text, images))
+        # Rows without a number are counted from the first image; with fewer rows that is a guess.
         if reader is in_order and labels and len(labels) < len(images.names):
             notices.append(
                 f"{path} has {len(labels)} rows for {len(images.names)} images; its first is "
@@ -161,6 +166,7 @@ def read_truth(
             )
         for label in labels:
             _put(label, targets, faults)
+    # A fault of the chosen target is an error; those of others are notices.
     chosen = _chosen(targets, faults, paths[0], identity)
     if fault := faults.pop(chosen, ""):
         raise InputError(fault)
@@ -190,6 +196,7 @@ def _chosen(
     targets: Mapping[int, object], faults: Mapping[int, str], path: Path, identity: int | None
 ) -> int:
     """Return the target that was asked for, or the only one."""
+    # Shapes without a number cannot be asked for, and are none of the known targets.
     known = {*targets, *faults} - {OTHER_SHAPES} if identity is not None else {*targets}
     listed = ", ".join([*map(str, sorted(known)[:_IDS_SHOWN]), "..."][: len(known)])
     if identity is None and len(known) > 1:
@@ -207,6 +214,7 @@ def _chosen(
 
 def _check_fit(table: Table, path: Path, images: Images) -> list[str]:
     """Refuse truth of other images: of none that is there, or none of whose boxes lies in them."""
+    # A video has a range of up to a million numbers, which needs no set.
     numbers = images.numbers if isinstance(images.numbers, range) else set(images.numbers)
     if not any(number in numbers for number in table):
         raise InputError(
@@ -235,6 +243,7 @@ def _row(label: Label) -> tuple[int, int, Truth | None]:
     target = _whole(label, label.identity, "target")
     if any(abs(value) > LARGEST_PX for value in label.sides if math.isfinite(value)):
         raise InputError(f"{label.where} has a box beyond {LARGEST_PX:.0f} px")
+    # Without an area, or with NaN: absent. A row all the same, as it may not be named twice.
     is_box = all(map(math.isfinite, label.sides)) and min(label.sides[2:]) > 0
     row = Truth(0, Box(*label.sides), label.occlusion) if is_box else None
     return number, target, row

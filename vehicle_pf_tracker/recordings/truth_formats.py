@@ -42,6 +42,8 @@ def _is_mot(cells: Sequence[str]) -> bool:
 MARKS: Mapping[str, Reader] = {"<": cvat, "[": label_studio, "{": label_studio}
 """The readers of documents, by the first letter."""
 FORMATS: Mapping[Reader, Test] = {
+    # In this order: eight numbers are a polygon rather than MOTChallenge's, but in ``gt.txt``; and
+    # KITTI's third cell is a word, which tells it from all of them.
     kitti: _is_kitti,
     own: _is_own,
     in_order: _is_in_order,
@@ -64,6 +66,7 @@ def reader_of(path: Path, text: str) -> Reader:
     first = next((line for line in lines if line and not line.startswith("#")), None)
     if first is None:
         raise InputError(f"the truth {path} is empty")
+    # Document formats have no table to look at: their first letter is enough.
     if first[0] in MARKS:
         return MARKS[first[0]]
     cells = cells_of(first)

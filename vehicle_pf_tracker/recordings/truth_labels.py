@@ -45,6 +45,7 @@ class Images:
 
     def nth(self, index: int) -> int:
         """Return the number of an image by its index from 0, also of one that is not there."""
+        # Beyond the ends the count goes on, so that truth of missing images has distinct numbers.
         last = len(self.numbers) - 1
         near = min(max(index, 0), last)
         return self.numbers[near] + index - near

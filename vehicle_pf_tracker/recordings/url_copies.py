@@ -65,6 +65,7 @@ def local_copy(url: str) -> Path:
         If it cannot be fetched.
     """
     folder = Path(tempfile.mkdtemp(prefix="vehicle-pf-tracker-"))
+    # The copy may be large, and is of no use to the next process, which makes its own.
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return fetched(url, folder)
 
@@ -78,6 +79,7 @@ def fetched(url: str, folder: Path) -> Path:
         If it cannot be fetched.
     """
     system, path = _file_system(url)
+    # The name is kept: readers tell recordings by their suffix.
     target = folder / path.rstrip("/").rsplit("/", 1)[-1]
 
     def fetch() -> Path:
@@ -99,11 +101,13 @@ def _holds_recording(children: list[str]) -> bool:
 
 
 def _file_system(url: str) -> tuple[Any, str]:
+    # Refused before the store is asked: nothing with a password in it gets into a log.
     if urlsplit(url).password is not None:
         raise InputError(
             "a URL of a recording is written into results, and must not have a password in it: "
             "give it to the store's driver by its own settings"
         )
+    # Imported here: the package works without fsspec.
     try:
         url_to_fs = importlib.import_module("fsspec.core").url_to_fs
     except ModuleNotFoundError:

@@ -69,6 +69,7 @@ class VideoFile(Footage):
     ) -> None:
         self._path = path
         self._keeps_times = fps is None
+        # Opened once for what it states, and anew for each reading.
         with closing(self._open()) as video:
             self.fps = video.fps if fps is None else check_fps(fps, "--fps")
             self.frame_count = video.frame_count
@@ -141,6 +142,7 @@ class VideoFile(Footage):
                 f"the video {self._path} states no time, or none after the frame before, for "
                 f"{untimed} frames; they follow at {self.fps:g} frames/s"
             )
+        # Truth of frames that never came.
         if lost := sum(not 1 <= number <= read for number in self._truth):
             yield f"frames of the truth without an image: {lost}"
 
@@ -180,6 +182,7 @@ def open_footage(
     # A file that is called 0 is a file.
     is_index = text.isdecimal() and not Path(text).exists()
     if is_index or is_url(text):
+        # A URL may be a live stream or a file: only an open one tells.
         camera = LiveCamera(int(text) if is_index else text)
         if not is_index and not camera.is_endless:
             return VideoFile(text, truth, fps, identity)

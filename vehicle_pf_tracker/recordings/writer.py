@@ -31,6 +31,7 @@ def _check_replaceable(target: Path, overwrite: bool) -> None:
         check_free(target)
     names = [path.name for path in target.iterdir()]
     # Never a folder with anything else in it, whatever --overwrite says.
+    # A recording of ours has metadata and MCAP files only.
     if any(name != BAG_INFORMATION and not name.endswith(".mcap") for name in names):
         raise InputError(f"the output folder {target} holds more than a recording; choose another")
 
@@ -76,6 +77,7 @@ class RecordingWriter:
         self._channels: dict[str, _Channel] = {}
         self._schemas: dict[str, int] = {}
         self._times: tuple[int, int] | None = None
+        # A failure here closes and removes what was opened; without one that is __exit__'s task.
         with output_errors(self.folder), ExitStack() as output:
             _check_replaceable(target, overwrite)
             # Written beside the target, and moved there when all is well.
@@ -90,6 +92,7 @@ class RecordingWriter:
         return self
 
     def __exit__(self, *failure: Any) -> None:
+        # On a failure of the block the partial folder is removed, and nothing of it read again.
         if failure[0] is not None:
             self._output.__exit__(*failure)
             return
@@ -97,7 +100,9 @@ class RecordingWriter:
             first, last = self._times or (0, 0)
             counts = {name: (one.type_name, one.count) for name, one in self._channels.items()}
             information = bag_information(self._file_name, first, last - first, counts)
+            # 1. The metadata in the MCAP file as well, as rosbag2 has them: it may be copied alone.
             self._mcap.add_metadata("rosbag2", {"serialized_metadata": to_yaml(information)})
+            # 2. The summary: without it every reader would have to scan the file.
             self._mcap.finish()  # type: ignore[no-untyped-call]
             self._stream.close()
             text = to_yaml({"rosbag2_bagfile_information": information})
@@ -123,7 +128,7 @@ class RecordingWriter:
             self.write(topic, messages.TRUTH_TYPES[topic], truth.stamp_ns, message)
 
     def write(self, topic: str, type_name: str, stamp_ns: int, message: Any) -> None:
-        """Write any message of a type that `cdr.message_class` knows.
+        """Write any message of a type that `messages.message_class` knows.
 
         Raises
         ------
@@ -147,10 +152,12 @@ class RecordingWriter:
             )
         channel.count += 1
         first, last = self._times or (stamp_ns, stamp_ns)
+        # Messages need not come in order, and the metadata state the first and the last.
         self._times = min(first, stamp_ns), max(last, stamp_ns)
 
     def _channel(self, topic: str, type_name: str) -> _Channel:
         if topic not in self._channels:
+            # One schema serves all topics of a type.
             if type_name not in self._schemas:
                 self._schemas[type_name] = self._mcap.register_schema(
                     type_name, SchemaEncoding.ROS2, definition(type_name).encode()

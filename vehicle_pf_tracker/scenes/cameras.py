@@ -52,6 +52,7 @@ class Camera:
 
 
 def _quantised(picture: Image) -> Frame:
+    # Rounded before the cast: `astype` truncates, which would darken all by half a level.
     np.rint(picture, out=picture)
     np.clip(picture, 0, 255, out=picture)
     return picture.astype(np.uint8)
@@ -76,6 +77,8 @@ class Disturbance:
     flicker: float
 
 
+# The numbers are a choice: the shake has to stay below `SHAKE_MARGIN` less the one pixel that
+# bilinear interpolation reads beyond the image.
 DISTURBANCES = {"clean": Disturbance(2.0, 0.0, 0.0), "rough": Disturbance(8.0, 3.0, 0.03)}
 """Cameras by name: a steady one, and one that the wind shakes, with more noise and flicker."""
 
@@ -98,6 +101,8 @@ class OutdoorCamera:
         # Two rates without a common period, as a mast swings: no frame repeats another.
         phases = stream(self.seed, "mast").uniform(0, 2 * math.pi, (2, 2))
         tremble = stream(self.seed, "tremble", index).uniform(-0.2, 0.2, 2)
+        # Periods of 19.5 (2 pi * 3.1) and 6.3 (2 pi) frames.
+        # The three amplitudes, 0.55, 0.25 and the tremble's 0.2, add up to 1: `shake` is the most.
         x, y = (
             SHAKE_MARGIN
             + shake * (0.55 * math.sin(index / 3.1 + slow) + 0.25 * math.sin(index + fast) + jump)
@@ -108,6 +113,7 @@ class OutdoorCamera:
     def capture(self, picture: Image, index: int) -> Frame:
         """Turn the composed stage of frame `index` into an 8-bit frame."""
         image = _shown(picture, self.offset(index))
+        # The gain before the noise: the light flickers, and the sensor's noise does not with it.
         image *= np.asarray(self.gain(index), np.float32)
         image += _noise(image.shape, self.disturbance.noise, self.seed, index)
         return _quantised(image)
@@ -124,6 +130,7 @@ def _shown(picture: Image, offset: tuple[float, float]) -> Image:
     height, width = (size - 2 * SHAKE_MARGIN for size in picture.shape[:2])
     left, top = (math.floor(value) for value in offset)
     right, down = (np.float32(value - math.floor(value)) for value in offset)
+    # One row and one column more than the image has: the last pixel needs its neighbour, too.
     image: Image = picture[top : top + height + 1, left : left + width + 1]
     if right == 0 and down == 0:
         whole: Image = image[:-1, :-1].copy()
@@ -141,6 +148,7 @@ def _noise(shape: tuple[int, ...], deviation: float, seed: int, index: int) -> I
 
     Sixteen random bits choose each value: several times faster than drawing normal numbers.
     """
+    # Little-endian by name: the same bytes give the same frames on every machine.
     bits = stream(seed, "sensor bits", index).bytes(2 * math.prod(shape))
     levels: Image = _quantiles() * np.float32(deviation)
     noise: Image = levels[np.frombuffer(bits, "<u2")].reshape(shape)
@@ -151,4 +159,5 @@ def _noise(shape: tuple[int, ...], deviation: float, seed: int, index: int) -> I
 def _quantiles() -> npt.NDArray[np.float32]:
     """Values of the normal distribution at 65536 evenly spaced probabilities."""
     normal = NormalDist()
+    # At the middle of each step: the ends, 0 and 1, have no finite value. The largest is about 4.3.
     return np.array([normal.inv_cdf((step + 0.5) / 65536) for step in range(65536)], np.float32)

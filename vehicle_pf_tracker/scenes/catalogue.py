@@ -100,10 +100,12 @@ def scene_of(
             f"there is no scene {name!r}{suggestion(name, scenes)}; choose one of "
             f"{', '.join(scenes)}"
         )
+    # numpy refuses negative seeds with a ValueError that names neither scene nor option.
     if seed < 0:
         raise InputError(f"the seed of a scene must be an integer >= 0, got {seed}")
     kind = scenes[name]
     known = specs(kind.parameters)
+    # Before the values are parsed: the table of parameters does not know the scene's name.
     for key in (word.partition("=")[0] for word in settings):
         if key not in known:
             meant = suggestion(key, known)
@@ -111,4 +113,5 @@ def scene_of(
             raise InputError(f"the scene {name} has no setting {key!r}{meant}; it has {has}")
     if not isinstance(settings, Mapping):
         settings = parse_assignments(known, settings)
+    # The caller's settings last: they take the place of those of the catalogue.
     return kind.build(from_mapping(kind.parameters, {**kind.settings, **settings}), seed)

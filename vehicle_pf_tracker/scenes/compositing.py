@@ -81,6 +81,7 @@ class Sprite:
 
         Made when first asked for: the truth needs few of a scene's sprites.
         """
+        # Multiplied before it is averaged: else the colour of empty cells would bleed into the rim.
         alpha = self._opacity.astype(np.float64)[..., np.newaxis]
         cells = np.concatenate([self._colour * alpha, alpha], axis=2)
         rows, columns, channels = cells.shape
@@ -98,6 +99,7 @@ class Sprite:
         """Area in px² of the silhouette when the sprite fills `box`."""
         rows = self._integral.shape[0] - 1
         columns = self._integral.shape[1] - 1
+        # The last corner of the integral is the sum over all cells.
         return float(self._integral[-1, -1, 3] * box.area / (rows * columns))
 
     def layer(self, box: Box, window: PixelWindow) -> Image:
@@ -123,19 +125,23 @@ class Sprite:
     def _means(integral: Array, box: Box, window: PixelWindow) -> Array:
         rows = integral.shape[0] - 1
         columns = integral.shape[1] - 1
+        # Clipped: beyond the sprite the integral is constant, and its differences there are 0.
         x = (np.arange(window.left, window.right + 1) - box.x) * (columns / box.width)
         y = (np.arange(window.top, window.bottom + 1) - box.y) * (rows / box.height)
         # Between cells the integral is linear in each direction, so that interpolation is exact.
         corners = interpolate(integral, y.clip(0, rows), x.clip(0, columns))
         sums: Array = np.diff(np.diff(corners, axis=0), axis=1)
+        # From a sum of cells to a mean over a pixel of 1 px²: a cell covers this many px².
         sums *= box.area / (rows * columns)
         return sums
 
 
 def interpolate(grid: Array, y: Array, x: Array) -> Array:
     """Bilinear values of `grid` at every (y, x), which is exact for an integral of cells."""
+    # The far edge belongs to the last cell, with weight 1: there is no corner after it.
     row = np.minimum(y.astype(np.intp), grid.shape[0] - 2)[:, np.newaxis]
     column = np.minimum(x.astype(np.intp), grid.shape[1] - 2)
+    # Channels, if there are any, are all weighted alike.
     depth = (1,) * (grid.ndim - 2)
     down = (y[:, np.newaxis] - row).reshape(-1, 1, *depth)
     right = (x - column).reshape(1, -1, *depth)

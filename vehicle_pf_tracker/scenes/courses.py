@@ -75,6 +75,8 @@ class Pace:
         """Give the distance covered from the first knot to `frame`, px."""
         start, speed = self.knots[0]
         end, last_speed = self.knots[-1]
+        # Outside of the knots; before the first the distance is negative, so that a pace may begin
+        # at any frame of a scene.
         distance = speed * min(frame - start, 0.0) + last_speed * max(frame - end, 0.0)
         for (t0, v0), (t1, v1) in pairwise(self.knots):
             spent = min(max(frame, t0), t1) - t0
@@ -90,6 +92,7 @@ class Pace:
         # form.
         while self(high) < distance:
             high += high - low
+        # 60 halvings: more than the 53 bits of a float64.
         for _ in range(60):
             middle = (low + high) / 2
             low, high = (middle, high) if self(middle) < distance else (low, middle)
@@ -116,6 +119,7 @@ def swaying(
     """Follow a path or a course as a human drives: `surge` along x, `weave` along y."""
 
     def swayed(frame: float) -> Placed:
+        # Position only: size and heading stay those of the course, as a driver's hand is small.
         placed = course(frame)
         return replace(placed, x=placed.x + surge(frame), y=placed.y + weave(frame))
 

@@ -103,6 +103,7 @@ class Drive:
         self.rng = stream(seed, "drive")
         self.faces = target_faces(parameters.vehicle, self.rng)
         self.target = Model(self.faces, self.scale)
+        # At least 2 px beside the free ones: the driver sways by up to 1.5 px along the road.
         self.start = SHAKE_MARGIN + FREE_PX + self.target.size[0] / 2 + self.rng.uniform(2, 6)
         self.pace = pace or Pace.steady(parameters.speed)
 
@@ -150,6 +151,8 @@ class Drive:
 
     def sways(self, course: Course) -> Course:
         """Add a human hand to a course: at most 1.5 px along the road and 0.5 across."""
+        # Periods of 90 and 130 frames: slow against an occlusion (40 frames at most), so that the
+        # swing bends the path a little but does not show as a turn behind the obstacle.
         phases = stream(self.seed, "sway").uniform(0, 2 * math.pi, 2).tolist()
         return swaying(course, wave(1.5, 90, phases[0]), wave(0.5, 130, phases[1]))
 
@@ -157,6 +160,7 @@ class Drive:
         self, faces: Sequence[Face], s: float, speed: float, lane: int = TARGET_LANE + 1
     ) -> list[Actor]:
         """Make a vehicle level with the target when that is at `s`; `speed` in px/frame."""
+        # A pace has covered 0 px at its first knot and less before: level in just that frame.
         pace = Pace(((self.frame_at(s), speed),))
         return list(Model(faces, self.scale).on(self.course(s, pace, lane)))
 
@@ -192,6 +196,7 @@ class Drive:
         in front, but under what `front` has.
         """
         if behind is None:
+            # Drawn before the opposite traffic: both take from `rng`, in this order.
             behind = self.far_traffic()
             front = (*self.opposite_traffic(), *front)
         # The order to paint in: what is nearer to the viewer comes later, and covers.
@@ -204,20 +209,25 @@ class Drive:
             frame_count=self.frame_count,
             backdrop=self.backdrop,
             actors=(*behind, *own, *front),
+            # `own` is the shadow and then the body; the truth is that of the body.
             target=len(behind) + 1,
             camera=OutdoorCamera(DISTURBANCES[self.parameters.disturbance], self.seed),
         )
 
     def _roads(self) -> tuple[Carriageway, Carriageway]:
         # Larger images show vehicles a little larger, not more of the road.
+        # A car of 3.7 m is 43 or 46 px long.
         scale = 11.5 if self.image_size[0] == 640 else 12.5
+        # A third of the way down: room for the hedge above, and below for the other carriageway.
         road = Carriageway(round(0.34 * self.height), 3, scale, self.rightward)
+        # 30 rows between the roads: the guard rail of `countryside` has 12 with its shadow.
         other = Carriageway(road.rows.stop + 30, 2, scale, not self.rightward)
         return road, other
 
 
 def target_faces(kind: str, rng: np.random.Generator) -> list[Face]:
     """Make a vehicle of a `kind` of `DriveParameters.vehicle`, its colour left to chance."""
+    # Drawn before the kind is asked: every kind has the same colour at the same seed.
     paint = TARGET_PAINTS[rng.integers(len(TARGET_PAINTS))]
     if kind == "truck":
         return truck(paint, (216, 214, 206))

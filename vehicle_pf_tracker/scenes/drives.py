@@ -106,6 +106,7 @@ class BrakingParameters(DriveParameters):
 
 def hiding_width(drive: Drive, frames: float) -> float:
     """Width (px) of what hides the target wholly for about `frames` frames."""
+    # As long as the target to hold all of it, and what it drives while it is wholly behind.
     return drive.target.size[0] + frames * drive.parameters.speed
 
 
@@ -121,9 +122,12 @@ def trees_at(drive: Drive, shares: tuple[float, ...], density: float = 0.36) -> 
     rng = stream(drive.seed, "trees")
     length, height = drive.target.size
     actors: list[Actor] = []
+    # Shape and size in multiples of the target, by chance: wide enough to cover all of it, with the
+    # gaps of a thin crown (`density`) between. The ranges are a choice.
     for share in shares:
         top = drive.row - rng.uniform(0.9, 1.2) * height
         crown = rng.uniform(1.3, 1.8) * length, top, top + rng.uniform(75, 95)
+        # On the side of the viewer, below both roads: the crowns stand in front of them.
         foot = drive.opposite.rows.stop + rng.uniform(8, 30)
         actors += tree(drive.x(drive.along(share)), crown, foot, density, rng)
     return actors
@@ -133,6 +137,7 @@ def bars(parameters: DriveParameters, seed: int) -> Scene:
     """Make the scene: four pillars of rising width; the last two hide the target wholly."""
     drive = Drive(parameters, seed)
     rng = stream(seed, "pillars")
+    # From a pole that hides a part to a pillar that hides all for ten frames (`hiding_width`).
     widths = 12.0, 0.7 * drive.target.size[0], hiding_width(drive, 4), hiding_width(drive, 10)
     places = 0.15, 0.22, 0.335, 0.65
     front = [
@@ -162,6 +167,7 @@ def coach_at(
 
     `length` is the coach's, in metres.
     """
+    # It is hidden while what the coach is longer by passes it: spare = frames * relative speed.
     spare = length * drive.scale - drive.target.size[0]
     speed = drive.parameters.speed + spare / frames
     faces = coach((206, 204, 196), (34, 82, 128), length)
@@ -177,6 +183,8 @@ def bus(parameters: HidingParameters, seed: int) -> Scene:
 def twin(parameters: DriveParameters, seed: int) -> Scene:
     """Make the scene: a vehicle of the same make and colour overtakes slowly in the far lane."""
     drive = Drive(parameters, seed)
+    # 10 % faster than the target: at 5 px/frame it needs 86 frames to get ahead by its own length,
+    # 43 px, and so is beside it for most of the video. A choice.
     other = drive.meeting(
         drive.faces, drive.along(0.5), 1.1 * parameters.speed, lane=TARGET_LANE - 1
     )
@@ -192,11 +200,14 @@ def braking(parameters: BrakingParameters, seed: int) -> Scene:
     """Make the scene: the target changes its speed under a bridge."""
     before = parameters.speed
     after = parameters.speed * parameters.change
+    # 1. A drive at a constant speed says in which frame the target is under the bridge's middle.
     plain = Drive(parameters, seed)
     frame = plain.frame_at(plain.along(0.5))
     half = 0.35 * parameters.hidden
+    # 2. The speed changes over 70 % of the hidden time, around that frame: no frame shows it.
     drive = Drive(
         parameters, seed, Pace(((0, before), (frame - half, before), (frame + half, after)))
     )
+    # 3. `hiding_width` reckons with the speed before; the mean of both keeps the hidden time.
     mean = (before + after) / 2 / before
     return drive.scene(bridge_at(drive, 0.5, parameters.hidden * mean))

@@ -76,6 +76,7 @@ class Vehicle:
         shade = extent(self._cast)
         scale = lane.scale
         self.size = body.width * scale, body.height * scale
+        # The shadow is a picture of its own, with a tight box of its own; it moves with the body.
         self._shade_size = shade.width * scale, shade.height * scale
         self._shade_offset = (shade.x - body.x) * scale, (shade.y - body.y) * scale
 
@@ -93,6 +94,7 @@ class Vehicle:
             return Box(body.x + right, body.y + down, *size)
 
         return (
+            # Sprites by name, not by value: those of vehicles that are never seen are never drawn.
             Actor(lambda _: self._shade, follow, hides=False),
             Actor(lambda _: self._body, path),
         )
@@ -136,6 +138,7 @@ def convoy(
     velocity = speed if lane.rightward else -speed
     actors: list[Actor] = []
     ahead = rng.uniform(0, 200)
+    # As much traffic as passes: what the stage holds, and what comes in over the whole scene.
     while ahead < width + speed * frame_count:
         model = models[rng.integers(len(models))]
         # `ahead` counts backwards from the end of the lane that vehicles leave by.

@@ -31,6 +31,8 @@ def all_round(faces: Sequence[Face]) -> list[Face]:
     """
     x = [point[0] for face in faces for point in face.points]
     width = max(point[1] for face in faces for point in face.points)
+    # Flanks lean by 20 degrees at most, so that y of their normal is below -0.9; of roofs, screens
+    # and ends it is 0. Any limit between tells them apart.
     both = [
         half
         for face in faces
@@ -59,6 +61,7 @@ def turned(faces: Iterable[Face], heading: float) -> list[Face]:
 
 def _ends(rear: float, front: float, width: float) -> list[Face]:
     """Lamps, bumper and number plate on front and rear."""
+    # 2 cm outside of the body, so that they are nearer to the viewer than the face they are on.
     faces = []
     for x, lamp in ((rear - 0.02, TAIL_LAMP), (front + 0.02, HEAD_LAMP)):
         faces.append(_upright(x, (0.1, width - 0.1), (0.3, 0.4), SILL))
@@ -117,6 +120,7 @@ class Model:
         return Box(pose.x + left, pose.y + top, *size)
 
     def _sprite(self, heading: float, *, shade: bool) -> Sprite:
+        # By the rounded heading: a quarter turn needs 45 sprites, however many frames it has.
         key = round(heading / HEADING_STEP), shade
         if key not in self._sprites:
             # Drawn for the rounded heading; the box, and with it the truth, is that of the exact

@@ -54,6 +54,7 @@ def _crossings(outline: Array, y: Array) -> Array:
     """
     x0, y0 = outline.T[..., np.newaxis]
     x1, y1 = np.roll(outline, -1, axis=0).T[..., np.newaxis]
+    # Half-open in y: every row is crossed an even number of times, also through a corner.
     crosses = (y0 <= y) != (y1 <= y)
     # A level edge crosses no row; its rise only keeps the division defined.
     rise = np.where(y1 == y0, 1.0, y1 - y0)

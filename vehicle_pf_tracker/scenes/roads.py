@@ -65,6 +65,7 @@ def hedge(picture: Image, top: int, bottom: int, rng: np.random.Generator) -> No
     height, width = picture.shape[:2]
     # Large and small raggedness: crowns, and twigs on them.
     ragged = 5 * value_noise((1, width), (1, 14), rng) + 2 * value_noise((1, width), (1, 4), rng)
+    # Displaced rows, compared with straight limits, have ragged edges.
     rows = np.arange(height)[:, np.newaxis] + ragged
     shaded = (rows >= bottom) & (rows < bottom + 9)
     crowns = (rows >= top) & (rows < bottom)
@@ -85,6 +86,7 @@ def mark(
     width = picture.shape[1]
     for top in edges:
         _stripe(picture, top, 0, width, rng)
+    # 38 of 112 px: dashes of 3 m every 9 m at the highway's 12.4 px/m.
     for top in dividers:
         for left in range(int(rng.integers(-60, 0)), width, 112):
             _stripe(picture, top, max(left, 0), min(left + 38, width), rng)
@@ -93,6 +95,7 @@ def mark(
 def _stripe(picture: Image, top: int, left: int, right: int, rng: np.random.Generator) -> None:
     if right <= left:
         return
+    # Worn paint lets the asphalt through, pixel by pixel, as tyres have rubbed it off.
     worn = rng.uniform(0.55, 0.9, (2, right - left, 1)).astype(np.float32)
     region = picture[top : top + 2, left:right]
     region += worn * (np.asarray(MARKING_PAINT, np.float32) - region)
@@ -142,6 +145,7 @@ class Carriageway:
 
     def lane(self, number: int) -> Lane:
         """Lane `number`, counted from 0 at the far side, with wheels well inside it."""
+        # A quarter of the lane below its middle: the near wheels, not the vehicle's middle.
         ground = self.middle(number) + 0.27 * self.pitch
         return Lane(ground, self.scale, self.rightward)
 
@@ -155,6 +159,7 @@ def countryside(
     if shape[0] - roads[-1].rows.stop > 80:
         hedge(picture, shape[0] - 30, shape[0], rng)
     _pave(picture, roads, rng)
+    # Half of the rail's 12 rows above the middle between the roads.
     for far, near in pairwise(roads):
         guard_rail(picture, (far.rows.stop + near.top) // 2 - 6)
     return picture
@@ -163,6 +168,7 @@ def countryside(
 def town(shape: tuple[int, int], roads: Sequence[Carriageway], rng: np.random.Generator) -> Image:
     """Draw roads between pavements of stone slabs, with a lawn behind, shape (*shape, 3)."""
     picture = concrete(shape, rng)
+    # Joints between slabs.
     picture[::14] *= np.float32(0.9)
     picture[:, ::20] *= np.float32(0.93)
     top = roads[0].top - 40
@@ -182,4 +188,5 @@ def _pave(picture: Image, roads: Sequence[Carriageway], rng: np.random.Generator
         kerb(picture, rows, rng)
         first = rows.start + SHOULDER
         dividers = tuple(round(first + number * road.pitch) for number in range(1, road.lanes))
+        # The edge lines outside of the lanes: they are 2 px high and painted downwards.
         mark(picture, (first - 2, rows.stop - SHOULDER), dividers, rng)

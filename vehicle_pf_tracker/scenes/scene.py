@@ -81,6 +81,7 @@ class Actor:
         if not window.empty:
             layer = self.seen(frame).layer(box, window)
             region = picture[window.slices]
+            # The "over" operator for colours multiplied with their opacity (Porter and Duff 1984).
             region *= 1 - layer[..., 3:]
             region += layer[..., :3]
 
@@ -125,6 +126,7 @@ class Stage(ABC):
         """Render every frame in order."""
         backdrop = self.backdrop()
         for index in range(self.frame_count):
+            # A copy: actors and camera paint into it, and the backdrop is drawn once per pass.
             picture = backdrop.copy()
             for actor in self.painted(index):
                 actor.paint(picture, index)
@@ -171,19 +173,23 @@ class Scene(Stage):
     def _visible_fraction(self, index: int, box: Box) -> float:
         """Share (0 to 1) of the target's silhouette in `box` that is inside and not covered."""
         window = PixelWindow.of(box, self.width, self.height)
+        # Out of the image there is nothing to see, and no pixel to average over.
         if window.empty:
             return 0.0
         sprite = self.actors[self.target].seen(index)
         # Of the silhouette, not of the box: a wheel's gap that is covered hides nothing.
         seen = sprite.coverage(box, window)
+        # Only actors painted later can hide it.
         for actor in self.actors[self.target + 1 :]:
             place = self._in_image(actor.path(index), index)
             # Boxes first: most actors are nowhere near the target.
             if actor.hides and place.iou(box) > 0:
+                # Within a pixel what two actors cover is taken as independent: the product.
                 seen = seen * (1 - actor.seen(index).coverage(place, window))
         # Rounded because sums of floats must not make a free vehicle look 1e-16 hidden.
         return round(float(min(max(seen.sum() / sprite.area(box), 0.0), 1.0)), 9)
 
     def _in_image(self, box: Box, index: int) -> Box:
+        # Paths are on the stage, truth in the image, and a shaken camera moves one over the other.
         left, top = self.camera.offset(index)
         return Box(box.x - left, box.y - top, box.width, box.height)

@@ -72,6 +72,7 @@ def strips(
 
 def disc(x: float, z: float, radius: float, colour: Colour) -> Face:
     """Make a round upright face along the road."""
+    # 24 corners: they are 0.9 % of the radius off the circle, 0.05 px on a lorry's wheel.
     turns = [2 * math.pi * step / 24 for step in range(24)]
     contour = [(x + radius * math.cos(t), z + radius * math.sin(t)) for t in turns]
     return side_panel(contour, 0.0, colour)
@@ -88,6 +89,7 @@ def shadow(faces: Iterable[Face]) -> list[Face]:
     cast = [
         face.moved(lambda x, y, z: (x - z * east / up, y - z * away / up, 0.0)) for face in faces
     ]
+    # Unlit: a shadow is equally dark whichever way its face looked.
     return [replace(face, colour=SHADOW_TINT, glow=True) for face in cast]
 
 
@@ -112,9 +114,11 @@ def draw(faces: Sequence[Face], width: float, height: float, opacity: float = 1.
     cells_per_metre = columns / bounds.width, rows / bounds.height
     colour = np.zeros((rows, columns, 3), np.uint8)
     nearness = np.full((rows, columns), -np.inf, np.float32)
+    # In the order given, which decides between faces in one place.
     for face in faces:
         outline = (_project(face) - (bounds.x, bounds.y)) * cells_per_metre
         window, inside = cells_inside(outline, rows, columns)
+        # A face seen edge-on has no cells, and so is never divided by its slant of 0.
         if inside.any():
             x = bounds.x + _middles(window.left, window.right) / cells_per_metre[0]
             y = bounds.y + _middles(window.top, window.bottom) / cells_per_metre[1]
@@ -137,6 +141,8 @@ def _nearness(face: Face, x: Array, y: Array) -> tuple[Array, float]:
     The second value is the depth along the view, in m, of a layer `SAME_PLACE` thick on it.
     """
     normal = normal_of(face)
+    # The plane normal * p = level in the axes of the view (x, down, to the viewer), solved for
+    # the last coordinate.
     level = float(normal @ np.asarray(face.points[0]))
     slant = float(normal @ _VIEW)
     return (level - normal[0] * x - float(normal @ _DOWN) * y) / slant, SAME_PLACE / slant
@@ -157,6 +163,7 @@ def lit(colour: Colour, normal: Array) -> Colour:
 
 def normal_of(face: Face) -> Array:
     """Return the unit normal of a face on the side of the viewer."""
+    # By the first three corners: faces are flat, and these three never lie on one line.
     points = np.asarray(face.points)
     normal = np.cross(points[1] - points[0], points[2] - points[0])
     normal = normal / math.hypot(*normal)

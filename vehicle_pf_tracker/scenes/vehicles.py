@@ -28,6 +28,8 @@ TAIL_LAMP: Colour = (186, 24, 22)
 AMBER_LAMP: Colour = (236, 140, 30)
 """Glass of indicators."""
 
+# Contours are (x, z) in m, x from the rear and z from the ground, drawn over the top from rear to
+# front. Sizes are those of ordinary vehicles of their kind, a choice.
 Contour = Sequence[tuple[float, float]]
 
 
@@ -59,6 +61,7 @@ def car(paint: Colour) -> list[Face]:
         (3.7, 0.32),
     ]
     cabin = [(0.1, 0.95), (0.42, 1.5), (1.95, 1.5), (2.65, 0.95)]
+    # In the roof's own plane: of faces in one place the later is seen.
     roof_window = strips([(0.75, 1.5), (1.65, 1.5)], 0.45, 1.25, (62, 66, 74))
     windows = [
         [(0.5, 1.0), (0.66, 1.4), (1.15, 1.43), (1.15, 1.0)],
@@ -169,6 +172,7 @@ def _flank(body: Contour, paint: Colour, door: float) -> list[Face]:
     rear = body[0][0]
     front = body[-1][0]
     return [
+        # Parts of other brightness: a side of one colour has no edges within its outline.
         side_panel(body, 0, paint),
         _panel((rear, front), (0.3, 0.55), tinted(paint, 0.8)),
         _panel((rear + 0.3, front - 0.3), (0.22, 0.36), SILL),
@@ -197,6 +201,7 @@ def _side_window(window: Contour) -> Face:
 
 def lamps(body: Contour, front: float, rear: float) -> list[Face]:
     """Head lamp, amber side lamp and tail lamp, on the near side."""
+    # Head lamps end at the edge of the bonnet, the last corner but one.
     top = body[-2][1]
     return [
         side_panel(
@@ -217,6 +222,7 @@ def lamps(body: Contour, front: float, rear: float) -> list[Face]:
 
 def wheels(axles: Sequence[float], radius: float) -> list[Face]:
     """Wheels of `radius` (m) on the near side, in dark wheel arches."""
+    # Concentric, the largest first: of faces in one place the later is seen.
     return [
         face
         for x in axles
@@ -239,11 +245,13 @@ def lorry(cab: Colour, box: Colour, stripe: Colour) -> list[Face]:
         ((10.15, 0.15, 2.85), (10.52, 0.15, 1.95), (10.52, 2.35, 1.95), (10.15, 2.35, 2.85)), SCREEN
     )
     return [
+        # The frame, 0.3 m inside of the flank: it is seen below the box and between the wheels.
         side_panel([(0.1, 0.6), (0.1, 1.2), (10.4, 1.2), (10.4, 0.6)], 0.3, SILL),
         *strips(tractor, 0, width, cab),
         screen,
         side_panel(tractor, 0, cab),
         side_panel([(9.1, 1.9), (9.1, 2.75), (9.9, 2.75), (10.25, 1.9)], 0, SIDE_GLASS),
+        # Without the end walls of the box, which the view from the side never shows.
         *strips(load[1:3], 0, width, box),
         side_panel(load, 0, box),
         _panel((0.0, 8.3), (2.0, 2.5), stripe),
@@ -287,6 +295,7 @@ def coach(paint: Colour, stripe: Colour, length: float = 12.0) -> list[Face]:
         (length - 0.05, top - 0.3),
         (length, 0.4),
     ]
+    # Panes of about 1.5 m, as many as fit whatever the length.
     count = round((length - 1.0) / 1.5)
     pane = (length - 0.9) / count
     return [
