@@ -3,6 +3,10 @@
 
 """The papers' experiments: runs, data, figure and verdict of each, by name (`catalogue`).
 
+The first paper is Scharcanski et al. 2011 (P1: `apf_*`), the second Abdulla et al. 2022 (P2:
+`mfpf_*`), the third Khong et al. (P3: `resampling_*`). The `*_systems` of each has its trackers,
+the interpretations that its claims are judged under, and its scenes.
+
 An experiment is a module with an `EXPERIMENT` that `catalogue` lists. It has two functions. `cells`
 gives the runs of a `Size`, usually `RunCell` objects: a scene, a tracker, a seed, and the scalars
 of the estimates to record. `report` turns their results into data, a figure and an

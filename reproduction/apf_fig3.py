@@ -39,9 +39,9 @@ _RECORD = ("pi", "regime", "x", "y")
 _LAST = 10
 """Frames at the end that tell whether the vehicle is followed again."""
 _RESUMED = 0.5
-"""Share of them in the regular mode from which on it counts as resumed."""
+"""Least share of these frames in the regular mode that counts as resumed."""
 _MONOTONE = 0.9
-"""Rank correlation from which on one thing counts as growing with another."""
+"""Least rank correlation at which one quantity counts as growing with another, a choice."""
 
 
 def cells(size: ex.Size) -> list[RunCell]:
@@ -92,7 +92,7 @@ class _Runs:
         self.seeds = size.seeds
 
     def of(self, interpretation: str, what: Callable[[int, Result], Any]) -> list[Any]:
-        """Apply `what` to width and result of all runs under a interpretation."""
+        """Apply `what` to width and result of all runs under an interpretation."""
         return [
             what(width, run)
             for (name, width, _), run in self._runs.items()

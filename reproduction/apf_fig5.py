@@ -27,6 +27,7 @@ _Judge: TypeAlias = Callable[[str, Sequence[Result], Sequence[Scores]], ex.Findi
 
 _PLACE = "section IV, figure 5"
 _RULE = "yes: in 80 % of these frames of every run; partly: in half of those of a run"
+"""Rule of the two claims on the regimes."""
 _EARLY = 3
 """Frame of the first picture: nothing hides the vehicle yet."""
 _ROWS_AROUND = 60

@@ -16,6 +16,7 @@ from reproduction.paper_scenes import VIDEO_SCENES
 
 LABELS = tuple(system.label for system in (*apf.APF_RIVALS, apf.APF))
 """The six, in the order of the paper's columns."""
+# The paper's table II, px: a row a video, from 1 to 20, a column a tracker, ordered as `LABELS`.
 _PRINTED_ROWS = (
     (85.83, 100.19, 87.34, 93.45, 86.83, 25.65),
     (64.41, 66.92, 63.76, 65.30, 62.42, 9.92),

@@ -15,7 +15,7 @@ from vehicle_pf_tracker.parameters.table import Value
 VEHICLE_WIDTH, VEHICLE_HEIGHT = 30.0, 22.0
 """Size of the vehicle, px: the bar of 30 px in the paper's figure 2 hides it wholly."""
 VEHICLE_SPEED = 5.0
-"""px/frame, where the paper keeps it constant."""
+"""Speed of the vehicle where the paper keeps it constant, px/frame."""
 BAR_SETTING = (
     f"The artificial video (scene `bar`): a {VEHICLE_WIDTH:g} x {VEHICLE_HEIGHT:g} px vehicle on "
     "even ground with sensor noise, 15 frames per second."
@@ -44,6 +44,7 @@ _FIXED: dict[str, Value] = {
     "reference.alpha": 0.01,
 }
 APF = System.of("APF", "apf", {**_FIXED, **_LIKELIHOOD})
+"""The paper's rule: its step 4 with the printed tau, and the alpha of `INTERPRETATIONS_NOTE`."""
 APF_RIVALS = (
     System.of("PF", "pf", _LIKELIHOOD),
     System.of("SAPF", "sapf", _LIKELIHOOD),
@@ -53,8 +54,11 @@ APF_RIVALS = (
 )
 """Rivals in the order of the paper's tables."""
 RELATIVE = System.of("APF, relative", "apf", {"occlusion.rule": "relative", **_LIKELIHOOD})
+"""Our interpretation: similarities are compared with their own running level."""
 AS_PRINTED = System.of("APF as printed", "apf", {"as_printed": True})
+"""The paper to the letter."""
 INTERPRETATIONS = {PAPER_RULE: APF, OUR_INTERPRETATION: RELATIVE, PRINTED_RULE: AS_PRINTED}
+"""The paper's tracker by interpretation; the first one gives the verdict."""
 INTERPRETATIONS_NOTE = (
     "The paper's rule is step 4 of its algorithm with a tau of 0.8, which the paper prints for its "
     "artificial videos alone; `video01` to `video20` have the same. The paper prints no alpha; "
@@ -79,6 +83,7 @@ LIBERTIES = (
 """The rivals with options that their own papers have, or with APF's number of measurements: three
 steps of mean shift and one measurement for each of 50 particles are 200 windows."""
 SIX_SYSTEMS = (APF, *APF_RIVALS)
+"""The six trackers of the paper's figures and tables, its own first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +112,7 @@ class Comparison:
 
 _MS = APF_RIVALS[-1]
 OWN_SIGMA_V = "the paper's rule, rivals with their own sigma_v"
+"""Name of the comparison with rivals that have the likelihood of their own papers."""
 COMPARISONS = (
     *(Comparison(name, system, APF_RIVALS) for name, system in INTERPRETATIONS.items()),
     Comparison(OWN_SIGMA_V, APF, (*OWN_LIKELIHOOD, _MS)),
@@ -118,8 +124,8 @@ COMPARISONS = (
 """APF under every interpretation against rivals of one likelihood, and in other company."""
 
 SPEEDS_PER_SIGMA = 1.5
-"""Of three rules that follow the speed, the one with the least error of all six trackers together
-(laboratory/notes/reproduction.md)."""
+"""Nominal speeds in a sigma: of three rules that follow the speed, this one has the least error of
+all six trackers together (laboratory/notes/reproduction.md)."""
 LEAST_SIGMA, LARGEST_SIGMA = 5.0, 10.0
 """The paper's interval for sigma, px/frame."""
 SIGMA_RULE = (

@@ -32,7 +32,7 @@ _LARGE = range(12, 19)
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """What the paper's table, or the truth of a scene, says of one video."""
+    """Row of the paper's table, or of the same by the truth of a scene, for one video."""
 
     vehicle: str
     occlusion: str

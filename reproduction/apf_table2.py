@@ -43,6 +43,7 @@ from reproduction.paper_scenes import VIDEO_SCENES
 
 _PLACE = "section IV, table II"
 _QUICK_VIDEOS = "video06", "video15", "video19"
+"""Videos of a quick run: one with a total occlusion, one with a partial one, one with none."""
 _AT_MOST = 0.5
 """Share of the best rival's error that the paper's table stays well below (17.32 of 73.69)."""
 _ALIKE = 1.25

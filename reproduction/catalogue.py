@@ -92,6 +92,7 @@ EXPERIMENTS: Mapping[str, Experiment] = MappingProxyType(
 )
 """Experiments by name."""
 ALL = "all"
+"""Word for all experiments on the command line."""
 
 
 def find_experiments(names: Sequence[str]) -> list[Experiment]:

@@ -91,7 +91,7 @@ class System:
 
 
 class Probe(Protocol):
-    """A cell at work: is shown every frame of its scene in order, and then asked for a result."""
+    """Cell at work: shown every frame of its scene in order, and then asked for its result."""
 
     def feed(self, shown: SceneFrame) -> None:
         """Take the next frame."""
@@ -159,7 +159,7 @@ class RunCell:
 
     @property
     def alone(self) -> bool:
-        """Others may run beside it."""
+        """False: others may run beside it."""
         return False
 
     def facts(self) -> dict[str, Any]:

@@ -60,7 +60,9 @@ _APF = apf.with_sigma(apf.APF, apf.LARGEST_SIGMA)
 _MFPF = mfpf.read_as(mfpf.MFPF, PAPER_RULE)
 _ADAPTIVE = resampling.VIEWS[PAPER_RULE].adaptive
 _VIDEOS = "video03", "video12"
+"""Scenes for switches of P1: one with partial and total occlusions, one with partial ones."""
 _SCENES = "overlap", "phases"
+"""Scenes for switches of P3: both that its experiments run on."""
 _RADIUS = float(_MFPF.parameters(0).dispersion.radius)
 """The nominal radius; half of it where the radius that is named is the doubled one."""
 EFFECTS = (

@@ -21,8 +21,8 @@ Entry: TypeAlias = float | int | str | None
 PAPER_RULE = "the paper's rule"
 """The paper's algorithm as it was meant: misprints and gaps filled by docs/interpretations.md."""
 BASIC_RIVALS = "the paper's rule, basic rivals"
-"""The other open reading of P2: MFPF by the paper's rule beside single-feature filters that have
-nothing of what its section IV adds (interpretation 32)."""
+"""The other open interpretation of P2: MFPF by the paper's rule beside single-feature filters that
+have nothing of what its section IV adds (interpretation 32)."""
 OUR_INTERPRETATION = "our interpretation"
 """The variant's defaults, or what we add to the paper's rule, named in the setting."""
 PRINTED_RULE = "as printed"
@@ -218,7 +218,7 @@ class Size:
     quick: bool = False
 
     def of(self, full: T, quick: T) -> T:
-        """Choose."""
+        """Choose the value for the full or the quick size."""
         return quick if self.quick else full
 
 
@@ -231,7 +231,7 @@ class Report:
     data : DataTable
         Values of all cells.
     figure : Figure
-        Like the paper's.
+        Figure after the paper's.
     verdict : ExperimentVerdict
         Verdicts on the claims.
     tables : mapping of str to DataTable

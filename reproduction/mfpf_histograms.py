@@ -41,6 +41,7 @@ _PLACE = "section III-D, figure 1"
 _SCENE = "disturbances"
 """One sequence with all disturbances, as the paper's: a shadow, a tree's crown, a pillar."""
 _SITUATIONS = "shadow", "partial", "full"
+"""Situations that are compared with the first frame."""
 _TITLES = {
     "initial": "initial", "shadow": "in shadow", "partial": "partly hidden", "full": "fully hidden",
 }  # fmt: skip
@@ -75,7 +76,7 @@ class HistogramCell:
 
     @property
     def alone(self) -> bool:
-        """Others may run beside it."""
+        """False: others may run beside it."""
         return False
 
     def facts(self) -> dict[str, Any]:
@@ -111,7 +112,7 @@ class _Histograms:
 
 
 def features(interpretation: str) -> dict[str, WindowFeature]:
-    """Make the three features as `mfpf` has them under a interpretation."""
+    """Make the three features as `mfpf` has them under an interpretation."""
     settings: MfpfParameters = read_as(MFPF, interpretation).parameters(0).effective()
     return {
         "color": RgbMarginals(),

@@ -28,6 +28,7 @@ _SOON = 10
 """Frames in which a feature that becomes acceptable again has to be in use: as many as the filter
 searches wider after the start."""
 _NOT_RUN = "case1 was not run"
+"""Result of claims on case 1 in a quick run, which leaves it out."""
 
 
 def report(results: ex.Results, size: ex.Size) -> ex.Report:

@@ -32,8 +32,10 @@ COLOR, EDGE, TEXTURE = (System.of(label, f"sfpf_{name}") for name, label in FEAT
 MFPF = System.of("MFPF", "mfpf")
 SINGLE_FEATURES = (COLOR, EDGE, TEXTURE)
 FOUR_SYSTEMS = (*SINGLE_FEATURES, MFPF)
+"""The four filters in the order of the paper's tables."""
 
 DEFAULTS = "defaults"
+"""Interpretation that leaves every parameter at its default."""
 _STEADY: Mapping[str, Value] = MappingProxyType(
     {
         "dispersion.radius": 4.0,
@@ -48,7 +50,8 @@ _STEADY: Mapping[str, Value] = MappingProxyType(
 """Settings for a still camera and vehicles at constant speed, as in all six cases."""
 _RULE: Mapping[str, Value] = MappingProxyType({"dispersion.noise": "gaussian"})
 _RULE_OF_ALL: Mapping[str, Value] = MappingProxyType({"update_unused": True})
-"""What the paper prints and our interpretation has otherwise, the latter in MFPF alone."""
+"""Settings that the paper prints and our interpretation has otherwise: `_RULE` of all filters, the
+other of MFPF alone, which has the parameter."""
 _EDGES: Mapping[str, Value] = MappingProxyType({"edges.threshold": 0.2, "edges.floor": 60.0})
 """Edge points of the filters that have the edge feature, chosen with `_STEADY`."""
 INTERPRETATIONS: Mapping[str, Mapping[str, Value]] = MappingProxyType(
@@ -69,8 +72,8 @@ _OWN: Mapping[str, Mapping[str, Mapping[str, Value]]] = MappingProxyType(
         BASIC_RIVALS: {"sfpf_texture": {"reference_weight": 0.6}},
     }
 )
-"""Values that serve a single-feature filter better than those chosen for MFPF, by reading. Tried
-were, one change each on the six cases with seed 100: radius 8, sigma_v 0.1, velocity_window 10, and
+"""Values that serve a single-feature filter better than those chosen for MFPF. Tried were, one
+change each on the six cases with seed 100: radius 8, sigma_v 0.1, velocity_window 10, and
 threshold 0.7 or reference_weight 0.6 and 0.95. RMS of the edge filter 73 to 48 px, of the texture
 filter 48 to 39 px, of the basic texture filter 79 to 70 px; the shared values are the others' best.
 """
@@ -81,13 +84,16 @@ RIVALRIES: Mapping[str, Mapping[str, Value]] = MappingProxyType(
         **{name: INTERPRETATIONS[name] for name in (OUR_INTERPRETATION, DEFAULTS, PRINTED_RULE)},
     }
 )
-"""The same and one more, for claims that compare MFPF with the single-feature filters."""
+"""Settings of every filter in comparisons of MFPF with the single-feature filters: those above, and
+those of basic rivals."""
 
 CASES = tuple(f"case{number}" for number in range(1, 7))
 QUICK_CASES = "case2", "case6"
+"""Cases of a quick run: one with a partial occlusion, one with a total one."""
 FULLY_HIDDEN = "case4", "case5", "case6"
 """Cases in which the vehicle disappears."""
 WITHOUT_HIDING = "case1", "case2", "case3"
+"""Cases in which some of the vehicle is always visible."""
 
 LAST_FRAMES = 20
 """Last frames in which a run must stay close to count as having tracked to the end."""

@@ -15,6 +15,7 @@ from reproduction.mfpf_systems import MFPF, TEXTURE
 from reproduction.numbers import mean_and_spread
 
 _KEPT = "glcm"
+"""The texture that the paper kept."""
 _LEFT = {
     name: (
         MFPF.but({"texture": name}),

@@ -14,8 +14,11 @@ from vehicle_pf_tracker.results.output_files import make_folder, write_json, wri
 from vehicle_pf_tracker.results.run_folder import versions
 
 DATA = "data.csv"
+"""File with the values of all cells."""
 FIGURE = "figure"
+"""Stem of the figure's files, an SVG and a PNG."""
 VERDICT = "verdict"
+"""Stem of the verdict's files, JSON for the page and Markdown to read."""
 
 
 def write_report(folder: Path, experiment: ex.Experiment, report: ex.Report, size: ex.Size) -> None:

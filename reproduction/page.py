@@ -26,7 +26,9 @@ from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.results.output_files import make_folder, write_text
 
 PAGE = "reproduction.md"
+"""File of the page."""
 _PICTURES = "images/reproduction"
+"""Folder of its figures, beside it."""
 _HEAD = """# Reproduction of the papers' experiments
 
 `{command}` makes this page. It runs the trackers on synthetic scenes with exact truth, which stand

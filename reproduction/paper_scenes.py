@@ -41,7 +41,7 @@ from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION, Face
 from vehicle_pf_tracker.scenes.vehicles import coach, van
 
 Build: TypeAlias = Callable[[DriveParameters, int], Scene]
-"""Makes a scene from the choices for a drive and a seed."""
+"""Function that makes a scene from the parameters of a drive and a seed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,12 +175,12 @@ _VIDEO_TABLE = (
 )  # fmt: skip
 
 VIDEO_SCENES: dict[str, FixedScene] = {video.name: video for video in _VIDEO_TABLE}
-"""The table by name."""
+"""Scenes after the first paper's twenty videos, by name."""
 
 
 SHADE_DEPTH = 0.55
 """Share of the light that trees take away."""
-# Frames of the first three phases; the fourth is what remains of the way.
+# Frames of the first three phases of `phases`; the fourth is what remains of the way.
 BEFORE = 40
 PARTIAL = 30
 FULL = 20
@@ -273,7 +273,7 @@ _CASE_TABLE = (
 )  # fmt: skip
 
 CASE_SCENES: dict[str, FixedScene] = {case.name: case for case in _CASE_TABLE}
-"""The table by name."""
+"""Scenes after the second paper's cases and figure 1, and the third paper's phases, by name."""
 
 
 FIXED_SCENES: dict[str, FixedScene] = VIDEO_SCENES | CASE_SCENES

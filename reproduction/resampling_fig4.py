@@ -149,7 +149,7 @@ def _numbers_text(found: Errors, phase: str) -> str:
 
 
 def _medians(found: Errors, phase: str) -> tuple[float, float]:
-    """Conventional's, and adaptive's."""
+    """Median RMSE of the conventional and of the adaptive filter in a phase, px."""
     return (
         median(found[resampling.CONVENTIONAL][phase]),
         median(found[resampling.ADAPTIVE][phase]),

@@ -33,12 +33,16 @@ REMNANT_BELOW = 0.3
 """Share of the vehicle below which it counts as almost fully hidden where some of it always shows:
 the frames of `overlap` that stand for the paper's from 16 to 19 have less."""
 STRICTER = "as printed, low weight below half the mean"
+"""Interpretation with a stricter limit of low weights, which the paper does not define."""
 BY_SIMILARITY = "the paper's rule, occlusion told by similarity"
+"""Interpretation that tells an occlusion by the best particle's similarity (interpretation 22)."""
 HARD = ", hidden wholly"
+"""Ending of the names of interpretations on `HARD_SCENE`."""
 PHASES = "before", "partial", "full", "after"
-"""Frames of the vehicle's way past the occluders."""
+"""Phases of the vehicle's way past the occluders, which its frames are grouped by."""
 VARIANTS = CONVENTIONAL, ADAPTIVE = "conventional", "adaptive"
 _DEFAULT_SCHEME = "multinomial"
+"""Resampling scheme of the filters unless another is named."""
 _RECORD = (*PATH_COLUMNS, "regime", "n_eff", "resampling_passes", "resampled_particles")
 
 
@@ -52,7 +56,7 @@ class View:
 
     @property
     def pair(self) -> tuple[System, System]:
-        """Conventional and adaptive."""
+        """Both filters, the conventional one first."""
         return self.conventional, self.adaptive
 
     def on(self, scene: SceneChoice) -> View:
@@ -72,6 +76,7 @@ def _view(
 
 
 _RULE = {"weighted_mean": False}
+"""Paper's rule: the position is the plain mean of the particles (interpretation 29)."""
 _PRINT = {"as_printed": True}
 INTERPRETATIONS: Mapping[str, View] = MappingProxyType(
     {
@@ -97,7 +102,7 @@ VIEWS: Mapping[str, View] = MappingProxyType(
         },
     }
 )
-"""The same, and three of them on the harder scene."""
+"""Both filters under every interpretation on the paper's timing, and three on the harder scene."""
 INTERPRETATIONS_NOTE = (
     "The paper's rule is its tables I and II. The position is the plain mean of the particles, "
     "and the criterion can be reached (0.7 of 200 particles). Our interpretation, "

@@ -14,7 +14,7 @@ from vehicle_pf_tracker.evaluation.scores import Scores
 
 _SHADES = {Occlusion.PARTIAL: ("0.93", "partly hidden"), Occlusion.TOTAL: ("0.78", "hidden")}
 OUTLINE = (Stroke(linewidth=3.4, foreground="white", alpha=0.8), Normal())
-"""Keeps lines visible on any scenery."""
+"""White rim that keeps a line visible on any scenery."""
 
 
 def shade_occlusions(axes: Axes, scores: Scores) -> None:

@@ -6,7 +6,7 @@
 import itertools
 
 ERROR = "unexpected ZeroDivisionError: of a test"
-"""What is said of such a failure."""
+"""Sentence about such a failure, as messages have it."""
 
 
 def failing(good, at, reason=ZeroDivisionError):

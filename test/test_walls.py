@@ -53,6 +53,7 @@ MESSAGES = {
 }  # fmt: skip
 ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", *MESSAGES}
 ON_A_ROBOT = {"rclpy", "launch", "launch_ros", *MESSAGES, "numpy", "scipy", "cv2", "yaml", "numba"}
+"""Modules that a robot has from apt, beside the standard library."""
 
 
 WITHOUT_FILES = {"filtering", "detection", "trackers"}
@@ -141,7 +142,7 @@ def covers(allowed: set[str], name: str) -> bool:
 
 
 def broken_walls(modules: dict[str, Module]) -> list[str]:
-    """Imports that reach through a wall of DESIGN.md 1."""
+    """Imports that `MAY_IMPORT` forbids."""
     return [
         f"{module.at(found.line)} imports {found.name}"
         for module in modules.values()

@@ -26,7 +26,7 @@ from vehicle_pf_tracker.following.known_networks import (
 
 ROOT = Path(__file__).parents[1]
 VERSION = "0.1.1"
-"""That of the makers' release, which they call 0.1.1rc0: pip takes no candidates unasked."""
+"""Version of the makers' release, which they call 0.1.1rc0: pip takes no candidates unasked."""
 # Files of the wheel.
 _PROJECT = """\
 [build-system]

@@ -90,7 +90,7 @@ def survivors(room: str, sample: str = "") -> tuple[int, list[str]]:
 ALIVE = {"survived", "no tests"}
 """Verdicts of mutmut on a change that no test noticed; a change that never ends is noticed."""
 UNTRIED = "not checked"
-"""Its verdict on a change that is not in the sample."""
+"""Verdict of mutmut on a change that is not in the sample."""
 
 
 def _mutmut(folder: Path, *words: str) -> str:

@@ -58,7 +58,7 @@ for package in distributions():
 
 
 class ReleaseError(Exception):
-    """What stands against a release, a sentence."""
+    """Reason against a release, one sentence."""
 
 
 class Licence(NamedTuple):

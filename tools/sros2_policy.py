@@ -90,7 +90,7 @@ TRAFFIC_PERMISSIONS: _Permissions = {
     ),
     _ANSWERED: tuple(sorted([*PERMISSIONS[_ANSWERED], "~/remove_selected"])),
 }
-"""The same of the node that follows many vehicles."""
+"""Everything that the node of many vehicles has."""
 
 # Files of SROS 2: the policy, and in it the part of a node.
 _POLICY = """<?xml version="1.0" encoding="UTF-8"?>

@@ -25,7 +25,7 @@ def truths_of(name, seed):
 
 
 def occluded_by_itself(runs):
-    """Whether there is a partial occlusion that neither begins nor ends a total one."""
+    """Test whether there is a partial occlusion that neither begins nor ends a total one."""
     states = [state for state, _ in runs]
     return any(
         state is PARTIAL and TOTAL not in (*states[i - 1 : i], *states[i + 1 : i + 2])

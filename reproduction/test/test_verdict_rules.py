@@ -30,7 +30,7 @@ def flat(*rows):
 
 
 class Runs:
-    """What `apf-fig3` judges: three widths with one run each, and a value for each of them."""
+    """Runs that `apf-fig3` judges: three widths with one run each, and a value for each of them."""
 
     def __init__(self, values):
         self.widths, self.values, self.seeds = (0, 60, 120), values, range(1)

@@ -118,7 +118,7 @@ def yolov8(path, names=("car", "truck"), channels=(0, 2), size=SIDE):
 
 
 def yolov8_anywhere(path, size, side, step, names=("car", "truck")):
-    """As `yolov8`, of a square of `side` px at any multiple of `step` px.
+    """Network like `yolov8`, of a square of `side` px at any multiple of `step` px.
 
     The score is the mean of red and of blue in a window, from 0 where half a step is missing.
     """

@@ -47,7 +47,7 @@ def test_the_peak_on_the_training_patch_is_in_its_middle():
 
 
 def test_more_steps_reach_the_least_squares_solution(monkeypatch):
-    """Of sum_k x_k * g_k = y with 5 x 48 unknowns, solved here directly.
+    """The system sum_k x_k * g_k = y with 5 x 48 unknowns is solved here directly.
 
     The usual eight steps with a growing penalty end on the way there: the filter is smoother.
     """
@@ -104,7 +104,7 @@ def test_weights_are_zero_outside_the_target():
 
 
 def test_the_response_in_the_middle_of_a_small_patch_is_that_of_the_large_one():
-    """Which leaves out the highest frequency along x."""
+    """The response leaves out the highest frequency along x."""
     made = trained()
     small = features()[:, 10:22, 10:22]
     whole = float(np.vdot(cells_of(made)[INSIDE], made.weights.target))

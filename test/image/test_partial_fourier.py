@@ -24,7 +24,7 @@ def transformed(whole):
 
 
 def test_spectrum_by_hand():
-    """Of 1 + cos y + 3 sin 2 y + 5 cos x sin y over a period of 8: halves and quarters of 64."""
+    """Waves 1 + cos y + 3 sin 2 y + 5 cos x sin y over a period of 8: halves and quarters of 64."""
     y, x = np.mgrid[:8, :8] * np.pi / 4
     waves = 1 + np.cos(y) + 3 * np.sin(2 * y) + 5 * np.cos(x) * np.sin(y)
     found = PartialFourier(8, slice(8), slice(8)).spectrum_of(waves[np.newaxis].astype(np.float32))

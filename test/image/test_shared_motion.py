@@ -78,7 +78,7 @@ def test_stretch_is_the_growth_within_its_bound_of_points_that_are_enough(count,
 STILL_BOX = np.array([[0.1, 0.1], [-1.6, -1.6]])
 """Places of points in a box of 10 x 10 px around (16, 16)."""
 FROM_LEFT = np.array([[1.0, 1.0], [-5.0, 0.0]])
-"""Of points whose vehicle has driven 5 px to the right."""
+"""Earlier places of points whose vehicle has driven 5 px to the right."""
 STANDS = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
 NOT_TOLD = np.empty((0, 2))
 
@@ -112,13 +112,13 @@ ALL = block(0, 0, 8, 8)
     ],
 )
 def test_share_that_the_vehicle_carries(columns, background, share):
-    """What comes from elsewhere does not count, nor what stands."""
+    """Points that come from elsewhere do not count, nor those that stand."""
     found = carried_share(flow_of(*columns), ALL, STILL_BOX, FROM_LEFT, background)
     assert found == pytest.approx(share)
 
 
 def test_a_vehicle_that_grows_carries_all_of_its_surface():
-    """By a quarter, which takes the outermost points 3.5 px off; they would not count otherwise."""
+    """It grows by a quarter: the outermost points are 3.5 px off, and would not count otherwise."""
     flow = flow_of(0)
     flow[..., 0] = -5 - 0.25 * (np.arange(32) + 0.5 - 16)
     assert carried_share(flow, ALL, STILL_BOX, FROM_LEFT, NOT_TOLD) == 1.0

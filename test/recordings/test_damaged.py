@@ -91,7 +91,7 @@ def test_a_lost_end_alone_loses_no_frame(wholes, tmp_path, layout, lost):
 
 
 def test_a_tail_of_zeros_is_a_cut(wholes, tmp_path):
-    """What a file system leaves after a power failure."""
+    """A file system leaves such a tail after a power failure."""
     path = tmp_path / "cut.mcap"
     path.write_bytes(wholes[0][: len(wholes[0]) // 2] + bytes(5000))
     recording = Recording(path)

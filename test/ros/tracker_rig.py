@@ -105,7 +105,7 @@ class Rig:
         self.positions = bench.collect(PointStamped, f"{self.name}/position", QUEUE)
 
     def callback(self, topic):
-        """What the node does with a message of a topic that it has subscribed to."""
+        """Callback of the node for messages of a topic that it has subscribed to."""
         return next(one.callback for one in self.node.subscriptions if one.topic_name == topic)
 
     def listeners(self, output: str) -> int:

@@ -55,7 +55,7 @@ def images():
 
 
 def estimates(variant, parameters, changed):
-    """What is estimated after the change."""
+    """Yield the scalars of the estimates after the change, but for the step's time."""
     box = Street().box(0)
     settings = SessionParameters(TargetParameters(box.x, box.y, box.width, box.height))
     session = Session(variant, parameters, settings)

@@ -56,7 +56,7 @@ def tell_notices(sentences: Iterable[str]) -> None:
 def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: str = "") -> None:
     """Print cells as a table on stdout; nothing in them is markup.
 
-    It is not wrapped where that is not a terminal.
+    Where stdout is no terminal, its lines are not wrapped.
     """
     from rich.console import Console
     from rich.table import Table
@@ -74,7 +74,7 @@ def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: st
 
 
 Show: TypeAlias = Callable[[str, float | None], None]
-"""Takes words about work under way, and its share done (0 to 1), None if unknown."""
+"""Function of words about work under way, and of its share done (0 to 1), None if unknown."""
 
 
 @contextmanager

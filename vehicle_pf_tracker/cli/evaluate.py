@@ -52,7 +52,7 @@ _GRID_ONLY = (
     "scheduler",
     "restart",
 )
-"""Options of the grid that do not apply."""
+"""Options of the grid of systems, recordings and seeds, which `--traffic` refuses."""
 
 
 @dataclass(frozen=True, kw_only=True)

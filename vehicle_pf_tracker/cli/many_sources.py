@@ -50,8 +50,8 @@ _TABLE = "sources.csv"
 _MOST_PRINTED = 40
 """Rows of the table on a terminal, what a screen holds; the file has all."""
 Follow: TypeAlias = Callable[[Any], int]
-"""Follows what is in the one source of a request, and returns the exit status: a verb's function
-at the top of its module, which a process can import."""
+"""Function that follows what is in the one source of a request, and returns the exit status: one
+at the top of a verb's module, which a process can import."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +112,8 @@ def follow_each(
     configure : callable
         Gives the parameters of a request, so that their mistakes end the command at its start.
     advise : callable
-        Gives sentences that end the command, of its words, the folder over all and those in it.
+        Function of the command's words, the folder over all and those in it: sentences to print at
+        the end.
 
     Raises
     ------
@@ -136,7 +137,7 @@ def follow_each(
 
 
 def _complete(jobs: Sequence[Job], request: SeveralSources, folder: Path) -> int:
-    """Run the jobs that the folder has no results of, and tell of all."""
+    """Run the jobs that the folder has no results of, and report on all."""
     with output_errors(folder):
         for left in folder.glob(".*.partial"):  # half written by a command that was killed
             shutil.rmtree(left, ignore_errors=True)
@@ -199,6 +200,7 @@ def follow_job(job: Job) -> Outcome:
         # Many of them would write over each other's lines.
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(told):
             status = exit_status(lambda: _followed(job.follow, request, Path(scratch)))
+        # Errors and notes of the verb, without the words before them (`console.tell_error`).
         sentences = [
             line.partition(": ")[2].partition(": ")[2]
             for line in told.getvalue().splitlines()

@@ -73,23 +73,23 @@ class FrameStore:
 
 
 class Editor(PageServer):
-    """Serves the page on which the user draws, and ends with what they drew.
+    """Server of the page on which the user draws, which ends with what they drew.
 
     Parameters
     ----------
     frames : FrameStore
         The frames to draw in.
     sections : sequence of str
-        What can be drawn, of `USES`; the first is offered first.
+        Sections that can be drawn, of `SECTION_USES`; the first is offered first.
     first : int
         Number of the frame shown first.
     document : dict
-        What is there to be edited.
+        Shapes that are there already, to be edited.
 
     Attributes
     ----------
     drawn : dict
-        What the user drew; empty if they cancelled.
+        Shapes that the user drew; empty if they cancelled.
     """
 
     def __init__(

@@ -42,7 +42,7 @@ def shown_replay() -> Iterator[Callable[[int, float | None], None]]:
 
 
 ANSWERS = ("estimates.csv", "*/estimates.csv")
-"""Files of one node, and of each of several."""
+"""Patterns of the files that `-o` replaces: of one node, and of each of several."""
 
 
 def _seconds(text: str) -> float:

@@ -43,9 +43,9 @@ def option(*flags: str, **settings: Any) -> Any:
     Parameters
     ----------
     flags : str
-        Its words; to a short one alone, as to none, comes ``--`` with the field's name.
+        Words of the option; ``--`` with the field's name is added where none begins with ``--``.
     settings
-        Those of `argparse.ArgumentParser.add_argument`; `type` may raise an `InputError`.
+        Keywords of `argparse.ArgumentParser.add_argument`; `type` may raise an `InputError`.
     """
     return field(metadata={"flags": flags, "settings": settings})
 
@@ -114,7 +114,7 @@ def request_of(kind: type[RequestT], args: argparse.Namespace) -> RequestT:
 
 
 def names_in(text: str, known: Collection[str], what: str) -> tuple[str, ...]:
-    """Read some of the names that are known, with commas."""
+    """Read names apart by commas, each of which has to be among the known ones."""
     names = tuple(dict.fromkeys(text.split(",")))
     for name in names:
         if name not in known:

@@ -21,7 +21,7 @@ def served(
 ) -> Iterator[LivePage | None]:
     """Serve a page until the end of the block, and print its address.
 
-    None where no address is given, or it cannot be had, which is told at once.
+    None where no address is given, or the page cannot be served there, which is reported at once.
     """
     page = None
     if address is not None:

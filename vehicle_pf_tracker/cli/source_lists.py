@@ -71,7 +71,7 @@ RequestT = TypeVar("RequestT", bound=SeveralSources)
 
 
 def requests_by_name(request: RequestT) -> dict[str, RequestT]:
-    """Return a request of each source, by a name: patterns and lists spread out, paths whole.
+    """Return a request for each source by its name, patterns and lists expanded, paths absolute.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def _spread(source: str) -> list[str]:
 
 
 def _absolute(request: RequestT) -> RequestT:
-    """Name files by whole paths, as workers may stand in other folders."""
+    """Name files by absolute paths, as workers may run in other folders."""
     if request.source.isdecimal() and not Path(request.source).exists():
         raise UsageError(f"the camera {request.source} has no end; give it a command of its own")
     names = [
@@ -157,6 +157,7 @@ def _read_list(path: Path, request: VerbRequest) -> list[dict[str, Any]]:
     """
     parser = _Parser(add_help=False, allow_abbrev=False)
     add_options(parser, type(request))
+    # Defaults, by a stand-in for the source: an option of a line that states one changes nothing.
     usual = vars(parser.parse_args(["-"]))
     entries = []
     for number, line in enumerate(read_text(path, "the list of sources").splitlines(), start=1):

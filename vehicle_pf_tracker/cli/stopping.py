@@ -61,7 +61,7 @@ class StillAtWork(BaseException):
 
 
 class Stop:
-    """Tells that a signal has come, and leaves a computation that does not end then.
+    """Record of a signal that ends the command, and the way out of work that does not end then.
 
     Attributes
     ----------

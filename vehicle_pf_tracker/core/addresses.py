@@ -12,6 +12,7 @@ from typing import Any
 from urllib.parse import unquote
 
 HIDDEN_MARK = "***"
+"""Mark in place of a password."""
 _SCHEME = r"[A-Za-z][A-Za-z0-9+.-]+:/{1,2}"  # a path has one of the two slashes
 _USERINFO = re.compile(
     # Up to the last @ before the path; a password may have another @ in it. Or one that has a
@@ -19,7 +20,7 @@ _USERINFO = re.compile(
     rf"({_SCHEME})(?:[^\s/?#]*@|[^\s/?#:@]*:(?!\d+(?:[/?#\s]|$))(?:\S*@|[^@\n]{{1,80}}@))"
 )
 _WHOLE_USERINFO = re.compile(rf"^({_SCHEME})(?:[^/?#]*@|[^/?#:@]*:(?!\d+[/?#]).*@)", re.DOTALL)
-"""Password in a text that is an address as a whole, where it may have spaces."""
+"""User and password of a text that is one address as a whole, where they may have spaces."""
 _SECRET = re.compile(
     # Cameras take the password as part of the query, or of the path, with & or _ between the parts.
     r"(?i)((?:^|[?&;/_])(?:[a-z]*pass(?:word|wd|phrase)?|pwd|[a-z_-]*token|[a-z_-]*key|secret"

@@ -17,7 +17,7 @@ PAIRED_WITHIN_S = 0.01
 
 
 def is_nearest(stamp_ns: int, following_ns: int | None, moment_ns: int, limit_ns: int) -> bool:
-    """Return whether a moment, at most `limit_ns` away, is no nearer to the stamp that follows."""
+    """Test whether a stamp is within `limit_ns` of a moment, and the next stamp is not nearer."""
     distance = abs(stamp_ns - moment_ns)
     return distance <= limit_ns and (
         following_ns is None or abs(following_ns - moment_ns) >= distance

@@ -10,6 +10,8 @@ import struct
 
 def header_stamp_ns(data: bytes | memoryview) -> int | None:
     """Read the stamp of a message in CDR that begins with a header, ns; None if it is too short."""
+    # Four bytes of encapsulation, the second of which has the order of the bytes; then the seconds
+    # (int32) and the nanoseconds (uint32) of the header.
     if len(data) < 12:
         return None
     seconds, nanoseconds = struct.unpack_from("<iI" if data[1] & 1 else ">iI", data, 4)

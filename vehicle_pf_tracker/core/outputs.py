@@ -3,7 +3,7 @@
 
 """The rule for outputs: an input is never one, what exists is kept, and one command uses it.
 
-Folders that appear whole or not at all.
+Also here: folders that appear whole or not at all (`whole_folder`).
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from vehicle_pf_tracker.core.errors import InputError
 BAG_INFORMATION = "metadata.yaml"
 """File that makes a folder a rosbag2 recording."""
 _FILE_URL = "file://"
+"""Beginning of a URL of a file on this machine."""
 
 
 @dataclass(frozen=True, slots=True)

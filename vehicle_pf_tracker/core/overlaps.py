@@ -15,7 +15,7 @@ NO_BOXES = np.empty((0, 4))
 
 
 def areas(edges: Array) -> Array:
-    """Measure the areas in px² of boxes (..., 4), at least one."""
+    """Measure the areas of boxes (..., 4) in px², at least 1, so that shares of them are finite."""
     sides = np.maximum(edges[..., 2:] - edges[..., :2], 0.0)
     return np.asarray(np.maximum(sides[..., 0] * sides[..., 1], 1.0))
 
@@ -27,12 +27,12 @@ def overlaps(edges: Array, others: Array) -> Array:
 
 
 def inside_image(edges: Array, size: tuple[int, int]) -> Array:
-    """Measure the shares of boxes (..., 4) that lie in an image of this width and height."""
+    """Measure the shares of boxes (..., 4) that lie in an image of this width and height, px."""
     return np.asarray(intersections(edges, np.array([0.0, 0.0, *size])) / areas(edges))
 
 
 def clipped(edges: Array, size: tuple[int, int]) -> Array:
-    """Cut boxes (N, 4) at the borders of the image, at least one px wide and high."""
+    """Cut boxes (N, 4) at the borders of the image, but keep one px of width and height."""
     limits = np.array([*size, *size], dtype=np.float64)
     low = np.clip(edges[:, :2], 0.0, limits[:2] - 1)
     return np.hstack([low, np.maximum(np.clip(edges[:, 2:], 0.0, limits[2:]), low + 1)])

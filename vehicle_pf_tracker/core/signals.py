@@ -13,7 +13,7 @@ from types import FrameType
 from typing import TypeAlias
 
 Handle: TypeAlias = Callable[[int, FrameType | None], None]
-"""Takes the number of a signal, and where it came."""
+"""Handler of a signal, called with its number and the frame of code that it interrupts."""
 
 
 def ending_signals() -> list[signal.Signals]:

@@ -1,10 +1,10 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Samplers of the motion densities of P1, section III.
+"""Samplers of motion densities: those of P1, section III, and the disc in place of P2's noise.
 
-Equations are numbered as in the paper. The printed norms of equations 10 and 12 make no densities,
-and equation 20 loses a term; interpretations 2 to 4 correct them.
+Equations are numbered as in P1. The printed norms of its equations 10 and 12 make no densities, and
+equation 20 loses a term; interpretations 2 to 4 correct them.
 """
 
 from __future__ import annotations
@@ -68,7 +68,10 @@ def sample_normal_rayleigh(
 
 
 def sample_disc(rng: np.random.Generator, count: int, radius: float) -> Array:
-    """Draw `count` displacements evenly from a disc of `radius` px, shape (count, 2), in px."""
+    """Draw `count` displacements evenly from a disc of `radius` px, shape (count, 2), in px.
+
+    It stands for the Gaussian of P2's equation 5, and bounds the search (interpretation 25).
+    """
     angle = rng.uniform(0.0, 2 * np.pi, count)
     # The root makes every area as likely as any other.
     distance = radius * np.sqrt(rng.random(count))

@@ -47,7 +47,7 @@ class CountedVehicles:
     Attributes
     ----------
     session, counter
-        The same.
+        Those of the parameters above.
     trails : Trails
         Paths over the last images.
     classes : VehicleClasses
@@ -148,7 +148,7 @@ class CountedVehicles:
 
 @dataclass(frozen=True)
 class _PacedMaker:
-    """Makes detectors that look as often as the tracker's parameters say."""
+    """Maker of detectors that look at every k-th image, k by the parameters in use."""
 
     make: Callable[[], Detector]
     tracker: MultiVehicleTracker

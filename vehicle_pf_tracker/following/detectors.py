@@ -22,7 +22,7 @@ from vehicle_pf_tracker.following.opened_network import open_network
 
 @dataclass(frozen=True)
 class _Same:
-    """Makes a detector that keeps nothing between images: it is always the same."""
+    """Maker of a detector that keeps nothing between images: always the same object."""
 
     detector: Detector
 

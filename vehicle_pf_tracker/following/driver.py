@@ -56,8 +56,8 @@ class OfflineTracker:
     settings : SessionParameters
         A target in them is started on in the first frame.
     first_truth : Truth or None
-        Start without such a target: its box, in the frame that its stamp belongs to;
-        the frames before are waited through.
+        Truth whose box is the target where `settings` have none, in the frame that its stamp
+        belongs to; the frames before are `WAITING`.
     targets : mapping of int to Box
         Boxes to start on, or to start again on, by the numbers of their frames. That of the first
         frame takes the place of the one in `settings`.

@@ -3,8 +3,8 @@
 
 """Files from the internet, fetched once into the user's cache.
 
-pooch keeps a file once it is whole and has its sum. It has no limit of size, does not go on where
-a fetch broke off, and leaves what a killed process left; this adds these.
+pooch keeps a file once it is whole and has its sum. It does not limit the size, resume a fetch that
+broke off, or remove what a killed process has left; this module does all three.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from vehicle_pf_tracker.core.outputs import output_errors
 from vehicle_pf_tracker.results.output_files import make_folder
 
 Progress: TypeAlias = Callable[[str, float | None], None]
-"""Takes words about a transfer, and its share done, None if unknown."""
+"""Function of words about a transfer, and of its share done (0 to 1), None if unknown."""
 
 _SECONDS = 30.0
 """Silence of a server after which it is given up: a slow one sends something meanwhile."""
@@ -37,12 +37,13 @@ _MOST_BYTES = 2**31
 """Size of the largest file of a network: protobuf, which ONNX is written in, has no larger
 ones."""
 _LEFT_SECONDS = 7 * 86400.0
-"""Age after which what is left of a fetch that nobody went on with is removed: a week, a
+"""Age after which the part that a fetch has left, and none has resumed, is removed: a week, a
 choice."""
 _LONGEST_TAG = 60
-"""Letters of a server's name for a file's state that fit into a file's name, three bytes each."""
+"""Letters of an ETag, the server's name for a state of a file, that fit into the name of the part:
+each may take three bytes there."""
 _NO_RANGE = 416
-"""Answer of a server that has nothing after what is there already."""
+"""Status of a server that has nothing after the part that is there already."""
 
 
 def silent(words: str, share: float | None) -> None:
@@ -50,9 +51,9 @@ def silent(words: str, share: float | None) -> None:
 
 
 def fetch(url: str, path: Path, demanded: str, progress: Progress = silent) -> None:
-    """Fetch a file, which is there when it is whole and has the sum demanded.
+    """Fetch a file, which appears once it is whole and has the sum demanded.
 
-    A part of it that an earlier fetch has left is gone on with where the server can.
+    Where the server can, this resumes from the part that an earlier fetch has left.
 
     Parameters
     ----------
@@ -115,7 +116,7 @@ def sum_of(path: Path) -> str:
 
 
 class _Download:
-    """One fetch, called by pooch with the file to fill.
+    """Fetch of one file, which pooch calls with the file to fill.
 
     Attributes
     ----------
@@ -131,7 +132,7 @@ class _Download:
         self.digest = ""
 
     def __call__(self, url: str, output_file: str, _pooch: Any) -> None:
-        """Fill the file, going on with the part that is there."""
+        """Fill the file, from the part that an earlier fetch has left."""
         try:
             with _reserved(self._part()) as part:
                 if not self._fill(part, Path(output_file)) and part is not None:
@@ -182,15 +183,15 @@ class _Download:
                     self._receive(answer.iter_content(_CHUNK), file, done, total)
             finally:
                 if target is not output and not target.stat().st_size:
-                    target.unlink()  # refused: nothing to go on with
+                    target.unlink()  # refused: nothing to resume from
         if target is not output:
             target.replace(output)
         return True
 
     def _new_part(self, tag: str, reserved: Path | None) -> Path | None:
-        """Return a file to go on with later, by what the server calls this state of its file.
+        """Return a file to resume from later, named by the ETag of this state of the server's file.
 
-        None where it has no name for it, or another process is at that file.
+        None where the server gives no such tag, or another process writes that file.
         """
         if not tag.startswith('"') or len(tag) > _LONGEST_TAG:
             return None
@@ -217,7 +218,7 @@ class _Download:
                     raise InputError(f"the network {self._url} does not end; it is not kept")
                 self._progress(f"fetching {self._url}", done / total if total else None)
         except InputError:
-            # What is refused must not be gone on with.
+            # A later fetch must not resume from what is refused.
             file.truncate(0)
             raise
         except self._requests.RequestException:
@@ -229,7 +230,7 @@ class _Download:
 
 @contextmanager
 def _reserved(part: Path | None) -> Iterator[Path | None]:
-    """Give a part to go on with; None where there is none, or another process is at it."""
+    """Give a part to resume from; None where there is none, or another process writes it."""
     if part is None:
         yield None
         return
@@ -252,7 +253,7 @@ def _reason(error: Exception) -> str:
 
 
 def _remove_leftovers(folder: Path) -> None:
-    """Remove parts of files that nobody went on with, as of a process that was killed."""
+    """Remove parts of files that no fetch has resumed, as of a process that was killed."""
     for path in [*folder.glob("*.part"), *folder.glob("tmp*")]:
         with suppress(OSError):
             if time.time() - path.stat().st_mtime > _LEFT_SECONDS:

@@ -32,7 +32,7 @@ from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 _NO_PARTICLES = np.zeros((0, 2))
-"""Instead of a cloud: of a film of an hour, they would take 400 MB."""
+"""Empty cloud in place of the particles: those of an hour of video would take 400 MB."""
 
 
 @dataclass(frozen=True, slots=True)

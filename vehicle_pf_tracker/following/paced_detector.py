@@ -27,7 +27,8 @@ _RECENT = 0.1
 a second, and one slow image changes nothing."""
 
 Run: TypeAlias = Callable[[Callable[[], Detections]], Detections]
-"""Calls what makes detections, and returns them."""
+"""Function that calls another one and returns its detections, as `call` does: it may do so in a
+thread that can be left."""
 
 
 def call(work: Callable[[], Detections]) -> Detections:

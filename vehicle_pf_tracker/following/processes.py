@@ -44,8 +44,8 @@ def run_in_processes(
     workers : int
         Number of processes.
     lost : callable or None
-        Makes the result of a task whose process is ended from outside, as by a fault of a library
-        in C, of a sentence that says so; all other tasks are done.
+        Function that makes the result of a task whose process is ended from outside, as by a fault
+        of a library in C, from a sentence that says how; all other tasks are still done.
 
     Raises
     ------
@@ -147,4 +147,4 @@ def wait_or_kill(process: subprocess.Popen[bytes] | subprocess.Popen[str]) -> in
 
 
 OnProgress: TypeAlias = Callable[[int, int | None], None]
-"""Takes the numbers of runs or frames done and of all, None if unknown."""
+"""Function of the number of runs or frames that are done, and of all, None if unknown."""

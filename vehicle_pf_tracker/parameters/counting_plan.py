@@ -111,7 +111,7 @@ class CountingPlan:
 
     @property
     def is_counting(self) -> bool:
-        """Tell whether there is anything to count at."""
+        """True where there is a line or a zone to count at."""
         return bool(self.lines or self.zones)
 
     def outside(self, width: int, height: int) -> list[str]:

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.parameters.table import EFFECTS, ParameterSpec, Value
 
 _LARGEST_FILE = 2**20
-"""Bytes; the parameter file of a variant has 6 kB, comments included."""
+"""Largest file that is read, bytes: a megabyte, where those of the variants have at most 11 kB."""
 
 
 _WIDTH = 96
@@ -24,7 +24,7 @@ _WIDTH = 96
 
 
 class _Loader(yaml.SafeLoader):
-    """Refuses what ROS's own reader refuses (aliases), and keys that hide others."""
+    """Loader that refuses aliases, as ROS's own reader does, and keys that hide others."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         if self.check_event(yaml.AliasEvent):

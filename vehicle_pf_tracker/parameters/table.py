@@ -34,12 +34,14 @@ EFFECTS: Mapping[Effect, str] = {
     "restarts": "restarts the random numbers",
     "starts": "starts again on the new target",
 }
+"""Consequences of a change while tracking, in words for parameter files and pages."""
 
 # A value in an error is cut to 80 letters: it may be a whole file.
 _BRIEF = reprlib.Repr()
 _BRIEF.maxstring = _BRIEF.maxother = _BRIEF.maxlong = 80
 
 _KEY = "parameter"
+"""Key of a field's metadata under which its specification, or its group's class, lies."""
 _BOOLEANS = {"true": True, "1": True, "yes": True, "false": False, "0": False, "no": False}
 _TYPE_NAMES = {bool: "true or false", int: "an integer", float: "a number", str: "a string"}
 
@@ -47,7 +49,7 @@ _TYPE_NAMES = {bool: "true or false", int: "an integer", float: "a number", str:
 def plain_number(value: object) -> object:
     """Return a number of numpy, or of a library like it, as Python's own; all else as it is.
 
-    This room does not import numpy, which has a type for each size of number.
+    Numpy, which has a type for each size of number, is not needed for that and not imported here.
     """
     if getattr(value, "shape", None) == () and callable(item := getattr(value, "item", None)):
         return item()

@@ -18,10 +18,11 @@ _HELD_FRAMES = 90
 FrameEstimates = tuple[int, int, Sequence[TrackEstimate]]
 """Number of a frame, its stamp in ns, and the vehicles in it."""
 Frames = Iterator[FrameEstimates]
+"""Frames in their order, with what is known of them."""
 
 
 class Backdating:
-    """Holds frames back until vehicles and classes in them are known.
+    """Frames that are held back until the vehicles and classes in them are known.
 
     Tentative vehicles that are confirmed get their numbers from their first detection on; the
     others are left out. A vehicle has the class that was decided for it in all frames. A hidden one

@@ -69,7 +69,7 @@ def write_text(path: Path, text: str) -> None:
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
-    """Make a CSV file: every digit, and nothing for None."""
+    """Return the text of a CSV file, with every digit, and an empty cell for None."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header)

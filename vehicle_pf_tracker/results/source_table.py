@@ -29,6 +29,7 @@ _LARGEST = "most_at_once"
 """Column whose largest value stands for all sources; others are summed, and scores left out."""
 
 Cell: TypeAlias = "str | int | float | None"
+"""Cell of the table; None where there is no value."""
 
 
 @dataclass(frozen=True, slots=True)

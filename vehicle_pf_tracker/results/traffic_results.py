@@ -23,7 +23,7 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMod
 TRACKS_FILE = "tracks.csv"
 """File of all vehicles, a row for each in each frame."""
 MOT_TRACKS = "tracks.txt"
-"""The same in the format of MOTChallenge, which tools for scoring read."""
+"""File of all but the lost ones in the format of MOTChallenge, which tools for scoring read."""
 COUNTS_FILE = "counts.csv"
 """File of the crossings, a row for each."""
 ZONES = "zones.csv"
@@ -75,7 +75,7 @@ IN_TRACKS = frozenset({TrackMode.TENTATIVE, *COUNTED_MODES})
 
 
 class TrackFiles:
-    """Writes the estimates of frame after frame, tentative ones once they are confirmed.
+    """Writer of the estimates of frame after frame, tentative ones once they are confirmed.
 
     Parameters
     ----------

@@ -26,11 +26,11 @@ from vehicle_pf_tracker.results.vehicle_log import VehicleLog, Whereabouts
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 _GONE = (Whereabouts.BORDER, Whereabouts.ROI, Whereabouts.FAR)
-"""Ends that the summary tells in a line of their own."""
+"""Ends that the summary reports in a line of their own."""
 
 
 class TrafficSummary:
-    """Counts vehicles and occlusions, frame by frame.
+    """Tally of vehicles and occlusions, frame by frame.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ _KEPT = 200
 
 
 class ContactSheet:
-    """Keeps the first and the last frame, and those in which a mode changes."""
+    """Sheet of the first and the last frame, and of those in which a mode changes."""
 
     def __init__(self) -> None:
         self._kept: list[Frame] = []

@@ -121,7 +121,7 @@ def draw_path(
 
 
 Label: TypeAlias = tuple[Box, Colour, tuple[str, ...]]
-"""Box in px, and words for it: the first that find room."""
+"""Box in px, its colour, and choices of words for it: the first that find room are written."""
 Labels: TypeAlias = list[Label]
 
 
@@ -173,7 +173,7 @@ MODE_COLOURS: dict[str, Colour] = {
 
 
 class Annotator:
-    """Draws one target; keeps its path.
+    """Drawing of one target in frame after frame, with the path behind it.
 
     Parameters
     ----------

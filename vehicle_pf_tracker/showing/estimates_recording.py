@@ -110,7 +110,7 @@ def _write_estimate(writer: RecordingWriter, topic: str, row: EstimateRow, drawn
 
 
 OnFrame: TypeAlias = Callable[[StampedFrame, Mapping[str, EstimateRow]], None]
-"""Takes each frame with the row of each target."""
+"""Function of a frame and of the row of each target, by name."""
 
 
 @contextmanager

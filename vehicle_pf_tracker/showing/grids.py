@@ -80,4 +80,5 @@ def draw_road_grid(frame: Frame, plane: RoadPlane, pairs: Sequence[Pair]) -> Fra
 
 
 def _step(least: float) -> int:
+    """Return the least of the round distances, px or m, that is at least `least`; else the last."""
     return next((step for step in _STEPS if step >= least), _STEPS[-1])

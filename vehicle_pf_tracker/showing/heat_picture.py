@@ -41,7 +41,7 @@ _BAR = (80, 7)
 
 
 class HeatPicture:
-    """Shows where vehicles drove and where they stood, by the time that they were there.
+    """Picture of where vehicles drove and where they stood, by the time that they were there.
 
     Both are on one scale, which bars in the corner show.
     """

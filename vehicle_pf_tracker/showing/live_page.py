@@ -18,8 +18,8 @@ from vehicle_pf_tracker.showing.page_server import LOCAL_ADDRESS, Content, PageH
 PAGE_NAME = "the live page"
 """Name of the page in messages."""
 _SECONDS = 2.0
-"""Longest wait for the next image, after which the one before is shown: cameras of less than one
-image per s are shown late."""
+"""Longest wait for the next image, s, after which the one before is sent again: so it is where a
+camera gives less than one image in two seconds."""
 _FAREWELL = 2.0
 """Time at the end of a run in which a browser that looks on fetches the last picture, s."""
 _LOOKED_ON = 5.0
@@ -28,7 +28,7 @@ picture at once, and a slow line takes a second or two for one."""
 
 
 class LivePage(PageServer):
-    """Serves the latest picture, which is drawn only when it is asked for, until it is closed.
+    """Server of the latest picture, which is drawn only when it is asked for, until it is closed.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Pages of this machine's own, served to who knows their address."""
+"""Server of pages on this machine, under an address that only its user is told."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _EVERYWHERE = frozenset({"0.0.0.0", "::"})  # noqa: S104 - only where it is aske
 
 
 class PageServer(ThreadingHTTPServer):
-    """Serves a page, under a path that nobody can guess: to this machine unless told otherwise.
+    """Server of a page under a path that nobody can guess, to this machine unless told otherwise.
 
     Each connection has a thread: browsers open some ahead and leave them idle. One that does not
     ask under the path in time is closed.
@@ -44,13 +44,13 @@ class PageServer(ThreadingHTTPServer):
     Parameters
     ----------
     handler : type of PageHandler
-        Answers the requests.
+        Handler of the requests.
     port : int
         Port; 0 takes a free one.
     host : str
         Address to listen at; 0.0.0.0 lets other machines in, in clear text.
     token : str
-        Takes the place of the random path.
+        Secret part of the path; empty draws one.
 
     Attributes
     ----------
@@ -122,7 +122,7 @@ class PageServer(ThreadingHTTPServer):
 
 
 class PageHandler(BaseHTTPRequestHandler):
-    """Answers the requests of a page."""
+    """Handler of the requests of a page."""
 
     server: PageServer
 

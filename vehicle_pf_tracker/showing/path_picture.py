@@ -79,7 +79,7 @@ class Lanes:
 
 
 class PathPicture:
-    """Draws the path of every confirmed vehicle over the frame that shows the most of them.
+    """Picture of the path of every confirmed vehicle, over the frame that shows the most of them.
 
     Few vehicles have lines of their colours, many are lanes coloured by their heading. Paths are
     drawn as they grow: memory depends on the number of vehicles, not on the time.

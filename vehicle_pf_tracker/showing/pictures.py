@@ -25,7 +25,7 @@ from vehicle_pf_tracker.showing.video_file import (
 
 Draw: TypeAlias = Callable[[], Frame]
 Take: TypeAlias = Callable[[tuple[str, ...], Draw, Frame, int], None]
-"""Takes the modes, the drawing, the image and the stamp in ns of a frame."""
+"""Function of a frame: the mode of each target, what draws it, the image, and the stamp in ns."""
 Numbered: TypeAlias = Iterator[tuple[int, StampedFrame]]
 """Frames with their numbers in the source."""
 
@@ -52,7 +52,7 @@ class Pictures:
     Attributes
     ----------
     side : SideProducts
-        What of all that a run shows could not be made.
+        Record of what a run shows that could not be made.
 
     Raises
     ------

@@ -13,7 +13,7 @@ from vehicle_pf_tracker.core.errors import InputError
 
 
 class SideProducts:
-    """Notes which pictures, videos and pages of a run failed, and why."""
+    """Record of the pictures, videos and pages of a run that failed, and why."""
 
     def __init__(self) -> None:
         self._problems: dict[str, str] = {}

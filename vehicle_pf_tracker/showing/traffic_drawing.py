@@ -45,7 +45,7 @@ class Trails:
         self.of: dict[int, deque[Position]] = {}
 
     def add(self, estimates: Iterable[TrackEstimate]) -> None:
-        """Take the next image; the trail of a vehicle that is not in sight of it ends."""
+        """Take the next image; the trail of a vehicle that is lost or no longer followed ends."""
         before = self.of
         self.of = {}
         for estimate in estimates:

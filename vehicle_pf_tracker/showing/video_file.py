@@ -32,7 +32,7 @@ HIGHEST_RATE = 1000.0
 refuses rates far above it."""
 
 Write: TypeAlias = Callable[[Frame, float], None]
-"""Appends an RGB frame to a video, which is shown from a time after the beginning on, s."""
+"""Function that appends an RGB frame to a video, to be shown from a time of the video on, s."""
 
 
 def check_video(path: Path) -> None:

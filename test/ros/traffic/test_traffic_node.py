@@ -53,7 +53,7 @@ def rig(bench):
 
 
 def offline(frames):
-    """What the session says of the same frames without ROS."""
+    """Return the answers of a session to the same frames without ROS."""
     parameters = TRAFFIC_VARIANT.parameters()
     session = TrafficSession(MultiVehicleTracker(parameters), detector_maker(parameters.detector))
     return [session.feed(frame, i * PERIOD_NS + 10**9) for i, frame in enumerate(frames)]

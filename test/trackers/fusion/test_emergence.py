@@ -31,7 +31,7 @@ def sides(*boxes):
 
 
 def coming_out(time, speed=3.0, size=(12, 14)):
-    """What shows of it above the roof that it comes out from."""
+    """Box of the part that shows above the roof that it comes out from."""
     bottom = OUT[1] - speed * (time - 20) + size[1]
     top, low = bottom - size[1], min(bottom, OUT[1])
     return [] if time < 20 else [(OUT[0], (top + low) / 2, size[0], low - top)]

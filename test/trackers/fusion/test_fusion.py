@@ -40,7 +40,7 @@ def run(name, seed, **values):
 
 
 def distance(estimate, truth):
-    """From the true centre, in diagonals of the true box."""
+    """Distance from the true centre, in diagonals of the true box."""
     return math.dist(estimate.position, truth.box.centre) / truth.box.diagonal
 
 

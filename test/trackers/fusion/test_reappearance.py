@@ -12,7 +12,7 @@ from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate, Reappeara
 SIZE = np.array([20.0, 12.0])
 LAST = np.array([100.0, 60.0])
 MOTION = PerspectiveMotion(LAST, np.array([2.0, 0.0]), 0.0)
-"""To the right; the predicted diagonal is 23 px."""
+"""Motion to the right; the predicted diagonal is 23 px."""
 
 
 def judged(response=0.9, paint=0.5):

@@ -16,7 +16,7 @@ START = np.array([80.0, 120.0])
 
 
 class Textures:
-    """What road, vehicle and occluder look like."""
+    """Textures of road, vehicle and occluder."""
 
     def __init__(self, seed=0):
         self.road, self.occluder = texture(10 * seed + 1), texture(10 * seed + 3)

@@ -31,7 +31,7 @@ BASIS = {
     # Without flatter weights every frame resamples.
     **{name: {"likelihood.sigma_v": 0.3} for name in PAPERS["P2"]},
 }
-"""What a run needs for all of its switches to be reached."""
+"""Settings with which a run reaches all of its switches."""
 SINKING = {12 + i: abs(i - 4) / 4 for i in range(9)} | {30 + i: abs(i - 16) / 16 for i in range(33)}
 """How much of the vehicle is seen, by time; all at others: once fast, once slowly."""
 

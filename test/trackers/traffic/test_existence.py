@@ -29,7 +29,7 @@ from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 SIZE = (320, 240)
 SCORE = 1.0
-"""That of a detector that claims nothing."""
+"""Score of a detector that claims nothing."""
 STEP = step_of(SIZE)
 ONLY = np.array([0])
 

@@ -49,8 +49,8 @@ _SHIFTABLE_PX = 6.0
 """Offset in canonical px up to which cells are moved circularly instead of measured again: what is
 wrapped around was faded out. That is one and a half cells of 32."""
 _USUAL_SHARE = 0.3
-"""Least usual response, of that to the first patch: the second frame of the sequences gives 0.37 to
-0.89 of it, one with the vehicle hidden 0.03. A filter may be trained anew while it is hidden."""
+"""Least usual response, fraction of that to the first frame: the second one of the sequences gives
+0.37 to 0.89 of it, a hidden vehicle 0.03. A filter may be trained anew while it is hidden."""
 _TINY_RESPONSE = 1e-3
 """Least usual response: where nothing was learnt, as on a flat image, no ratio may become one of
 zeros."""

@@ -81,7 +81,7 @@ class Strangers(NamedTuple):
 
 
 class Departure(NamedTuple):
-    """Waits for a vehicle that has left, at the size and around the position where it did.
+    """Departure of a vehicle, and the search for its return at the place and size where it left.
 
     Attributes
     ----------

@@ -21,14 +21,15 @@ from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import KEPT_FRAMES, PerspectiveMotion, Sighting
 
 _SPEEDS = 0.4, 1.6
-"""Bounds of the speed of what comes out, of the vehicle's before: it may brake to less than half or
-accelerate by half while hidden; a stranger of any other speed is excluded."""
+"""Bounds of the speed of what comes out, fractions of the vehicle's before: it may brake to less
+than half or accelerate by half while hidden; a stranger of any other speed is excluded."""
 _LEAST_AREA, _LARGEST_AREA = 0.2, 2.0
-"""Bounds of the area of its bounding box, of the vehicle's. End on, a car has half of the area that
-it has from aside, and twice as much the other way round; a part of it may still be hidden."""
+"""Bounds of the area of its bounding box, fractions of the vehicle's. End on, a car has half of the
+area that it has from aside, and twice as much the other way round; a part of it may still be
+hidden."""
 _LEAST_MOVING = 0.03
-"""Least area of something that moves, of the vehicle's: less flickers, by the noise of the camera.
-A vehicle of 30 px has pieces of 27 px then."""
+"""Least area of something that moves, fraction of the vehicle's: less flickers, by the noise of the
+camera. Of a vehicle of 30 x 30 px that is 27 px squared."""
 
 
 class Emergence(NamedTuple):
@@ -102,8 +103,8 @@ class Emergence(NamedTuple):
         # `None` ends the search for good: of several things that move none can be proven to be it.
         new = self._replace(age=self.age + elapsed)
         extent = self._extent
-        # At first the rest of the vehicle goes in.
-        # Twice its size: it may brake to less than half of its speed as it goes in (`_SPEEDS`).
+        # At first the rest of the vehicle goes in: for the time of two sizes, since it may brake to
+        # less than half of its speed meanwhile (`_SPEEDS`).
         is_entering = self._speed * new.age < 2 * extent
         boxes = self._near(boxes, self.last.position if is_entering else None)
         if not len(boxes):

@@ -67,11 +67,11 @@ then learns faster the lower the response. With the survival of points in place 
 81 occlusions are recovered instead of 62; from a response of .85 down, turns gain nothing
 (laboratory/notes/fusion_tried.md)."""
 _LEAST_STIFFNESS = 0.2
-"""Least stiffness in such a turn, of the usual one, however low the response. A choice: twice that
-of a turn that an outline proves (a tenth), since flow alone proves less."""
+"""Least stiffness in such a turn, fraction of the usual one, however low the response. A choice:
+twice that of a turn that an outline proves (a tenth), since flow alone proves less."""
 _LEARNT_RESPONSE = 0.5
-"""Response, of the usual one, above which the filter learns: without it walls are learnt, and
-white_van is claimed in half of its hidden frames (laboratory/notes/fusion_tried.md)."""
+"""Response relative to the usual one above which the filter learns: without it walls are learnt,
+and white_van is claimed in half of its hidden frames (laboratory/notes/fusion_tried.md)."""
 
 
 def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> State:
@@ -293,7 +293,7 @@ def _learn_turn(state: State, vehicle: Branch, view: View, step: Step) -> None:
 
 
 def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
-    """Train the filter on a whole or turning vehicle, the less the less surely it shows."""
+    """Train the filter on a vehicle that is whole or turns, less the less surely it is visible."""
     memory = step.memory
     options = step.parameters.filter
     response = seen.response

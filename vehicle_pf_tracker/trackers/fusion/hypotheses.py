@@ -3,8 +3,8 @@
 
 """The particles: position, velocity, growth and visibility of the vehicle, and their weights.
 
-They are predicted, weighed and resampled by `filtering`: its motion density, its normalisation and
-its systematic resampling.
+`filtering` gives the Normal density of their noise, the normalisation of their weights, and
+systematic resampling.
 """
 
 from __future__ import annotations
@@ -27,8 +27,9 @@ LARGEST_GROWTH = 3.0
 """Bound of the growth in one occlusion: the vehicles of real sequences that drive towards a fixed
 camera grow fivefold from where they are first seen to where they leave the image."""
 HIDDEN_SCALES = (1.0, 1.2, 1 / 1.2)
-"""Sizes that a hidden vehicle is looked for at, of the predicted one: behind painted walls it is a
-fifth too low in the median when the vehicle comes out, as the wall has cut the last sightings."""
+"""Sizes that a hidden vehicle is searched at, relative to the predicted one: behind painted walls
+that is a fifth too low in the median when the vehicle comes out, as the wall has cut the last
+sightings."""
 _DEGENERATE = 0.5
 """Share of the particles below which the effective sample size asks for resampling: the usual half,
 a choice between few distinct hypotheses and the noise of drawing them in every frame."""

@@ -23,11 +23,11 @@ _LEAST_OVERLAP = 0.5
 """Least overlap (intersection over union) of an outline with its predicted place: two in a lane are
 a length apart, and share nothing. The half is a choice."""
 _REMEMBERED = 30.0
-"""Periods for which one is expected at its velocity while its outline is merged: a second at 30 Hz,
-a choice; by then what merged has mostly come apart."""
+"""Periods for which another vehicle is expected at its velocity while its outline is merged: a
+second at 30 Hz, a choice; by then what merged has mostly come apart."""
 _MIDDLE = 0.5
-"""Part of its box, of each side, that no other vehicle has its centre in: of one close behind it
-the box overlaps, by its shadow, but the centre is at least half a length away."""
+"""Middle part of a box, fraction of each side, that no other vehicle has its centre in: the box of
+one close behind overlaps it by its shadow, but its centre is at least half a length away."""
 
 
 class KnownOthers(NamedTuple):

@@ -172,9 +172,9 @@ def observe(state: State, prediction: Prediction, step: Step) -> tuple[State, Ob
 
 
 def _is_stranger(state: State, position: Array, step: Step) -> bool:
-    """Test whether what would return comes from behind, or has another paint.
+    """Test whether what would return is behind the vehicle, a known other one, or of another paint.
 
-    Paint is learnt only where outlines may ask for it.
+    Only before a standing camera, where outlines are followed and the paint is learnt.
     """
     way = _way_of(state)
     if way is None or state.particles.probability_visible <= 0.5:
@@ -222,8 +222,8 @@ def _searched(
     options = step.parameters.visibility
     positions, ratios = response_evidence(view, particles.positions, climb, options)
     way = _way_of(state)
-    # Only the evidence for it is dropped: what answers there is another one.
-    if way is not None:  # what comes up from behind is another vehicle
+    # What answers behind it, or at another vehicle in view, is no evidence for it, only against it.
+    if way is not None:
         another = way.is_behind(positions) | way.is_another(positions)
         ratios = np.where(another, np.minimum(ratios, 0.0), ratios)
     return view, positions, ratios

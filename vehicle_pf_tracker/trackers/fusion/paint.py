@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Paint of a vehicle: the median colour in the middle of its box, by which strangers are told."""
+"""Paint of a vehicle: the median colour in the middle of its box, which excludes strangers."""
 
 from __future__ import annotations
 

@@ -19,13 +19,13 @@ from vehicle_pf_tracker.trackers.parameters import (
 )
 
 EVEN_RESPONSE = 0.5
-"""Response, of the usual one, that tells nothing of visibility: as much differs as agrees. Fits on
-ten of eleven cameras moved it by 16 % at most."""
+"""Response relative to the usual one that tells nothing of visibility: as much differs as agrees.
+Fits on ten of eleven cameras moved it by 16 % at most."""
 EVEN_SHARE = 0.5
-"""Share of the surface, of the usual one, that tells nothing of visibility: half of the points
-move with the vehicle. Fits on ten of eleven cameras moved it by 16 % at most."""
+"""Share of the surface relative to the usual one that tells nothing of visibility: half of the
+points move with the vehicle. Fits on ten of eleven cameras moved it by 16 % at most."""
 SIZE_RESPONSE = 0.6
-"""Response, of the usual one, above which a size is measured: it is over the even odds of one half
+"""Response relative to the usual one above which a size is measured: over the even odds of one half
 (`EVEN_RESPONSE`) by a tenth, since a half-hidden vehicle is measured smaller."""
 PROOF_FRAMES = 8
 """Frames in a row that prove a motion or a recognition: a quarter of a second at 30 frames per

@@ -23,11 +23,11 @@ KEPT_FRAMES = 60.0
 """Age in frames from which a sighting is discarded: two seconds, of which positions count for some
 20 frames, and sizes all (errors by age: laboratory/notes/fusion_tried.md, Rate of approach)."""
 CLEAR_RESPONSE = 0.75
-"""Least response, of the usual one, of a sighting that the fit believes. While an occluder moves in
-it drags positions along and shrinks the box; 5 % of visible frames have less than 0.8."""
+"""Least response relative to the usual one of a sighting that the fit believes. While an occluder
+moves in it drags positions along and shrinks the box; 5 % of visible frames have less than 0.8."""
 _SIZE_RESPONSE = 0.9
-"""Least response, of the usual one, of a sighting whose size the fit believes: an occluder shrinks
-the box first. Levels of .85 to .95 predict sizes as well (laboratory/notes/fusion_tried.md)."""
+"""Least such response of a sighting whose size the fit believes: an occluder shrinks the box first.
+Levels of .85 to .95 predict sizes as well (laboratory/notes/fusion_tried.md)."""
 _RATES = np.linspace(-0.04, 0.04, 33)
 """Rates of approach per frame that are tried; to 0.15, as many walls are recovered from (83 of 126,
 and 37 of 105 before moving cameras: laboratory/notes/fusion_tried.md)."""

@@ -27,27 +27,27 @@ from vehicle_pf_tracker.trackers.fusion.perspective import (
 )
 
 _REACH_ALONG = 1.5
-"""Distance of an outline ahead of the prediction or behind it, of the predicted diagonal, within
-which it is on this heading: hidden vehicles that came near had covered .22 to .8 of their way."""
+"""Distance of an outline ahead of the prediction or behind it, in predicted diagonals, within which
+it is on this heading: hidden vehicles that came near had covered .22 to .8 of their way."""
 _REACH_ACROSS = 0.6
-"""Distance of an outline to either side of the prediction, of the predicted diagonal, within which
-it is on this heading: predictions err less there, and the next lane is one diagonal away."""
+"""Distance of an outline to either side of the prediction, in predicted diagonals, within which it
+is on this heading: predictions err less there, and the next lane is one diagonal away."""
 _SIDES = 0.5, 2.2
-"""Bounds of its extent, of the predicted one: behind signs and bridges vehicles that came near were
-predicted at .36 to .8 of their size, others at up to 1.4 of it."""
+"""Bounds of its extent, fractions of the predicted one: behind signs and bridges vehicles that came
+near were predicted at .36 to .8 of their size, others at up to 1.4 of it."""
 _LEAST_AREA = 0.25
-"""Area of an outline beside the heading that is another vehicle, of the predicted one: less is a
-piece, and may be the tip of the vehicle's own shadow. The quarter is a choice."""
+"""Least area of an outline beside the heading that is another vehicle, fraction of the predicted
+one: less is a piece, and may be the tip of the vehicle's own shadow. The quarter is a choice."""
 _LARGEST_KNOWN = 2.0
-"""Area of an outline, of the predicted one, from which it is not known to be one other vehicle: two
-may have merged, and the vehicle itself with them. Two is a choice."""
+"""Area of an outline, in predicted ones, at which it may no longer be one other vehicle: two may
+have merged, and the vehicle itself with them. Two is a choice."""
 _SPEEDS = 0.4, 3.0
-"""Bounds of its speed, of the predicted one: one that is twice as near is four times as fast."""
+"""Bounds of its speed, fractions of the predicted one: twice as near it is four times as fast."""
 LEAST_PAINT = 0.1
 """Least share of a box that has the vehicle's paint: windows, lamps and road have another. A tenth
 is a choice: 7 of the 64 spots that are compared."""
 _LARGEST_JUMP = 0.5
-"""Largest move of a side from frame to frame, of the predicted diagonal: more is another piece. The
+"""Largest move of a side from frame to frame, in predicted diagonals: more is another piece. The
 half is a choice; two vehicles in a lane are a whole length apart."""
 _BEHIND = 0.5
 """Distance in sizes against the heading, from the last clear sighting, beyond which nothing is the
@@ -89,7 +89,7 @@ class Candidate(NamedTuple):
 Mask = npt.NDArray[np.bool_]
 
 Judge = Callable[[Array, Array], Candidate]
-"""Best box in an outline (2, 2) of a vehicle of the size (2,), whose ratio of the sides it has."""
+"""Function that finds the best box in an outline (2, 2), with the side ratio of a size (2,)."""
 
 
 class Reappearance(NamedTuple):

@@ -23,8 +23,8 @@ from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
 from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
 
 _LEAST_SIDE, _LARGEST_SIDE = 3.0, 1.5
-"""Bounds of the sides: px, as less has no gradient inside; and of the image's longer side, as a
-vehicle that passes the camera is partly outside before it fills the image."""
+"""Least side of a box, px: less has no gradient inside. Largest side, as a multiple of the image's
+longer one: a vehicle that passes the camera is partly outside before it fills the image."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

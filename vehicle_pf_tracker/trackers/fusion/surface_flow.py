@@ -22,7 +22,8 @@ from vehicle_pf_tracker.image.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.canonical_patch import Patch
 
 _KEPT = 8
-"""Patches kept; by less than half a canonical px per frame a vehicle is taken to stand."""
+"""Patches kept: over eight frames a vehicle gets `_APART_PX` ahead of the background by half a
+canonical px per frame, and `_TELLING_PX` by a quarter; a slower one is taken to stand."""
 _APART_PX = 4.0
 """Canonical px that vehicle and background should have moved apart since the patch that the present
 one is compared with: the youngest such patch is taken. Flow is good to about one."""
@@ -30,9 +31,10 @@ _TELLING_PX = 2.0
 """Motion apart in canonical px below which the background's flow is too close to the vehicle's:
 twice the error."""
 _MAGNIFIED_PX = 1.5
-"""The same in px of the frame, of a vehicle that is magnified, in the first frames after a return:
-its flow is no better than its image. Of one of 18 px that moved by one px none counted as moving;
-the number was chosen on it (straight_bridge_total, laboratory/notes/fusion_tried.md)."""
+"""Motion apart in px of the frame below which a magnified vehicle is not judged in the first frames
+after a return: its flow is no better than its image. Of one of 18 px that moved by one px no point
+counted as moving; the number was chosen on it (straight_bridge_total,
+laboratory/notes/fusion_tried.md)."""
 _SIDE = 96
 """Side in canonical px of the middle of a patch that flow is measured in: a target has 77 px at
 most, and flow of all 128 takes 1.7 times as long."""

@@ -7,14 +7,16 @@ Per frame: predict and observe (`observe.py`), weigh by flow (`flow_evidence.py`
 (`visibility.py`), follow and learn (`follow.py`). `state.py` has the frozen state that they pass
 on, and `step.py` the frame and the memory that they share.
 
-- Visible or partly hidden: climb to the peak, follow the size, learn.
+- Visible: climb to the peak, follow the size, learn.
+- Partly hidden: climb to the peak, predict the size, learn nothing.
 - Turning: follow the outline of what moves, learn fast.
 - Hidden: predict along the road, learn nothing, and wait until hypotheses gather evidence, or an
   outline comes out on the way (`reappearance.py`).
 - Gone: learn nothing, and wait until something comes back from where the vehicle left.
 
 The filter response at each hypothesis is a calibrated log-likelihood ratio of visible against
-hidden; flow on the surface gives a second one for all of them. docs/fusion.md has the model.
+hidden; flow on the surface gives a second one for all of them. docs/fusion.md draws these steps as
+a chart; what it calls occluded, the code calls hidden.
 """
 
 from __future__ import annotations
@@ -75,7 +77,6 @@ class FusionTracker(ParticleTracker[FusionParameters]):
     @property
     def _track(self) -> tuple[State, Memory]:
         """State and memory of a tracker that was started; raises the user's error before."""
-        # A property that raises the user's error, before the assertion would raise one of ours.
         _ = self.target  # says what is wrong before the start
         assert self._state is not None and self._memory is not None
         return self._state, self._memory

@@ -153,10 +153,21 @@ class Branch(NamedTuple):
 
 
 PaintDifference = Callable[[Array, Array], float]
+"""Function of a box's size and position (2,), px: difference of its paint from the vehicle's."""
 
 
 class Outlines(NamedTuple):
-    """Outlines of a vehicle in doubt: beside its path, or coming out there or on its way."""
+    """Outlines of a vehicle in doubt; each search is None where there is none, or it has ended.
+
+    Attributes
+    ----------
+    branch : Branch or None
+        The outline that has been followed since the doubt began, or that came out beside the path.
+    emergence : Emergence or None
+        Search for one that comes out beside the path.
+    reappearance : Reappearance or None
+        Search for one that comes out on the way, and the other vehicles in view.
+    """
 
     branch: Branch | None = None
     emergence: Emergence | None = None
@@ -166,9 +177,9 @@ class Outlines(NamedTuple):
     def begun(
         cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting, position: Array
     ) -> Outlines:
-        """Begin where the vehicle was last seen clearly, of which `last.age` frames passed.
+        """Begin at the last clear sighting, `last.age` frames ago.
 
-        Without a background there are none; it has to be learnt.
+        Without a background, which has to be learnt before, there are no outlines.
 
         Parameters
         ----------

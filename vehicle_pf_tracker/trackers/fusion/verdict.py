@@ -1,7 +1,10 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The verdict of a step on the vehicle's visibility: one of five, each with what it needs."""
+"""The verdict of a step on the vehicle's visibility: one of five, each with what it needs.
+
+Hidden is what docs/fusion.md calls occluded.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Variants after papers, and the bases and parameters that they share."""
+"""Variants after papers, and the bases and parameters that they share.
+
+P1 is Scharcanski et al. 2011, P2 Abdulla et al. 2022, P3 Khong et al.; docs/interpretations.md has
+their titles, and by number each interpretation of what they leave open or misprint. The `_advance`
+of a variant is its step of one frame, with the paper's numbers of steps and equations.
+"""

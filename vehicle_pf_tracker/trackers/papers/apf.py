@@ -172,11 +172,17 @@ class ApfTracker(ParticleTracker[ApfParameters]):
     def __init__(self, parameters: ApfParameters) -> None:
         super().__init__(parameters)
         self._first: Histogram = np.zeros(0)
+        """Histogram of the target in the first frame."""
         self.reference = Reference(np.zeros(0))
+        """Histogram that particles are compared with; it follows the vehicle (step 15)."""
         self._velocity = shared.MeanVelocity(0)
+        """Mean velocity of the estimates, along which occluded particles drift."""
         self._position = (0.0, 0.0)
+        """Estimate of the frame before, px."""
         self._pi = self._pi_up = 1.0
+        """Similarities Pi and Pi_up to the first and the last reference (step 16), 0 to 1."""
         self._levels = ClearLevel(), ClearLevel()
+        """Clear levels of Pi and Pi_up, for the relative rule."""
 
     def reconfigure(self, parameters: ApfParameters) -> None:
         """Take new parameters; a new velocity window applies to the same history."""
@@ -248,11 +254,13 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         )
 
     def _is_clear(self, settings: ApfParameters) -> bool:
+        """Test for the regular regime: both similarities at their clear levels, or tau (step 4)."""
         if settings.occlusion.rule == "relative":
             return all(level.clear for level in self._levels)
         return min(self._pi, self._pi_up) >= settings.occlusion.tau
 
     def _drift(self, settings: ApfParameters, count: int, elapsed: float) -> Array:
+        """Draw moves along the mean velocity (count, 2), px, by equations 11, 13 and 14."""
         motion = settings.motion
         velocity = self._velocity.settled
         if motion.drift_from_velocity:

@@ -189,6 +189,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         return sample_disc(self._rng, count, radius)
 
     def _search_radius(self, elapsed: float, predicted_for: float) -> float:
+        """Return the radius of a search, px, after `predicted_for` nominal frames of prediction."""
         # The longer the vehicle is predicted, the less is known of where it is; the largest radius
         # bounds the search where windows would share no pixels, and cost the most.
         dispersion = self._settings.dispersion
@@ -213,6 +214,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         return average_similarities(hellinger_distance(rho), best_share)
 
     def _weigh_features(self, averages: Array, initial: Array) -> FeatureWeighting:
+        """Weigh the features by their confidence (eq. 17), or all alike in the basic filter."""
         if not self._settings.extended:
             return unweighted(averages)
         return weigh_features(averages, initial, self._settings.confidence.threshold)

@@ -36,7 +36,7 @@ texture_parameter = functools.partial(
     "The histogram that describes texture; the paper tried all three and kept glcm.",
     choices=TEXTURE_FEATURES, source="P2 section III-D", effect="relearns",
 )  # fmt: skip
-"""Make the choice of the texture feature."""
+"""Declare the choice of the texture feature."""
 
 
 @dataclass(frozen=True, slots=True)

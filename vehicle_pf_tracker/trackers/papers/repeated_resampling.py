@@ -164,6 +164,7 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
         return WeighedParticles(coefficients, Cloud(positions, *from_log(logs)))
 
     def _is_degenerate(self, particles: WeighedParticles) -> bool:
+        """Test whether the effective sample size is below the criterion (step 13)."""
         limit = self._settings.criterion * len(particles.cloud.positions)
         return effective_sample_size(particles.cloud.weights) < limit
 
@@ -219,6 +220,7 @@ class ConventionalTracker(RepeatedResampling[ConventionalParameters]):
 
 
 OCCLUSION_TESTS = ("n_eff", "similarity")
+"""Tests for an occlusion, by the word that the parameter takes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,6 +284,7 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
         return ~kept, np.where(kept, weights, 0.0), jitter, regime
 
     def _is_occluded(self, particles: WeighedParticles) -> bool:
+        """Test for an occlusion (step 15), by effective sample size or by similarity."""
         test = self._settings.occlusion
         if test.test == "n_eff":
             limit = test.n_eff * len(particles.cloud.positions)

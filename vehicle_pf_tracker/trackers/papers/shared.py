@@ -21,7 +21,9 @@ from vehicle_pf_tracker.image.similarity import hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
 
 Vector: TypeAlias = tuple[float, float]
+"""Position (x, y) in px, or velocity in px per nominal frame."""
 _Move: TypeAlias = tuple[float, float, float]
+"""Displacement (x, y) in px, and its time in nominal frame periods."""
 
 
 sigma_v_parameter = functools.partial(
@@ -29,11 +31,11 @@ sigma_v_parameter = functools.partial(
     doc="Smaller: weights fall faster as a particle's histogram departs from the reference.",
     bounds=(1e-3, 100.0), tuned=True,
 )  # fmt: skip
-"""Make the spread of the distance; `source` is the equation of the paper that has it."""
+"""Declare the spread of the distance; `source` is the equation of the paper that has it."""
 squared_distance_parameter = functools.partial(
     parameter, True, "False takes the distance unsquared; the weights are then almost flat."
 )
-"""Make the switch of the distance's square; `source` is the equation, and what it prints."""
+"""Declare the switch of the distance's square; `source` is the equation, and what it prints."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,17 +73,17 @@ def log_likelihood(coefficients: Array, parameters: LikelihoodParameters) -> Wei
 as_printed_switch = functools.partial(
     parameter, False, "Follow the paper to the letter: overrides every interpretation below."
 )
-"""Make the switch that follows the paper to the letter; `source` names what it undoes."""
+"""Declare the switch that follows the paper to the letter; `source` names what it undoes."""
 histogram_bits_parameter = functools.partial(
     parameter, 3, "More: finer colours, more easily upset by light and noise.", bounds=(1, 5),
     unit="bits/channel", source="P1 section III-C", effect="relearns",
 )  # fmt: skip
-"""Make the resolution of joint colour histograms."""
+"""Declare the resolution of joint colour histograms."""
 resampling_parameter = functools.partial(
     parameter, "multinomial", "How ancestors are drawn; systematic and stratified vary less.",
     choices=RESAMPLING_SCHEMES,
 )  # fmt: skip
-"""Make the choice of a resampling scheme; `source` is where the paper resamples."""
+"""Declare the choice of a resampling scheme; `source` is where the paper resamples."""
 
 
 class MeanVelocity:
@@ -99,7 +101,9 @@ class MeanVelocity:
         self._window = window
         self._delay = delay
         self.moves: deque[_Move] = deque()
+        """Moves that may still count, the newest last."""
         self._older: _Move = (0.0, 0.0, 0.0)
+        """Sum of the moves before these, where all count."""
 
     @property
     def value(self) -> Vector:
