@@ -44,7 +44,7 @@ from vehicle_pf_tracker.scenes.vehicles import saloon
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 MOST = 8
-"""Vehicles of a clip."""
+"""Vehicles followed in a clip at most, a choice: each is another run of `fusion`."""
 SURE, FEWEST = 0.55, 30
 """Score of the box that a vehicle is followed from, and fewest frames from there to its last."""
 AFTER = 300
@@ -157,7 +157,6 @@ def look_alikes(frames: int = 600) -> Clip:
     for frame in range(frames):
         for one in scene.truth(frame):
             boxes[one.identity][frame] = one.box
-    # Every true box is sure.
     return Clip("look-alikes", scene.images, boxes, {one: set(own) for one, own in boxes.items()})
 
 

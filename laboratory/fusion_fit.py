@@ -45,6 +45,7 @@ SPREAD = 0.25
 """Standard deviation of the draws, of the logarithm of a parameter: a factor of 1.3."""
 ELITE = 4
 """One setting in so many counts as good; their mean varies less than the best one."""
+# Kinds that a fit is judged by on the camera left out; the first is listed whole.
 JUDGED_KINDS = ("plain", "shifted_box", "wall", "lorry")
 
 Setting = Mapping[str, float]

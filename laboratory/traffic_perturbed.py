@@ -26,7 +26,7 @@ from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
 DROPPED = 0.2
-"""Share of detections that `dropped` leaves out."""
+"""Share of detections that `dropped` leaves out: a fifth, which tracks have to bridge. A choice."""
 _SEED = 20
 """Seed of what is left out: the same for every system."""
 _PERIOD, _FIRST = 200, 100

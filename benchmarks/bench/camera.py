@@ -29,7 +29,7 @@ _DEPTH = 10
 _HEARD = 1000
 """Answers that may wait here: none is lost on this side, or it would count against the node."""
 _SETTLE = 2.0
-"""Seconds that late answers have."""
+"""Time that late answers have after the last image, s: far longer than a step. A choice."""
 _PERIOD_NS = round(1e9 / FRAME_RATE)
 """Distance of the images' stamps, ns."""
 

@@ -24,7 +24,6 @@ def steps_figure(results: Results) -> Figure:
     figure = Figure(figsize=(7, 0.6 + 0.32 * max(len(names), 1)), layout="constrained")
     axes = figure.add_subplot()
     axes.barh(names, [found[name] for name in names], color=LINE_STYLES[0].colour, height=0.65)
-    # Only variants with a target have a mark.
     wanted = [(STEPS[name], index) for index, name in enumerate(names) if name in STEPS]
     if wanted:
         axes.plot(

@@ -32,6 +32,7 @@ _TURN = 36
 """Images from one end of the way to the other: the vehicle drives to and fro."""
 _LARGEST = 2**32 - 1
 """Largest uint32, as sizes are in messages."""
+# Numbers on the edge: none, negative, on a border, overflowing when squared as float32, not finite.
 _NUMBERS = (0.0, -1.0, 31.5, 1e30, -1e30, float("nan"), float("inf"), float("-inf"))
 
 

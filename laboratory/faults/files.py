@@ -46,6 +46,7 @@ FRAMES = 12
 """Images of the recordings: enough for a start and a few steps."""
 LONGEST = 30
 """Seconds that reading a file may take: a stack trace then ends the process."""
+# YAML values: of every type, out of all ranges, malformed, and what a loader must not execute.
 _VALUES = (
     "0", "-1", "1e400", ".nan", "-.inf", "true", "~", "''", "'1'", "[1, 2.5]", "[]", "{}", "{a: 1}",
     "99999999999999999999", "0x10", "1_000", "!!python/object/apply:os.abort []", "&a [*a]", "wörd",

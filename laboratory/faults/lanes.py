@@ -189,7 +189,6 @@ class Numbers:
         """Note whose number it was."""
         if votes:
             ((vehicle, own),) = votes.most_common(1)
-            # Most of its images decide whose it was.
             self.of[vehicle] += 1
             self.handed_on += votes.total() - own > FOREIGN * votes.total()
 

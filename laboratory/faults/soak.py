@@ -243,7 +243,6 @@ class Soak:
             if target is not None:
                 node.give_target(target)
             if self._is_due(number, CHANGE_EVERY):
-                # One after the other, from the first again.
                 node.set_parameter(*changes[number // round(5 * self._rate) % len(changes)])
 
     def _is_due(self, number: int, every: float, offset: int = 0) -> bool:

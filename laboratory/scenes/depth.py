@@ -23,13 +23,13 @@ from vehicle_pf_tracker.scenes.scene import Scene
 from vehicle_pf_tracker.scenes.scenery import asphalt, grass
 
 FOCAL = 600.0
-"""Focal length, px."""
+"""Focal length, px: a field of view of 56 degrees at 640 px. A choice."""
 NEAREST = 16.0
 """Scale where the target is nearest, px per metre."""
 BEARING = math.radians(62)
 """Direction of the road on the ground: 90 degrees would be straight away from the viewer."""
 HALF_WIDTH = 5.0
-"""Half the width of the road, m."""
+"""Half the width of the road, m: a lane in each direction, and its shoulder."""
 TOP, BOTTOM = 0.22, 0.84
 """Rows where the target is farthest and nearest, as shares of the image's height."""
 

@@ -21,7 +21,7 @@ from vehicle_pf_tracker.scenes.scene import noise_parameter
 _ACCELERATION, _BRAKING = 1.5, 2.0
 """Comfortable acceleration and braking, m/s²: Treiber's intelligent driver model in towns."""
 _HARDEST = 8.0
-"""Hardest braking that tyres allow, m/s²."""
+"""Hardest braking that tyres allow, m/s²: a friction of 0.8, as on dry asphalt."""
 _GAP, _HEADWAY = 2.0, 1.2
 """Gap to a vehicle that stands, m, and time to one that drives, s, of the same model."""
 _IMPATIENT = 0.85
@@ -29,16 +29,16 @@ _IMPATIENT = 0.85
 _LOOK_AHEAD = 30.0
 """Distance in which a slower vehicle ahead makes a driver change lanes, m."""
 _ROOM_AHEAD, _ROOM_BEHIND = 14.0, 12.0
-"""Room needed in the other lane, m."""
+"""Room needed in the other lane, m: about three lengths of a car each way, a choice."""
 _CHANGE = 2.5
-"""Duration of a change of lanes, s."""
+"""Duration of a change of lanes, s: brisk, so that many changes are seen as a whole. A choice."""
 _PATIENCE = 3.0
 """Shortest time between two changes of one driver, s."""
 _FIRST = (0.0, 0.3)
 """Place of each lane's first vehicle in the beginning, of the stretch in the image: traffic comes
 in."""
 _SPREAD = (0.88, 1.12)
-"""Wanted speeds, in mean speeds."""
+"""Wanted speeds, in mean speeds: without a spread nobody would overtake. A choice."""
 _LORRIES_AHEAD = 0.4
 """Place of the first lorry before the first cars, of the stretch, where they overtake."""
 _LORRY_GAP = 2.5

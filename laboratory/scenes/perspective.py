@@ -30,9 +30,9 @@ from vehicle_pf_tracker.scenes.vehicles import TYRE
 _OVERSAMPLING = 4
 """Cells drawn per pixel and axis; a frame draws every vehicle anew, at its own distance."""
 _MOST_CELLS = 500_000
-"""The default: one at the camera fills the image."""
+"""The default of `RoadCamera.most_cells`: more than an image of 640x480 has pixels."""
 _TREAD = 0.2
-"""Width of a tyre, m."""
+"""Width of a tyre, m: that of common cars."""
 
 Drive = Callable[[float], tuple[float, float]]
 """Gives the position (x, y; m) on the road of a vehicle's middle at a frame number."""

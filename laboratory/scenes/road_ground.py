@@ -23,13 +23,13 @@ _MARK = (214, 214, 206)
 _SKY = (186, 200, 214)
 """Hazy sky above the horizon."""
 _CELL = 0.06
-"""Size of a texture's cell on the ground, m."""
+"""Size of a texture's cell on the ground, m: what a pixel covers 60 m away."""
 _TILE = 512
-"""Cells of a texture before it is mirrored."""
+"""Cells of a texture before it is mirrored: 31 m, so that no pattern is seen to repeat."""
 _DASH, _PERIOD = 4, 12
 """Length of a dash, and from one to the next, m: common on country roads."""
 _DASHED, _SOLID = 0.07, 0.09
-"""Half widths of a line, m."""
+"""Half widths of a line, m: 14 and 18 cm."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,9 +26,9 @@ from vehicle_pf_tracker.scenes.vehicles import lorry
 PX_PER_METRE = 7.0
 """px per metre: a car is about 30 px long, a lorry 80."""
 _TOP = 66
-"""First row of asphalt, px."""
+"""First row of asphalt, px: room for the hedge, which `countryside` ends 45 rows above."""
 _MEDIAN = 34
-"""Rows between the two carriageways, px."""
+"""Rows between the two carriageways, px: room for the guard rail of 12."""
 SCENERY = "scene"
 """Name, in place of an identity, of whatever hides a vehicle and is no vehicle."""
 WIDTH, HEIGHT = 640, 360

@@ -23,7 +23,7 @@ LATER_STARTS = 20
 _LAST_START = 0.8
 """Share of a recording in which runs start: a fifth of it at least is left to track."""
 _LEAST_FRAMES = 20
-"""A case with fewer frames tells little."""
+"""Fewest frames of a case, a choice: with fewer, single frames decide its share on target."""
 _LEAST_SIDE = 8.0
 """Side in px below which a reduced vehicle is a dot that no tracker here can learn."""
 _SHAKES = (0.01, 0.03)

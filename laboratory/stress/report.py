@@ -80,7 +80,6 @@ def table_rows(
 ) -> tuple[list[str], list[list[str]]]:
     """Return the headings and the rows of a table of groups, a line for each."""
     is_named = found[0].by != ALL_CASES
-    # Columns that no group has a value for are left out.
     names = [name for name in CASE_MEASURES if any(group.summary(name) for group in found)]
     titles = [CASE_MEASURES[name].title for name in names]
     header = [*([found[0].by] if is_named else []), "system", "cases", *titles, "ECE"]

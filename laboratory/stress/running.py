@@ -24,6 +24,7 @@ from vehicle_pf_tracker.trackers.estimate import Estimate
 
 WORKERS = 2
 """Processes of a battery unless it is told otherwise: a laptop stays usable."""
+# Read by OpenMP, OpenBLAS and MKL.
 _THREADS = "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 
 

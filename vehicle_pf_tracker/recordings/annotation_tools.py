@@ -30,7 +30,7 @@ _CVAT_SHAPES = {"box", "polygon", "polyline", "points", "ellipse", "mask", "cubo
 _STUDIO_SHAPES = ("polygon", "ellipse", "brush", "keypoint", "vector", "bitmask")
 """Shapes of the tools' exports; tags, choices and texts are none."""
 _FULL_TURN = 360
-"""Degrees."""
+"""Degrees of a rotation that turns a box into itself."""
 _SHOWN = 60
 """Letters of an id that an error shows: a line of a terminal has 80."""
 

@@ -36,6 +36,7 @@ from vehicle_pf_tracker.recordings.mcap_blocks import (
     read_span,
 )
 
+# First and last bytes of an MCAP file (MCAP format specification, section Magic).
 MAGIC = b"\x89MCAP0\r\n"
 _FOOTER = struct.pack("<BQ", Opcode.FOOTER, 20)
 """Beginning of the footer record of an MCAP file: its opcode, and the length of its content."""

@@ -142,7 +142,6 @@ class VideoFile(Footage):
                 f"the video {self._path} states no time, or none after the frame before, for "
                 f"{untimed} frames; they follow at {self.fps:g} frames/s"
             )
-        # Truth of frames that never came.
         if lost := sum(not 1 <= number <= read for number in self._truth):
             yield f"frames of the truth without an image: {lost}"
 

@@ -204,7 +204,7 @@ def braking(parameters: BrakingParameters, seed: int) -> Scene:
     plain = Drive(parameters, seed)
     frame = plain.frame_at(plain.along(0.5))
     half = 0.35 * parameters.hidden
-    # 2. The speed changes over 70 % of the hidden time, around that frame: no frame shows it.
+    # 2. The speed changes over 70 % of the hidden time, around that frame: hardly a frame shows it.
     drive = Drive(
         parameters, seed, Pace(((0, before), (frame - half, before), (frame + half, after)))
     )

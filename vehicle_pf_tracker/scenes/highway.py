@@ -35,7 +35,7 @@ HEIGHT = 480
 FRAME_COUNT = 200
 """Number of frames: room for both occlusions, with 30 clear frames before and between them."""
 START_PX = 33
-"""Start of the target's middle, px from the left."""
+"""Start of the target's middle, px from the left: half of its 46 px, and 10 px free."""
 SPEED = 2.9
 """Mean speed of the target, px/frame: it crosses the image in `FRAME_COUNT` frames."""
 OVERTAKING = 3.8

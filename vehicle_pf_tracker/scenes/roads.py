@@ -27,7 +27,7 @@ from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION
 LANE_WIDTH = 3.25
 """Width of a lane, m: between those of a city (3.0) and a motorway (3.75)."""
 SHOULDER = 8
-"""Distance from the kerb to the first lane, px."""
+"""Distance from the kerb to the first lane, px: about a metre, as foreshortened as the lanes."""
 STEEL: Colour = (176, 180, 182)
 """Galvanised guard rails in the sun."""
 

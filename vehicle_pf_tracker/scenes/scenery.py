@@ -26,7 +26,7 @@ BARK: Colour = (74, 62, 50)
 
 
 PARAPET = 11
-"""Width of the wall on each side of the deck, px."""
+"""Width of the wall on each side of the deck, px: a little less than a metre."""
 SHADOW_REACH = 30
 """Reach of the shadow to the left of the deck, px: the sun's, of a deck 6 m up at 12 px/m."""
 

@@ -24,7 +24,7 @@ from vehicle_pf_tracker.scenes.polygons import cells_inside
 VIEW_ELEVATION = math.radians(35)
 """Angle of the view above the horizon: that of a camera on a bridge or a mast near the road."""
 SHADOW_TINT: Colour = (12, 14, 20)
-"""Colour that shadows are tinted with."""
+"""Colour that shadows are tinted with: bluish, as only the sky lights them."""
 OVERSAMPLING = 6
 """Cells drawn per pixel and axis: 36 levels of coverage at an edge, finer than the noise."""
 SAME_PLACE = 0.08

@@ -34,7 +34,7 @@ Contour = Sequence[tuple[float, float]]
 
 
 _TUMBLEHOME = 0.2
-"""Inward lean of the cabin from sill to roof, m."""
+"""Inward lean of the cabin from sill to roof, m: 20 degrees on a cabin of 0.55 m, a choice."""
 ROOF_UNIT: Colour = (170, 172, 174)
 """Air conditioning of a coach."""
 
