@@ -34,7 +34,7 @@ LEAST_SIDE = 8.0
 """Sides of a box inside the image, px, below which a vehicle has no truth but is ignored."""
 
 
-# By whom each vehicle is hidden: `hidden_by` is an id, `scene` or empty; `share` is what that hides.
+# By whom each vehicle is hidden: `hidden_by` is an id, `scene` or empty; `share` is its part.
 OCCLUDERS_HEADER = "frame,id,depth,hidden_by,share"
 
 
