@@ -13,4 +13,7 @@ of the estimates to record. `report` turns their results into data, a figure and
 `ExperimentVerdict`. `running` runs the cells in processes, each scene rendered once for all of
 them, and stores every result under its cache key, so that interrupted work continues and only what
 changed is rerun.
+
+In most of them `_cell` names a run, `_figure` draws, `_verdict` or `_claims` lists the claims, and
+a function for each claim judges it under one interpretation, as a `Finding`.
 """

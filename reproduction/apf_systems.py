@@ -88,7 +88,7 @@ SIX_SYSTEMS = (APF, *APF_RIVALS)
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """One form of APF, and the rivals that it is held against.
+    """One form of APF, and the rivals that it is compared with.
 
     Attributes
     ----------

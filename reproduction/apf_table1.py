@@ -45,7 +45,7 @@ def cells(size: ex.Size) -> list[RunCell]:
 
 
 def report(results: ex.Results, size: ex.Size) -> ex.Report:
-    """Read every scene's truth, and hold it against the paper's table."""
+    """Read every scene's truth, and compare it with the paper's table."""
     truths = {
         (name, seed): SceneChoice.of(name).seeded(seed).truths()
         for name in VIDEO_SCENES

@@ -36,7 +36,7 @@ def cells(size: Size) -> list[RunCell]:
 
 
 def run_scores(results: Results, system: System, seed: int) -> Scores:
-    """Hold one run against the truth again."""
+    """Score one run against the truth again."""
     return scores(cell(system, seed), results[cell(system, seed)])
 
 

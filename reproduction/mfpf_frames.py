@@ -23,7 +23,7 @@ _LONG = 60, 80
 
 
 def report(results: ex.Results, size: ex.Size) -> ex.Report:
-    """Show the first seed, and hold the scenes against what the paper tells of its videos."""
+    """Show the first seed, and compare the scenes with what the paper says of its videos."""
     seed = size.seeds[0]
     rows = tuple(
         (case, system.label, seed, f.row.frame, f.row.x, f.row.y, f.truth.box.centre[0],

@@ -46,9 +46,9 @@ _TITLES = {
     "initial": "initial", "shadow": "in shadow", "partial": "partly hidden", "full": "fully hidden",
 }  # fmt: skip
 _CLEAR = 0.95
-"""Share seen above which nothing hides the vehicle: rims of masks take some hundredths."""
+"""Visible share above which nothing hides the vehicle: rims of masks take some hundredths."""
 _GONE = 0.1
-"""Share seen below which it is fully hidden: no histogram is of so little of it."""
+"""Visible share below which it is fully hidden: no histogram is of so little of it."""
 _INFORMATIVE = 0.6
 """Hellinger distances from the first histogram below this still say something."""
 

@@ -153,7 +153,7 @@ def cells(size: Size) -> list[RunCell]:
 def run_scores(
     results: Results, case: str, system: System, seed: int, interpretation: str = PAPER_RULE
 ) -> Scores:
-    """Hold one run against the truth again."""
+    """Score one run against the truth again."""
     found = cell(case, system, seed, interpretation)
     return scores(found, results[found])
 

@@ -141,7 +141,7 @@ def cells(size: Size) -> list[RunCell]:
 
 
 def run_scores(results: Results, view: View, system: System, seed: int) -> Scores:
-    """Hold one run against the truth again."""
+    """Score one run against the truth again."""
     found = cell(view, system, seed)
     return scores(found, results[found])
 

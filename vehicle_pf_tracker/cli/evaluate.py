@@ -153,6 +153,7 @@ def run(request: Request) -> int:
 
 
 def _run_grid(request: Request, sources: Sequence[str]) -> int:
+    """Run the missing cells of the grid, and write the report unless a part was asked for."""
     systems, notes = chosen(request)
     with console.stages("evaluate") as on_stage:
         recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)

@@ -71,6 +71,7 @@ def _is_ambiguous(found: DetectionTotals) -> bool:
 
 
 def _found_in(folder: Path) -> DetectionTotals:
+    """Read what motion has detected in a run; nothing for a run that failed, or without motion."""
     try:
         document = read_document(folder / RUN_FILE)
     except InputError:  # it failed, and that was said

@@ -63,6 +63,7 @@ def run(request: Request) -> int:
 
 
 def _draw(request: Request, source: ImageSource, output: Path | None) -> int:
+    """Let the user draw, and write the shapes to `output`, or print them without one."""
     before = None
     if request.edit is not None:
         where = f"the file {request.edit}"

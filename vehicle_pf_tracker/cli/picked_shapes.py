@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Shapes that were drawn with `pick`: sections of a file, read as their users read them."""
+"""Shapes drawn with `pick`: sections of a file, each checked by the reader of its verb."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def pair_of(entry: Mapping[str, Any]) -> Pair:
 
 
 def checked(document: Any, where: str) -> Document:
-    """Return the sections that hold something, after they were read as their users read them.
+    """Return the sections that are not empty, each checked by the reader of the verb that uses it.
 
     Raises
     ------

@@ -56,7 +56,7 @@ def switch(*flags: str, help: str) -> Any:  # noqa: A002 - as in argparse
 
 
 class NameChoices(tuple[str, ...]):
-    """Choices that a shell completes; of other names the verb says more than argparse."""
+    """Choices that a shell completes; other names are left to the verb, which says more of them."""
 
     __slots__ = ()
 

@@ -91,6 +91,7 @@ def run(request: Request) -> int:
 
 
 def _calibrate(request: Request, source: ImageSource, pairs: tuple[Pair, ...]) -> int:
+    """Fit the road to pairs, or to those that the user clicks, and write what is asked for."""
     with counting("read") as progress:
         frame = frame_at(source, request.frame, progress)
     if not pairs:

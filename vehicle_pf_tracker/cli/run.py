@@ -113,6 +113,7 @@ def run_one(request: Request) -> int:
 def _track(
     request: Request, variant: Variant, source: ImageSource, folder: Path, stop: Stop
 ) -> int:
+    """Track, write the results, print notices and summaries, and return the exit status."""
     sheet = folder / SHEET_FILE
     pictures = Pictures(request.video, particles=request.particles, sheet=sheet)
     trackers, rows = _follow(request, variant, source, stop, pictures)

@@ -84,6 +84,7 @@ def numbered_part(
 def _numbered(
     source: ImageSource, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
 ) -> Iterator[tuple[int, StampedFrame]]:
+    """Yield the frames of the part with their numbers in the source."""
     first_ns: int | None = None
     number = 0
     is_empty = True

@@ -25,7 +25,7 @@ _PATIENCE = 1.0
 """Seconds that a computation has to end by itself after a signal: a person who presses Ctrl-C has
 the terminal back within two."""
 _POLL = 0.1
-"""Seconds between two looks whether it has ended, which nobody feels."""
+"""Seconds from one check whether it has ended to the next, too short to be felt."""
 
 
 class Terminated(BaseException):
@@ -82,7 +82,7 @@ class Stop:
 
     @property
     def status(self) -> int:
-        """Exit status that tells of the signal; 0 if none has come."""
+        """Exit status by the signal; 0 if none has come."""
         return 0 if self.number is None else SIGNALS_STATUS + self.number
 
     def ended(self, status: int) -> int:

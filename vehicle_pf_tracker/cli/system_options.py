@@ -234,6 +234,7 @@ def make_system(
 
 
 def _models(words: Iterable[str]) -> dict[str, dict[str, str]]:
+    """Read the model files of baselines, by baseline and by the file's name in it."""
     models: dict[str, dict[str, str]] = {}
     for word in words:
         baseline, colon, rest = word.partition(":")
@@ -247,6 +248,7 @@ def _models(words: Iterable[str]) -> dict[str, dict[str, str]]:
 def _baseline_system(
     name: str, python: Path | None, models: dict[str, dict[str, str]], notes: list[str]
 ) -> System:
+    """Make the system of a baseline, with a note where it cannot run here."""
     if name not in BASELINE_MODELS:
         raise unknown_baseline(name)
     own = models.get(name, {})

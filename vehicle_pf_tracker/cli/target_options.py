@@ -109,8 +109,8 @@ def list_in(
 def by_name(targets: Iterable[TargetOption], first: int) -> dict[str, dict[int, Box]]:
     """Group targets: for each name the boxes by frame.
 
-    Targets without a name are named 1, 2, ...; a name that comes again is given to the tracker anew
-    at that frame.
+    Targets without a name are named 1, 2, ...; a repeated name sets its target again, in the later
+    frame.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from vehicle_pf_tracker.evaluation.tuning import SearchTask
 
 TRIALS = 60
-"""Parameter sets that are tried unless told otherwise: ten batches, from nine of which the sampler
+"""Parameter sets that are tried by default: ten batches, from nine of which the sampler
 learns."""
 SEEDS = 3
 """Runs of each set on each recording: a gain of one lucky seed is not taken for one of the set."""
@@ -136,6 +136,7 @@ def run(request: Request) -> int:
 def _tune(
     request: Request, configuration: Configuration, what: SearchTask, recordings: Recordings
 ) -> int:
+    """Search, write trials and best parameters, and judge these where recordings are held out."""
     from vehicle_pf_tracker.evaluation import tuning
 
     folder = make_folder(request.output)

@@ -101,6 +101,7 @@ def _results(
     key: Callable[[TaskT], str],
     own: Mapping[str, str],
 ) -> Iterator[tuple[TaskT, ResultT]]:
+    """Submit all tasks, and yield each with its result as it is done."""
     distributed = _distributed()
     # Two tasks of one key are one: Dask would run the second under the name of the first.
     by_key = {key(task): task for task in tasks}
@@ -161,6 +162,7 @@ def _distributed() -> Any:
 
 @contextmanager
 def _connected(address: str, seconds: float) -> Iterator[Any]:
+    """Connect to a scheduler that has workers, and disconnect at the end of the block."""
     distributed = _distributed()
     # Its log would print a traceback beside our sentence when the scheduler is lost.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)

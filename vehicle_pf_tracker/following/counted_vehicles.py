@@ -31,7 +31,7 @@ from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 _LEARNING = "learning the background"
-"""Said in motion's first second, in which there are no vehicles yet, however many drive."""
+"""Words for motion's first second, in which none is detected, however many vehicles drive."""
 
 
 class CountedVehicles:

@@ -172,6 +172,7 @@ class OfflineTracker:
         self.session.reconfigure(self.session.tracker.parameters, settings)
 
     def _estimated(self, number: int, stamp_ns: int, frame: Frame | None) -> EstimateRow:
+        """Feed a frame to the session, and return its row; a bad image is noted and rejected."""
         self.estimate = None
         if frame is None:
             return EstimateRow.without(number, stamp_ns, REJECTED_MODE)
@@ -197,6 +198,7 @@ class OfflineTracker:
         return EstimateRow.from_scalars(number, stamp_ns, estimate.scalars())
 
     def _ends_run(self, error: InputError | TrackerError) -> bool:
+        """Test whether an error ends the run, instead of rejecting one frame."""
         if isinstance(error, TrackerError):
             return error.persists
         # Before it has begun, an error is the user's target or source; later ones are single
@@ -204,6 +206,7 @@ class OfflineTracker:
         return self.start_frame is None and not isinstance(error, StrayImageError)
 
     def _locate(self, estimate: Estimate, stamp_ns: int) -> None:
+        """Keep an estimate's place and speed on the road, or count why it has none."""
         if self._localisation is None:
             return
         self._localisation.follow(estimate, stamp_ns, self.session.tracker.frame_period)

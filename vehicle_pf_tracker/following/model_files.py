@@ -106,6 +106,7 @@ def cached(url: str) -> Path:
 
 
 def _sum_of(path: Path) -> str:
+    """Return the SHA-256 of a file; without one, the error names the known networks."""
     if path.exists() and not path.is_file():
         raise InputError(f"the network {path} is not a regular file")
     try:

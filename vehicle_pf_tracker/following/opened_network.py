@@ -66,6 +66,7 @@ def open_network(model: str, progress: Progress = silent) -> OpenedNetwork:
 
 
 def _loaded(model: str, progress: Progress) -> Network:
+    """Load a network from its file, which is fetched before where it is not here."""
     os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # by default it reports to its makers
     try:
         runtime = importlib.import_module("onnxruntime")

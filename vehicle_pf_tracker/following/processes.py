@@ -112,6 +112,7 @@ def _in_pool(
 
 
 def _how_it_ended(processes: Sequence[multiprocessing.process.BaseProcess]) -> str:
+    """Say how the first of some processes ended, in words that follow "was ended"."""
     for process in processes[:1]:
         process.join(PATIENCE)
     status = processes[0].exitcode if processes else None

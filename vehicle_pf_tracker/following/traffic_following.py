@@ -200,7 +200,7 @@ class TrafficRun(CountedVehicles):
             kept = self.session.successors
             self._by_name = {name: kept[old] for name, old in self._by_name.items() if old in kept}
         for event in self.session.events:
-            if event not in self._last_events:  # one that lasts is told once
+            if event not in self._last_events:  # one that lasts is noted once
                 self._note(f"frame {number}: {event}")
         self._last_events = list(self.session.events)
         # After the image was followed: a box is where its vehicle is in it.

@@ -167,6 +167,7 @@ def parse_counting_plan(document: Any) -> CountingPlan:
 
 
 def _mapping(value: Any, what: str, known: Sequence[str]) -> Mapping[str, Any]:
+    """Return `value` if it is a mapping of known keys; `what` names it in errors."""
     if not isinstance(value, Mapping):
         raise InputError(f"{what} must have keys of these: {', '.join(known)}")
     for key in value:
@@ -177,6 +178,7 @@ def _mapping(value: Any, what: str, known: Sequence[str]) -> Mapping[str, Any]:
 
 
 def _named(section: Any, what: str) -> Mapping[str, Any]:
+    """Return a section as a mapping by name, empty where it is missing, its names checked."""
     if section is None:
         return {}
     if not isinstance(section, Mapping):
@@ -222,6 +224,7 @@ def _region(name: str, body: Any) -> Region:
 
 
 def _polygon(body: Any, what: str) -> tuple[Position, ...]:
+    """Read the corners of a polygon that has an area and does not cross itself."""
     if not isinstance(body, list) or len(body) < 3:
         raise InputError(f"{what} needs three corners or more, as [[0, 0], [90, 0], [90, 60]]")
     if len(body) > _MOST_CORNERS:
@@ -262,4 +265,5 @@ def _crosses_itself(corners: _Points) -> bool:
 
 
 def _turn(a: Position, b: Position, c: Position) -> float:
+    """Return twice a triangle's area, px²: above 0 if `c` is right of a walk from `a` to `b`."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

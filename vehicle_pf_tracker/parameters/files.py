@@ -132,6 +132,7 @@ def read_yaml(path: Path, node_name: str) -> dict[str, object]:
 
 
 def _sections(document: Any, prefix: str) -> Iterable[tuple[str, Mapping[str, Any]]]:
+    """Yield each section of a document: its name, and its parameters."""
     if not isinstance(document, Mapping):
         return
     for key, body in document.items():

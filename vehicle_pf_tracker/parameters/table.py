@@ -198,6 +198,7 @@ _hints = functools.cache(get_type_hints)
 
 @functools.cache
 def _specs(cls: Any) -> Mapping[str, ParameterSpec]:
+    """Make the table of a dataclass, once for each."""
     hints = _hints(cls)
     defaults = cls()
     table: dict[str, ParameterSpec] = {}
@@ -253,6 +254,7 @@ def from_mapping(
 
 
 def _build(cls: Any, values: Mapping[str, Value], prefix: str) -> Any:
+    """Make a dataclass, and its groups, of values by dotted name."""
     hints = _hints(cls)
     arguments: dict[str, Any] = {}
     for field in dataclasses.fields(cls):

@@ -73,6 +73,7 @@ class Backdating:
     def _known(
         self, frame: int, stamp_ns: int, estimates: Sequence[TrackEstimate]
     ) -> FrameEstimates:
+        """Give the vehicles of a frame the numbers and classes that are known by now."""
         by_number: dict[int, TrackEstimate] = {}
         for estimate in estimates:
             number = self._numbers.get(estimate.serial, 0)

@@ -54,6 +54,7 @@ def read_zones(folder: str | Path, *, pandas: bool = False) -> Any:
 
 
 def _read(path: Path, as_frame: bool) -> Any:
+    """Read a table by columns, as a record array or a data frame."""
     names, *rows = csv.reader(read_text(path, "the table").splitlines())
     try:
         columns = {

@@ -98,6 +98,7 @@ class Lens:
         return np.asarray(rays * self.focal + self.matrix[:2, 2])
 
     def _distorted(self, rays: Array) -> Array:
+        """Distort rays (…, 2), in focal lengths, by the lens's model."""
         if not rays.size:  # OpenCV refuses none
             return rays
         points = rays.reshape(1, -1, 2)

@@ -74,9 +74,9 @@ class RoadPlane:
 
     @classmethod
     def of_camera(cls, lens: Lens, pose: Pose, *, coarsest: float) -> RoadPlane:
-        """Make the plane ``z = 0`` of the frame that `pose` gives the camera's optical frame in.
+        """Make the plane ``z = 0`` of the frame in which `pose` is that of the optical frame.
 
-        The optical frame has x to the right in the image, y down and z along the view.
+        The camera's optical frame has x to the right in the image, y down and z along the view.
 
         Raises
         ------

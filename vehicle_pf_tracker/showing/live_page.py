@@ -68,7 +68,7 @@ class LivePage(PageServer):
         self.server_close()
 
     def show(self, draw: Callable[[], Frame], facts: Callable[[], Mapping[str, object]]) -> None:
-        """Take the next image: what draws it, and what tells the numbers beside it."""
+        """Take the next image: a function that draws it, and one that gives the numbers with it."""
         with self._shown:
             self._latest = draw, facts
             if self._is_wanted:

@@ -79,6 +79,7 @@ def video_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[Wri
 
 @contextmanager
 def _h264(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
+    """Give a function that appends frames of this size, whose sides are even, to an H.264 file."""
     import av  # noqa: PLC0415 - an extra
 
     limited = min(max(rate, LOWEST_RATE), HIGHEST_RATE)

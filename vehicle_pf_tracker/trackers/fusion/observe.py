@@ -163,7 +163,7 @@ def observe(state: State, prediction: Prediction, step: Step) -> tuple[State, Ob
     else:
         position, response = likeliest_peak(view, state.particles, state.extent)
     if was_hidden and _is_stranger(state, position, step):
-        # The hypotheses have gathered at it: those of before go on, and no wiser.
+        # The hypotheses have gathered at it: those of before are kept, hidden but for the prior.
         state = state._replace(particles=before.all_visible(PRIOR_DOUBT), size=size)
         position = before.mean
         response = 0.0  # of the vehicle nothing was observed, whatever the stranger answers

@@ -138,7 +138,8 @@ class SurfacePoints(NamedTuple):
         guess = np.asarray(patch.to_patch(before + position - started) - 0.5, np.float32)
         end, found = _flow(previous, patch, start, guess, _FLOW)
         after = patch.to_frame(end.astype(np.float64) + 0.5)
-        # With the strays, as it is a median: they are told by the box, which it is to correct.
+        # With the strays: they are found by the box, which this has to correct, and few do not move
+        # a median.
         stretch = box_motion.shared_stretch(before[found], after[found], size)
         # Copied: the state of the frame before shares the arrays.
         positions = positions.copy()

@@ -123,6 +123,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             self._state = state._replace(particles=particles)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        """Take one frame: predict, observe, weigh by flow, judge, follow, learn, resample."""
         state, memory = self._track
         # The order is the model's: only what was predicted can be weighed. Flow needs the peak that
         # the response found, the verdict both pieces of evidence; and nothing is learnt before the

@@ -212,6 +212,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         return np.asarray(centre) + moves
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        """Take one frame by steps 4 to 16: resample or drift, weigh, estimate, compare, learn."""
         settings = self._settings
         bits = settings.histogram_bits
         window = self.window

@@ -67,6 +67,7 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         self._reference = self.target.kernel_reference(self.window, bits)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        """Take one frame: resample, spread by speed and confidence, climb by mean shift, weigh."""
         settings = self.parameters
         parents = self._resample(self._cloud)
         particles, left_image = self._diffuse(frame, parents, self.spread() * elapsed)

@@ -112,6 +112,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         return centre + self._noise(self._search_radius(1.0, self._predicted_for))
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        """Take one frame: the particles' move of step 3, and steps 2 to 5 of section IV."""
         particles, prior, left_image = self._disperse(frame, elapsed)
         rho = self._compare(frame, particles)  # step 2
         averages = self._averages(rho)

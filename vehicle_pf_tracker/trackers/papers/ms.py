@@ -61,6 +61,7 @@ class MsTracker(BaseTracker[MsParameters]):
         return np.asarray([centre])
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        """Take one frame: step from the last position until a step is short (steps 2 to 4)."""
         settings = self.parameters
         place = self._cloud.positions
         measured_by = self.window, self._reference, settings.histogram_bits

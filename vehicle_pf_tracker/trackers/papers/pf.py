@@ -90,7 +90,7 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
     ) -> Outcome:
         """Take the cloud's mean as the estimate, with the similarity there as evidence."""
         # The window at the estimate is measured by itself: a mean of particles on both sides of an
-        # occluder is on it, and only this tells.
+        # occluder is on it, which the windows of the particles do not show.
         position = cloud.mean()
         coefficient = self.similarity(frame, np.asarray([position]))
         similarity = float(1.0 - hellinger_distance(coefficient)[0])
@@ -142,6 +142,7 @@ class PfTracker(ColourTracker[PfParameters]):
         return particles
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        """Take one frame: resample, propagate, weigh, and report the mean."""
         settings = self.parameters
         # Resampling opens the frame, so that the estimate before it is taken from the weights.
         ancestors = self._draw(self._cloud.weights, settings.resampling)

@@ -69,6 +69,7 @@ class PfclTracker(ColourTracker[PfclParameters]):
         self.line_reference = self._line_histograms(self.target.patch, centre)[0]
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        """Take one frame: resample, propagate, weigh by colour and by lines."""
         settings = self.parameters
         parents = self._resample(self._cloud)
         particles, left_image = self._diffuse(frame, parents, settings.sigma * elapsed)

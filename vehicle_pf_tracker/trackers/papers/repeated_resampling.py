@@ -127,6 +127,7 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
     """Tables I and II of P3 but for the pass of resampling."""
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        """Take one frame by the tables: propagate, weigh, resample while few particles count."""
         settings = self._settings
         # Every particle moves on: what was drawn within the last frame is its resampling.
         parents = self._cloud.positions

@@ -128,6 +128,7 @@ class SapfTracker(ColourTracker[SapfParameters]):
     """The annealed particle filter; the resampling after the last layer opens the next frame."""
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
+        """Take one frame in layers: each resamples, spreads less than the last one, and weighs."""
         settings = self.parameters
         annealing = settings.annealing
         cloud = self._cloud
