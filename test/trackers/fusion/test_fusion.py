@@ -238,7 +238,7 @@ class Spinning:
 
 
 def test_a_turn_before_a_moving_camera_is_followed():
-    """By four of five draws at least: one in eight takes the turn for an occlusion."""
+    """Four of five draws do at least: one in eight takes the turn for an occlusion."""
     followed, street = 0, Spinning()
     for seed in range(5):
         estimates = follow(fusion(seed=seed), street, range(80))
@@ -258,7 +258,7 @@ def extent(estimate):
 
 def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
     def stiffness(response, share, *, reliable=True, outlines=False, whole=1.0):
-        """That of the next frame, and of none where nothing is learnt."""
+        """Stiffness with which the next frame is learnt, in a list; empty where it is not."""
         tracker, learnt = fusion(**{"filter.stiffness": 5.0}), []
         street = Street(speed=2.0)
         follow(tracker, street, range(8))  # later frames may be undisturbed, and learn in turns

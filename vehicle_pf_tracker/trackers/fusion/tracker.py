@@ -8,7 +8,7 @@ Per frame: predict and observe (`observe.py`), weigh by flow (`flow_evidence.py`
 on, and `step.py` the frame and the memory that they share.
 
 - Visible: climb to the peak, follow the size, learn.
-- Partly hidden: climb to the peak, predict the size, learn nothing.
+- Partly hidden: climb to the peak, predict the size, learn nothing unless flow shows a turn.
 - Turning: follow the outline of what moves, learn fast.
 - Hidden: predict along the road, learn nothing, and wait until hypotheses gather evidence, or an
   outline comes out on the way (`reappearance.py`).

@@ -31,7 +31,9 @@ class Visible(NamedTuple):
 
 
 class PartlyHidden(NamedTuple):
-    """A part of the vehicle is visible: climb to the peak, predict the size, learn nothing.
+    """A part of the vehicle is visible: climb to the peak, predict the size, seldom learn.
+
+    It is learnt from only where flow shows a turn (`follow._learn_appearance`).
 
     Attributes
     ----------

@@ -63,7 +63,7 @@ class Pairs(NamedTuple):
 
 
 def check_library() -> None:
-    """Load the library of `assign` at the start: it takes a second, in which a node loses images.
+    """Load the library of `assigned` at the start: it takes a second, in which a node loses images.
 
     Raises
     ------
