@@ -141,6 +141,13 @@ def test_a_list_has_options_of_each_source(videos, tmp_path, done):
     assert [row["frames"] for row in table(tmp_path / "all")] == ["5", "5"]
 
 
+def test_an_option_of_a_line_holds_though_it_is_the_default(videos, tmp_path, done):
+    (tmp_path / "cams.txt").write_text("east.avi --variant fusion\nnorth.avi\n")
+    assert follow("run", tmp_path / "cams.txt", *PF, "-o", tmp_path / "out") == 0
+    runs = [json.loads((tmp_path / "out" / one / "run.json").read_text()) for one in done]
+    assert [one["variant"] for one in runs] == ["fusion", "pf"]
+
+
 def test_several_targets_have_a_row_each(videos, tmp_path, done):
     target = ("--target", f"a@1:{TARGET}", "--target", f"b@1:{TARGET}", "--variant", "ms", *OPENCV)
     assert follow("run", *videos[:2], *target, "-o", tmp_path / "all") == 0

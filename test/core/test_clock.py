@@ -48,6 +48,11 @@ def test_a_frame_delivered_twice_takes_no_time_but_a_camera_without_a_clock_runs
     assert clock.tick(100 * MS) == type(repeats[0])(pytest.approx(1.0))
 
 
+def test_after_a_jump_back_a_repeat_is_a_first_one_again():
+    repeats = ticks(StampClock(10.0), [1000, 1000, 500, 500])
+    assert [t.elapsed for t in repeats] == [1.0, 0.0, 1.0, 0.0]
+
+
 def test_a_gap_counts_as_five_seconds_at_most():
     clock = StampClock(10.0)
     tick = ticks(clock, [0, 86_400_000])[-1]

@@ -35,3 +35,9 @@ def test_crossings_are_read_with_their_doubts_and_every_digit_of_a_stamp(tmp_pat
 def test_a_number_that_is_none_names_the_table(tmp_path):
     with pytest.raises(InputError, match=r"cannot read the table .*counts\.csv"):
         counts(tmp_path, f"7,{STAMP},exit,in,3,car,TRACKING,fast,,")
+
+
+def test_an_empty_table_is_told(tmp_path):
+    (tmp_path / COUNTS_FILE).write_text("")
+    with pytest.raises(InputError, match=r"the table .*counts\.csv is empty"):
+        read_counts(tmp_path)

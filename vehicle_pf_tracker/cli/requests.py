@@ -78,8 +78,20 @@ _KINDS: Mapping[str, Mapping[str, Any]] = {
 """Settings that follow from a field's type, where it does not say others."""
 
 
-def add_options(parser: argparse.ArgumentParser, kind: type[VerbRequest]) -> None:
-    """Add the options that the fields of a request are read from."""
+def add_options(
+    parser: argparse.ArgumentParser, kind: type[VerbRequest], *, only_given: bool = False
+) -> None:
+    """Add the options that the fields of a request are read from.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        Where they are added.
+    kind : type
+        Class of the request.
+    only_given : bool
+        True to parse only what is given, without defaults.
+    """
     for one in filter(lambda one: one.metadata, fields(kind)):
         settings = _KINDS.get(str(one.type).removesuffix(" | None"), {})
         settings = {**settings, **one.metadata["settings"]}
@@ -91,6 +103,8 @@ def add_options(parser: argparse.ArgumentParser, kind: type[VerbRequest]) -> Non
             continue
         if not any(flag.startswith("--") for flag in flags):
             flags = (*flags, f"--{one.name.replace('_', '-')}")
+        if only_given:
+            settings["default"] = argparse.SUPPRESS
         parser.add_argument(*flags, dest=one.name, **settings)
 
 

@@ -156,9 +156,8 @@ def _read_list(path: Path, request: VerbRequest) -> list[dict[str, Any]]:
         If it cannot be read, has no source, or a line is not as on the command line.
     """
     parser = _Parser(add_help=False, allow_abbrev=False)
-    add_options(parser, type(request))
-    # Defaults, by a stand-in for the source: an option of a line that states one changes nothing.
-    usual = vars(parser.parse_args(["-"]))
+    # Not by comparing with defaults: a line may state one against the command's own option.
+    add_options(parser, type(request), only_given=True)
     entries = []
     for number, line in enumerate(read_text(path, "the list of sources").splitlines(), start=1):
         try:
@@ -170,8 +169,7 @@ def _read_list(path: Path, request: VerbRequest) -> list[dict[str, Any]]:
             continue
         if found.pop("more"):
             raise InputError(f"line {number} of {path} has more than one source")
-        changed = {name: value for name, value in found.items() if value != usual[name]}
-        entries.append({name: _at(path.parent, name, value) for name, value in changed.items()})
+        entries.append({name: _at(path.parent, name, value) for name, value in found.items()})
     if not entries:
         raise InputError(f"the list {path} names no source")
     return entries

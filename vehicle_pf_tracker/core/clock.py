@@ -76,6 +76,8 @@ class StampClock:
         # Integers are subtracted first: stamps of today have more digits than a float64.
         seconds = (stamp_ns - last) * 1e-9
         if seconds < 0:
+            # The frame after a jump is a new one: what repeats it is delivered twice again.
+            self._repeats = 0
             return Tick(1.0, StampEvent.JUMP_BACK)
         if seconds == 0:
             # One repeat is a frame delivered twice; a run of them is a camera without a clock, and

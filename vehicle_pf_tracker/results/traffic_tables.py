@@ -55,7 +55,10 @@ def read_zones(folder: str | Path, *, pandas: bool = False) -> Any:
 
 def _read(path: Path, as_frame: bool) -> Any:
     """Read a table by columns, as a record array or a data frame."""
-    names, *rows = csv.reader(read_text(path, "the table").splitlines())
+    lines = list(csv.reader(read_text(path, "the table").splitlines()))
+    if not lines:
+        raise InputError(f"the table {path} is empty")
+    names, *rows = lines
     try:
         columns = {
             name: _column(name, [row[index] for row in rows]) for index, name in enumerate(names)
