@@ -208,7 +208,7 @@ YELLOW, DULLER, GREY = (200, 180, 40), (176, 158, 35), (140, 140, 140)
 def test_paint_is_told_by_the_share_of_a_box_that_has_it(stripes, share):
     appearance = Appearance(KERNELS, SIZE, SIZE, PENALTY)
     appearance.learn_paint(plain((136, 48, YELLOW)), PLACE, SIZE)
-    found = appearance.paint_share(plain(*stripes), SIZE, PLACE)
+    found = appearance.paint_share(plain(*stripes), PLACE, SIZE)
     assert found == pytest.approx(share, abs=0.13)
 
 

@@ -252,11 +252,11 @@ class Appearance:
         """Measure the paint of a vehicle that is clearly seen whole: occluders have another."""
         self._paint = Paint.of(frame, position, size)
 
-    def paint_difference(self, frame: Frame, size: Array, position: Array) -> float:
+    def paint_difference(self, frame: Frame, position: Array, size: Array) -> float:
         """Measure how far the paint in a box is from the one learnt last: above 1 it is another."""
         return self._paint.difference(frame, position, size)
 
-    def paint_share(self, frame: Frame, size: Array, position: Array) -> float:
+    def paint_share(self, frame: Frame, position: Array, size: Array) -> float:
         """Measure the share of a box that has the paint learnt last, lighter or darker."""
         return self._paint.share(frame, position, size)
 
@@ -278,7 +278,7 @@ class Appearance:
         near = view.response[top:bottom, left:right]
         row, column = np.unravel_index(int(near.argmax()), near.shape)
         position = view.position(float(column + left), float(row + top))
-        share = self.paint_share(frame, size, position)
+        share = self.paint_share(frame, position, size)
         return Candidate(position, size, float(near.max()), share)
 
     def _spectrum(self, patch: Patch) -> Spectrum:

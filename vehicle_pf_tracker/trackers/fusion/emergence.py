@@ -17,6 +17,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.fusion.departure import PROOF_DISTANCE
+from vehicle_pf_tracker.trackers.fusion.outline_boxes import areas, front_move
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import KEPT_FRAMES, PerspectiveMotion, Sighting
 
@@ -89,10 +90,9 @@ class Emergence(NamedTuple):
         # As far as the vehicle would drive in the two seconds that sightings are kept for, and two
         # sizes more for boxes that are counted by their middles.
         middles = boxes.mean(axis=1)
-        areas = (boxes[:, 1] - boxes[:, 0]).prod(axis=1)
         reach = KEPT_FRAMES * self._speed + 2 * self._extent
         counts = np.linalg.norm(middles - self.last.position, axis=1) < reach
-        counts &= areas > _LEAST_MOVING * self._extent**2
+        counts &= areas(boxes) > _LEAST_MOVING * self._extent**2
         if own is not None:
             # Its pieces lie within its own box: a middle a whole size away is another one's.
             counts &= (np.abs(middles - own) > self.last.size).any(axis=1)
@@ -126,9 +126,7 @@ class Emergence(NamedTuple):
         frames = len(self.sides)
         if frames < PROOF_FRAMES or self._area(sides := self.sides[-1]) <= _LEAST_AREA:
             return None
-        # The side in front moves all the time, the other one once all has come out.
-        moves = sides - self.sides[0]
-        moved = np.where(np.abs(moves[1]) > np.abs(moves[0]), moves[1], moves[0])
+        moved = front_move(self.sides[0], sides)
         if np.hypot(*moved) < PROOF_DISTANCE * self._extent:
             return None
         # 1e-3 frames instead of none, where stamps repeat: such a speed is excluded below.

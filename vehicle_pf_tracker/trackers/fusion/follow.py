@@ -90,7 +90,7 @@ def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> Sta
         case Hidden(outlines=Outlines(reappearance=way)) if way is not None:
             found = way.vehicle
             if found is not None:
-                state = _look_at(state, *found, step)
+                state = _expect_at(state, *found, step)
         # In each frame, since the chain lets some become visible: only a proven return counts.
         case Gone():
             state = state._replace(particles=state.particles.all_visible(0.0))
@@ -142,7 +142,7 @@ def _enter_occlusion(state: State, step: Step) -> State:
     return state._replace(particles=particles)
 
 
-def _look_at(state: State, found: Candidate, velocity: Array, step: Step) -> State:
+def _expect_at(state: State, found: Candidate, velocity: Array, step: Step) -> State:
     """Expect the vehicle where it has come out, at the size that it has there."""
     # Still hidden: the response of the next frame decides. Without outlines the same one cannot
     # call the hypotheses back in every frame.

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.fusion.outline_boxes import areas
 
 _LARGEST_CHANGE = 1.5
 """Factor of the area of an outline, to that when the vehicle was hidden, beyond which it has merged
@@ -86,11 +87,6 @@ class KnownOthers(NamedTuple):
         moved = (self.latest - self.first).mean(axis=1) / spans[:, np.newaxis]
         since = (age - self.ages)[:, np.newaxis]
         return np.asarray(self.latest + (moved * since)[:, np.newaxis])
-
-
-def areas(boxes: Array) -> Array:
-    """Areas (N,) of boxes (N, 2, 2), px squared."""
-    return np.asarray((boxes[:, 1] - boxes[:, 0]).prod(axis=1))
 
 
 def _overlaps(boxes: Array, others: Array) -> Array:

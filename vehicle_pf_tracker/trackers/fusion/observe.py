@@ -182,7 +182,7 @@ def _is_stranger(state: State, position: Array, step: Step) -> bool:
     if way.is_behind(position) or way.is_another(position):
         return True
     appearance = step.memory.appearance
-    return appearance.paint_share(step.frame, state.size, position) < LEAST_PAINT
+    return appearance.paint_share(step.frame, position, state.size) < LEAST_PAINT
 
 
 def _next_tasks(state: State, response: float, step: Step) -> Tasks:

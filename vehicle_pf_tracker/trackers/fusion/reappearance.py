@@ -18,7 +18,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.fusion.known_others import KnownOthers, areas
+from vehicle_pf_tracker.trackers.fusion.known_others import KnownOthers
+from vehicle_pf_tracker.trackers.fusion.outline_boxes import areas, front_move
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import (
     CLEAR_RESPONSE,
@@ -213,10 +214,7 @@ class Reappearance(NamedTuple):
         now, last = self.track[-1]
         if now - began < _PROOF:
             return None
-        # The side in front moves all the time, the other one once all has come out.
-        moves = last - first
-        moved = np.where(np.abs(moves[1]) > np.abs(moves[0]), moves[1], moves[0])
-        velocity = np.asarray(moved / (now - began))
+        velocity = np.asarray(front_move(first, last) / (now - began))
         predicted = self.motion.velocity_at(self.age)
         speed = float(np.hypot(*predicted))
         # Along the predicted heading, so that what crosses it is no return. 1e-9 only keeps

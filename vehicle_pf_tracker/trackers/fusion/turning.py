@@ -153,7 +153,7 @@ class Branch(NamedTuple):
 
 
 PaintDifference = Callable[[Array, Array], float]
-"""Function of a box's size and position (2,), px: difference of its paint from the vehicle's."""
+"""Function of a box's centre and size (2,), px: difference of its paint from the vehicle's."""
 
 
 class Outlines(NamedTuple):
@@ -213,7 +213,7 @@ class Outlines(NamedTuple):
         view : View
             Shows whether the filter recognises the vehicle again, which ends the branch.
         difference : callable
-            Difference of the paint in a box of a size and position, px, from the vehicle's.
+            Difference of the paint in a box of this centre and size, px, from the vehicle's.
         judge : callable
             Finds the vehicle in an outline.
         """
@@ -259,7 +259,7 @@ def _emerged(
     velocity = found[1]
     # Its margins are not known: the outline is the box until the filter takes over.
     margins = (np.zeros(2), np.zeros(2))
-    paint = difference(outline.size, outline.centre)
+    paint = difference(outline.centre, outline.size)
     emergence = emergence._replace(paint=(*emergence.paint, paint))
     if not emergence.has_paint:
         return emergence, None
