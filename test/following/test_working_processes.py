@@ -1,10 +1,12 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
+import multiprocessing
 import os
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -32,6 +34,37 @@ def test_a_process_that_is_ended_costs_its_task_only():
     assert found[7] == (
         "its process was ended by SIGKILL, perhaps out of memory: fewer --workers may help"
     )
+
+
+def deaf_or_dying(task):
+    """Take no SIGTERM the first time, or end the process once another one does so."""
+    name, deaf = task
+    if name == "dying":
+        while not deaf.exists():
+            time.sleep(0.01)
+        os.kill(os.getpid(), signal.SIGKILL)
+    if name == "deaf" and not deaf.exists():
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        deaf.touch()
+        time.sleep(60)
+    return name
+
+
+def test_one_beside_it_that_takes_no_sigterm_is_not_waited_for(tmp_path, monkeypatch):
+    monkeypatch.setattr(processes, "PATIENCE", 1.0)
+    before = multiprocessing.active_children()
+    # The pool looks anew at all its processes after a result: one of those begun later could die
+    # unseen until then.
+    names = ("deaf", "quick", "dying")
+    tasks = [(name, tmp_path / "deaf") for name in names]
+    found = dict(run_in_processes(deaf_or_dying, tasks, 3, lambda sentence: sentence))
+    deaf, quick, dying = (found[task] for task in tasks)
+    assert (deaf, quick) == ("deaf", "quick")
+    assert "ended by SIGKILL" in dying
+    left = [one for one in multiprocessing.active_children() if one not in before]
+    for one in left:
+        one.join(10)
+    assert not any(one.is_alive() for one in left)
 
 
 def test_without_a_result_for_it_the_end_of_a_process_is_an_error():

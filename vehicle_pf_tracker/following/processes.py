@@ -35,6 +35,8 @@ def run_in_processes(
 ) -> Iterator[tuple[TaskT, ResultT]]:
     """Call `function` with each task; yield every task with its result as soon as it is there.
 
+    That a process was ended may be noticed only when a task of another one has its result.
+
     Parameters
     ----------
     function : callable
