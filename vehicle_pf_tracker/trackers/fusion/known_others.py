@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.overlaps import overlaps as edge_overlaps
 from vehicle_pf_tracker.trackers.fusion.outline_boxes import areas
 
 _LARGEST_CHANGE = 1.5
@@ -63,7 +64,9 @@ class KnownOthers(NamedTuple):
         latest = self.latest[fresh].copy()
         ages = self.ages[fresh].copy()
         if len(boxes):
-            overlaps = _overlaps(self._places(age)[fresh], boxes)
+            overlaps = edge_overlaps(
+                self._places(age)[fresh].reshape(-1, 1, 4), boxes.reshape(-1, 4)
+            )
             best = overlaps.argmax(axis=1)
             change = np.abs(np.log(areas(boxes)[best] / areas(first)))
             found = (overlaps.max(axis=1) > _LEAST_OVERLAP) & (change < np.log(_LARGEST_CHANGE))
@@ -87,12 +90,3 @@ class KnownOthers(NamedTuple):
         moved = (self.latest - self.first).mean(axis=1) / spans[:, np.newaxis]
         since = (age - self.ages)[:, np.newaxis]
         return np.asarray(self.latest + (moved * since)[:, np.newaxis])
-
-
-def _overlaps(boxes: Array, others: Array) -> Array:
-    """Intersection over union (N, M) of boxes (N, 2, 2) and others (M, 2, 2)."""
-    low = np.maximum(boxes[:, np.newaxis, 0], others[:, 0])
-    high = np.minimum(boxes[:, np.newaxis, 1], others[:, 1])
-    shared = np.maximum(high - low, 0).prod(axis=2)
-    union = areas(boxes)[:, np.newaxis] + areas(others) - shared
-    return np.asarray(shared / union)
