@@ -98,7 +98,7 @@ setup(
         NAME: ["py.typed"],
         f"{NAME}.cli": ["pick.html", "pick.js"],
         f"{NAME}.showing": ["live.html"],
-        f"{NAME}.recordings": ["ImageAnnotations.msg"],
+        f"{NAME}.recordings.bags": ["ImageAnnotations.msg"],
         f"{NAME}.ros": ["transport.xml"],
         f"{NAME}.evaluation": ["baselines.txt"],
         f"{NAME}.evaluation.report": ["templates/*"],

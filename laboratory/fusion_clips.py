@@ -35,7 +35,7 @@ from vehicle_pf_tracker.cli.main import main as run_command
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.evaluation.tables import markdown
-from vehicle_pf_tracker.recordings.video import open_footage
+from vehicle_pf_tracker.recordings.opened_footage import open_footage
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.results.output_files import write_text
 from vehicle_pf_tracker.results.traffic_results import TRACKS_FILE

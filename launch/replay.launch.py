@@ -10,7 +10,7 @@ from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch_ros.actions import Node
 
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.ros.launching import TRACKER_ARGUMENTS, declared, included_tracker
 from vehicle_pf_tracker.ros.replay.launched_replay import (
     REPLAY_ARGUMENTS,

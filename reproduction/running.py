@@ -10,10 +10,11 @@ from typing import TypeAlias
 
 from laboratory.result_store import ResultStore
 from reproduction.cells import Cell, Result
+from vehicle_pf_tracker.core.progress import ShowCount
 from vehicle_pf_tracker.evaluation.cache_key import result_key, source_digest, variant_modules
-from vehicle_pf_tracker.following.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.trackers.papers import shared
 from vehicle_pf_tracker.trackers.registry import find_variant
+from vehicle_pf_tracker.workers.processes import run_in_processes
 
 _LARGEST_BATCH = 48
 """Cells that run together: more share a rendering, fewer are lost by an interruption."""
@@ -34,7 +35,7 @@ _Batch: TypeAlias = tuple[Cell, ...]
 
 
 def complete(
-    cells: Sequence[Cell], store: ResultStore, workers: int, on_progress: OnProgress
+    cells: Sequence[Cell], store: ResultStore, workers: int, on_progress: ShowCount
 ) -> Mapping[Cell, Result]:
     """Run the cells that `store` does not have, and return the results of all.
 

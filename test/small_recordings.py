@@ -9,8 +9,8 @@ from mcap.writer import CompressionType
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags import messages
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 
 COUNT = 12
 TARGET = "8,24,16,12"

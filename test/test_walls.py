@@ -37,11 +37,12 @@ MAY_IMPORT = {
     "scenes": GROUND,
     "counting": {*GROUND, "detection", "trackers"},
     "results": BELOW,
+    "workers": {"core", "results"},
     "showing": {*BELOW, "results"},
     "following": FOLLOWING,
     "ros": {*FOLLOWING, "following"} - {"scenes"},
-    "evaluation": {*FOLLOWING, "following"},
-    "cli": {*FOLLOWING, "following", "ros", "evaluation"},
+    "evaluation": {*FOLLOWING, "following", "workers"},
+    "cli": {*FOLLOWING, "following", "workers", "ros", "evaluation"},
 }
 """The rooms below each room, from the ground up."""
 BESIDE = {"reproduction", "benchmarks", "laboratory", "tools"}
@@ -367,11 +368,11 @@ def made_up(folder: Path, **files: str) -> dict[str, Module]:
         ("parameters__configuration", "from ..trackers.registry import Variant"),
         ("image__window", "from ..trackers.base import Tracker"),
         ("image__window", "from .. import cli"),
-        ("trackers__apf", "from vehicle_pf_tracker.recordings.reader import Recording"),
+        ("trackers__apf", "from vehicle_pf_tracker.recordings.bags.reader import Recording"),
         ("trackers__apf", "def late():\n    import vehicle_pf_tracker.scenes"),
         ("detection__blobs", "from vehicle_pf_tracker.trackers.estimate import Mode"),
         ("recordings__reader", "from vehicle_pf_tracker.trackers.estimate import Mode"),
-        ("scenes__road", "from vehicle_pf_tracker.recordings.writer import write"),
+        ("scenes__road", "from vehicle_pf_tracker.recordings.bags.writer import write"),
         ("scenes__road", "from vehicle_pf_tracker.recordings import writer"),
         ("scenes__road", "from vehicle_pf_tracker.trackers.registry import VARIANTS"),
         ("evaluation__tables", "from vehicle_pf_tracker.ros.node.tracker_node import Node"),

@@ -18,7 +18,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from vehicle_pf_tracker.following.known_networks import (
+from vehicle_pf_tracker.following.networks.known_networks import (
     DETECTOR_PACKAGE,
     KNOWN_NETWORKS,
     KnownNetwork,

@@ -20,7 +20,7 @@ from benchmarks.bench.metered_node import METER_RECORD
 from benchmarks.bench.resident import resident_mb
 from benchmarks.bench.root import ROOT
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.following.processes import wait_or_kill
+from vehicle_pf_tracker.workers.processes import wait_or_kill
 
 _READY = "ready:"
 """Beginning of the line in which a node says that it is ready."""

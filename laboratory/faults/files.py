@@ -33,7 +33,7 @@ from vehicle_pf_tracker.cli.params import default_yaml
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.ros.rclpy_internals import (
     RCLError,

@@ -17,10 +17,11 @@ from laboratory.stress.cases import Case
 from laboratory.stress.scoring import Score, score_case
 from laboratory.stress.systems import Follower, StressSystem
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.progress import ShowCount
 from vehicle_pf_tracker.evaluation.cache_key import result_key
-from vehicle_pf_tracker.following.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.workers.processes import run_in_processes
 
 WORKERS = 2
 """Processes of a battery unless it is told otherwise: a laptop stays usable."""
@@ -92,7 +93,7 @@ def run_battery(
     seeds: Sequence[int] = (0,),
     workers: int = WORKERS,
     store: Path | None = None,
-    on_progress: OnProgress | None = None,
+    on_progress: ShowCount | None = None,
 ) -> list[Result]:
     """Run systems over cases; the results do not depend on the number of workers.
 

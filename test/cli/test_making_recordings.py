@@ -7,7 +7,7 @@ import pytest
 from small_recordings import COUNT, box_of, frame_folder
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 
 SHORT = ["--set", "speed=40", "--set", "width=0"]

@@ -16,8 +16,8 @@ from small_recordings import COUNT, TARGET, frame_of, record, write_video
 import vehicle_pf_tracker.cli.run as run_verb
 from vehicle_pf_tracker.cli import many_sources
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.following import cluster
 from vehicle_pf_tracker.recordings.source import open_source
+from vehicle_pf_tracker.workers import cluster
 
 OPENCV = ("--set", "kernels=opencv")
 PF = ("--variant", "pf", "--set", "num_particles=40", "--target", TARGET, *OPENCV)

@@ -21,9 +21,9 @@ import vehicle_pf_tracker.cli.run as run_verb
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.recordings.bags.messages import IMAGE_ANNOTATIONS, deserialize
+from vehicle_pf_tracker.recordings.bags.reader import Recording, StampedFrame
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
-from vehicle_pf_tracker.recordings.messages import IMAGE_ANNOTATIONS, deserialize
-from vehicle_pf_tracker.recordings.reader import Recording, StampedFrame
 from vehicle_pf_tracker.results.estimates import read_estimates
 from vehicle_pf_tracker.showing import pictures
 from vehicle_pf_tracker.showing.video_file import video_writer

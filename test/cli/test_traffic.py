@@ -25,7 +25,7 @@ from vehicle_pf_tracker import read_zones
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.following import counted_vehicles
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
 COUNT = 20

@@ -16,7 +16,7 @@ from vehicle_pf_tracker.evaluation.grid.sources import describe
 from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.results.output_files import write_json
 from vehicle_pf_tracker.trackers.registry import find_variant
 

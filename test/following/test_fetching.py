@@ -17,9 +17,9 @@ import pytest
 pytest.importorskip("pooch", reason="the extra [video] is not installed")
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.following import fetching
-from vehicle_pf_tracker.following.model_files import cached, model_file
-from vehicle_pf_tracker.following.opened_network import open_network
+from vehicle_pf_tracker.following.networks import fetching
+from vehicle_pf_tracker.following.networks.model_files import cached, model_file
+from vehicle_pf_tracker.following.networks.opened_network import open_network
 
 CONTENT = bytes(range(8, 256)) * 4000
 SUM = hashlib.sha256(CONTENT).hexdigest()
@@ -171,7 +171,7 @@ def test_an_empty_file_is_not_kept(server, tmp_path):
 
 def test_what_a_killed_process_left_is_gone_on_with_or_removed(server, tmp_path):
     server.breaks_off, server.waits = [400_000], threading.Event()
-    code = "import sys; from vehicle_pf_tracker.following.model_files import model_file; "
+    code = "import sys; from vehicle_pf_tracker.following.networks.model_files import model_file; "
     code += "model_file(sys.argv[1])"
     process = subprocess.Popen([sys.executable, "-c", code, server.url])
     until = time.monotonic() + 60

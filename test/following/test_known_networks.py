@@ -12,9 +12,9 @@ import pytest
 pytest.importorskip("pooch", reason="the extra [video] is not installed")
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.following import known_networks, model_files
-from vehicle_pf_tracker.following.known_networks import KNOWN_NETWORKS, KnownNetwork
-from vehicle_pf_tracker.following.model_files import cached, is_fetched, model_file
+from vehicle_pf_tracker.following.networks import known_networks, model_files
+from vehicle_pf_tracker.following.networks.known_networks import KNOWN_NETWORKS, KnownNetwork
+from vehicle_pf_tracker.following.networks.model_files import cached, is_fetched, model_file
 
 
 @pytest.fixture(autouse=True)

@@ -13,9 +13,9 @@ import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.parameters import DetectorParameters
-from vehicle_pf_tracker.following import fetching
 from vehicle_pf_tracker.following.detectors import detector_maker
-from vehicle_pf_tracker.following.model_files import model_file
+from vehicle_pf_tracker.following.networks import fetching
+from vehicle_pf_tracker.following.networks.model_files import model_file
 
 CONTENT = bytes(range(256)) * 1000
 SUM = hashlib.sha256(CONTENT).hexdigest()

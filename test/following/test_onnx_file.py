@@ -177,7 +177,7 @@ def test_onnx_runtime_neither_keeps_an_identity_nor_reports(tmp_path):
     pytest.importorskip("onnxruntime")
     home, network = tmp_path / "home", networks.yolov8(tmp_path / "net.onnx")
     home.mkdir()
-    module = "vehicle_pf_tracker.following.opened_network"
+    module = "vehicle_pf_tracker.following.networks.opened_network"
     code = f"from {module} import open_network; open_network({str(network)!r})"
     left_out = {"ORT_DISABLE_TELEMETRY", "XDG_CACHE_HOME"}
     environment = {name: one for name, one in os.environ.items() if name not in left_out}

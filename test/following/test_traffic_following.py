@@ -16,7 +16,7 @@ from vehicle_pf_tracker.counting.counter import Counter
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.following.traffic_following import TrafficRun
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
-from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
 from vehicle_pf_tracker.results.traffic_results import TrackFiles
 from vehicle_pf_tracker.trackers.attempts import TrackerError
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession

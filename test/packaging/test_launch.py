@@ -23,7 +23,7 @@ from launch_ros.utilities import evaluate_parameters
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import Configuration
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.ros.transport import PROFILE_VARIABLES
 from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT, plug_ins
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from vehicle_pf_tracker.recordings.messages import IMAGE_ANNOTATIONS, message_class
+from vehicle_pf_tracker.recordings.bags.messages import IMAGE_ANNOTATIONS, message_class
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 VIEWERS = Path(__file__).parents[2] / "viewers"

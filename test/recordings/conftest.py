@@ -7,7 +7,7 @@ import pytest
 from mcap.writer import CompressionType
 from recording_samples import BareMcap, frame_of, stamp_of, truth_of
 
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 
 
 @pytest.fixture

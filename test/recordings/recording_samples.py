@@ -10,8 +10,8 @@ from mcap.writer import CompressionType, Writer
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.messages import definition, serialize
+from vehicle_pf_tracker.recordings.bags import messages
+from vehicle_pf_tracker.recordings.bags.messages import definition, serialize
 
 PERIOD_NS = 40_000_000
 

@@ -13,9 +13,9 @@ from mcap.writer import CompressionType, IndexType
 from recording_samples import BareMcap, frame_of, stamp_of, truth_of
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.mcap_index import MAGIC, read_index
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.bags import messages
+from vehicle_pf_tracker.recordings.bags.mcap_index import MAGIC, read_index
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 
 COUNT = 12
 ZEROS = zstandard.ZstdCompressor().compress(bytes(250 * 10**6))

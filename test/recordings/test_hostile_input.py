@@ -13,9 +13,9 @@ import yaml
 from recording_samples import frame_of, stamp_of, truth_of
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.recordings.bags.reader import Recording
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.recordings.importing import import_recording
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 NESTED = "[" * 100_000
 BOMB = "a: &a [x,x,x,x,x,x,x,x,x]\n" + "".join(

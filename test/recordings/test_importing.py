@@ -18,9 +18,9 @@ from small_recordings import write_video
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.recordings import messages
+from vehicle_pf_tracker.recordings.bags import messages
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.importing import import_recording
-from vehicle_pf_tracker.recordings.reader import Recording
 
 HEADER = "frame,x,y,w,h,visible,occ\n"
 

@@ -18,9 +18,9 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 from rosbags.typesys import Stores, get_typestore
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings import mcap_blocks, messages
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags import mcap_blocks, messages
+from vehicle_pf_tracker.recordings.bags.reader import Recording
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 
 
 def stamps(recording, **span):

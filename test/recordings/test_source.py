@@ -15,8 +15,8 @@ import pytest
 from small_recordings import write_video
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.importing import import_recording
-from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.source import open_source
 from vehicle_pf_tracker.recordings.video import VideoFile
 

@@ -12,8 +12,8 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.bags import messages, truth_messages
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.source import open_source
 
 COUNT = 12
@@ -23,14 +23,17 @@ COUNT = 12
 def bag(tmp_path):
     """Write images and truth as rosbag2 does in SQLite; return the folder."""
     store = get_typestore(Stores.ROS2_JAZZY)
-    topics = {messages.IMAGE_TOPIC: messages.IMAGE, **messages.TRUTH_TYPES}
+    topics = {messages.IMAGE_TOPIC: messages.IMAGE, **truth_messages.TRUTH_TYPES}
     writer = Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.SQLITE3)
     with writer:
         opened = {name: writer.add_connection(name, kind, typestore=store)
                   for name, kind in topics.items()}  # fmt: skip
         for index in range(COUNT):
             image = messages.image(stamp_of(index), frame_of(index))
-            parts = {messages.IMAGE_TOPIC: image, **messages.truth_to_messages(truth_of(index))}
+            parts = {
+                messages.IMAGE_TOPIC: image,
+                **truth_messages.truth_to_messages(truth_of(index)),
+            }
             for name, message in parts.items():
                 data = bytes(messages.serialize(message, topics[name]))
                 writer.write(opened[name], stamp_of(index), data)

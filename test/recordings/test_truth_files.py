@@ -13,8 +13,8 @@ from small_recordings import box_of, frame_of, write_video
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
-from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.source import open_source
 
 NONE, PARTIAL, TOTAL = Occlusion

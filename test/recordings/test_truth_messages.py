@@ -13,14 +13,17 @@ from recording_samples import frame_of, stamp_of, truth_of
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.messages import (
+from vehicle_pf_tracker.recordings.bags import messages
+from vehicle_pf_tracker.recordings.bags.reader import Recording
+from vehicle_pf_tracker.recordings.bags.truth_messages import (
+    TRUTH_BOX_TOPIC,
+    TRUTH_MODE_TOPIC,
+    TRUTH_POSITION_TOPIC,
     TRUTH_TYPES,
     truth_from_messages,
     truth_to_messages,
 )
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 
 px = st.floats(-5000, 5000)
 size = st.floats(0.5, 5000)
@@ -45,15 +48,13 @@ def test_truth_survives_its_messages(stamp, corner, extent, occlusion, visible):
 
 def test_the_box_alone_is_truth_without_occlusion():
     box = messages.polygon_stamped(5, Box(1, 2, 3, 4).corners)
-    (found,) = truth_from_messages([(messages.TRUTH_BOX_TOPIC, box)])
+    (found,) = truth_from_messages([(TRUTH_BOX_TOPIC, box)])
     assert found == Truth(5, Box(1, 2, 3, 4), Occlusion.NONE, None)
 
 
 def test_level_warns_only_while_totally_occluded():
     levels = [
-        truth_to_messages(Truth(0, Box(0, 0, 1, 1), occlusion))[messages.TRUTH_MODE_TOPIC]
-        .status[0]
-        .level
+        truth_to_messages(Truth(0, Box(0, 0, 1, 1), occlusion))[TRUTH_MODE_TOPIC].status[0].level
         for occlusion in Occlusion
     ]
     assert levels == [messages.OK, messages.OK, messages.WARN]
@@ -65,7 +66,7 @@ def replaced(topic, message):
 
 def without_box():
     found = truth_to_messages(truth_of(1))
-    del found[messages.TRUTH_BOX_TOPIC]
+    del found[TRUTH_BOX_TOPIC]
     return found
 
 
@@ -76,24 +77,25 @@ STAMP = stamp_of(1)
     ("broken", "said"),
     [
         (without_box(), "has no box"),
-        (replaced(messages.TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [])), "not a polygon"),
         (
-            replaced(
-                messages.TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [(math.nan, 0)] * 4)
-            ),
+            replaced(TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [])),
+            "not a polygon",
+        ),
+        (
+            replaced(TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [(math.nan, 0)] * 4)),
             "not a polygon of corners within",
         ),
         (
-            replaced(messages.TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [(5, 5)] * 4)),
+            replaced(TRUTH_BOX_TOPIC, messages.polygon_stamped(STAMP, [(5, 5)] * 4)),
             "no area",
         ),
         (
-            replaced(messages.TRUTH_POSITION_TOPIC, messages.point_stamped(STAMP, math.nan, 0)),
+            replaced(TRUTH_POSITION_TOPIC, messages.point_stamped(STAMP, math.nan, 0)),
             "position .* not within",
         ),
         (
             replaced(
-                messages.TRUTH_MODE_TOPIC,
+                TRUTH_MODE_TOPIC,
                 messages.diagnostic_array(STAMP, "t", 0, "", {"occlusion": "a bit"}),
             ),
             "none, partial or total",
@@ -126,7 +128,7 @@ def test_the_first_truth_waits_for_topics_that_are_recorded_later(bare_mcap):
 def test_truth_topics_without_messages_are_empty_truth(bare_mcap):
     bag = bare_mcap()
     bag.image(bag.channel(messages.IMAGE_TOPIC, messages.IMAGE), 0)
-    bag.channel(messages.TRUTH_BOX_TOPIC, messages.POLYGON_STAMPED)
+    bag.channel(TRUTH_BOX_TOPIC, messages.POLYGON_STAMPED)
     with pytest.raises(InputError, match=r"truth topics .* are empty"):
         Recording(bag.close()).truth()
 
@@ -135,7 +137,7 @@ def test_truth_of_another_type_is_refused(bare_mcap):
     bag = bare_mcap()
     bag.image(bag.channel(messages.IMAGE_TOPIC, messages.IMAGE), 0)
     point = messages.point_stamped(1, 2, 3)
-    box = bag.channel(messages.TRUTH_BOX_TOPIC, messages.POINT_STAMPED)
+    box = bag.channel(TRUTH_BOX_TOPIC, messages.POINT_STAMPED)
     bag.add(box, 1, point, messages.POINT_STAMPED)
     recording = Recording(bag.close())
     with pytest.raises(InputError, match="carries geometry_msgs/msg/PointStamped, not"):

@@ -12,10 +12,10 @@ import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.sources import find_recordings
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.bags.reader import Recording
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.recordings.recording_names import is_url
 from vehicle_pf_tracker.recordings.url_copies import local_copy, recordings_at
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 fsspec = pytest.importorskip("fsspec")
 FRAME = np.full((24, 32, 3), 90, np.uint8)

@@ -15,10 +15,10 @@ from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings import writer as writing
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags import messages, truth_messages
+from vehicle_pf_tracker.recordings.bags import writer as writing
+from vehicle_pf_tracker.recordings.bags.reader import Recording
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 
 
 def only_mcap(folder):
@@ -33,7 +33,7 @@ def information(folder):
 def test_messages_of_a_topic_are_numbered(record):
     with only_mcap(record(4)).open("rb") as stream:
         found = [(c.topic, m.sequence) for _, c, m in make_reader(stream).iter_messages()]
-    for topic in (messages.IMAGE_TOPIC, *messages.TRUTH_TOPICS):
+    for topic in (messages.IMAGE_TOPIC, *truth_messages.TRUTH_TOPICS):
         assert [number for name, number in found if name == topic] == [0, 1, 2, 3]
 
 
@@ -44,7 +44,7 @@ def test_other_readers_find_every_message(record, compression):
         assert sum(1 for _ in reader.messages()) == 28
     with AnyReader([folder]) as reader:
         assert {c.topic: c.msgcount for c in reader.connections} == dict.fromkeys(
-            [messages.IMAGE_TOPIC, *messages.TRUTH_TOPICS], 7
+            [messages.IMAGE_TOPIC, *truth_messages.TRUTH_TOPICS], 7
         )
         connection, _, data = next(reader.messages())
         image = reader.deserialize(data, connection.msgtype)

@@ -19,8 +19,8 @@ from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.reader import Recording
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 
 PERIOD_NS = 40_000_000
 BEGIN_NS = 5_000_000_000

@@ -4,9 +4,9 @@
 import pytest
 from drive import drive, truth_of
 
-from vehicle_pf_tracker.recordings.messages import deserialize
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.messages import deserialize
+from vehicle_pf_tracker.recordings.bags.reader import Recording
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.showing.estimates_recording import run_recording
 

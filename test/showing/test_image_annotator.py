@@ -5,7 +5,7 @@
 
 import pytest
 
-from vehicle_pf_tracker.recordings.messages import (
+from vehicle_pf_tracker.recordings.bags.messages import (
     IMAGE_ANNOTATIONS,
     definition,
     deserialize,

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 
 pytestmark = pytest.mark.slow  # the copy compiles its kernels
 

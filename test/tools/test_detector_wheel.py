@@ -30,7 +30,7 @@ def test_a_wheel_brings_the_file_to_its_name(tmp_path):
     assert "vehicle_pf_detector/yolox_nano.onnx" in names
     assert any(name.endswith("LICENSE") for name in names)
     assert "Megvii" in notice and verdict in notice
-    code = "from vehicle_pf_tracker.following.model_files import model_file; "
+    code = "from vehicle_pf_tracker.following.networks.model_files import model_file; "
     code += "print(model_file('yolox-nano')[0])"
     path = os.pathsep.join([str(ROOT), str(tmp_path / "site")])
     found = subprocess.run(

@@ -9,12 +9,9 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, TypeAlias
 
 from vehicle_pf_tracker.core.addresses import without_passwords
-
-if TYPE_CHECKING:
-    from vehicle_pf_tracker.following.processes import OnProgress
+from vehicle_pf_tracker.core.progress import ShowCount, ShowShare
 
 PROGRAM_NAME = "vehicle-pf-tracker"
 """Name of the program, as it is typed."""
@@ -73,12 +70,8 @@ def print_rows(headings: Iterable[str], rows: Iterable[Iterable[str]], title: st
     console.print(table)
 
 
-Show: TypeAlias = Callable[[str, float | None], None]
-"""Function of words about work under way, and of its share done (0 to 1), None if unknown."""
-
-
 @contextmanager
-def shown_progress() -> Iterator[Show]:
+def shown_progress() -> Iterator[ShowShare]:
     """Return a function that shows progress: as a bar on a terminal, as plain lines elsewhere."""
     if not sys.stderr.isatty():
         next_line = time.monotonic() + _FIRST_SECONDS
@@ -107,7 +100,7 @@ def shown_progress() -> Iterator[Show]:
 
 
 @contextmanager
-def counting(verb: str, noun: str = "frames") -> Iterator[OnProgress]:
+def counting(verb: str, noun: str = "frames") -> Iterator[ShowCount]:
     """Return a function that shows how many frames or runs are done; `verb` is a participle."""
     with shown_progress() as show:
 

@@ -35,8 +35,6 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed, output_errors, whole_folder
 from vehicle_pf_tracker.evaluation.cache_key import result_key, variant_modules
 from vehicle_pf_tracker.evaluation.evaluation_folder import read_document
-from vehicle_pf_tracker.following.cluster import fingerprint, run_on_cluster
-from vehicle_pf_tracker.following.processes import run_in_processes
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.recordings.recording_names import is_url
 from vehicle_pf_tracker.recordings.url_copies import fetched
@@ -44,6 +42,8 @@ from vehicle_pf_tracker.results.output_files import make_folder, write_csv, writ
 from vehicle_pf_tracker.results.run_folder import RUN_FILE
 from vehicle_pf_tracker.results.source_table import SOURCE_FILE, SourceTable, read_table
 from vehicle_pf_tracker.trackers.registry import Variant
+from vehicle_pf_tracker.workers.cluster import fingerprint, run_on_cluster
+from vehicle_pf_tracker.workers.processes import run_in_processes
 
 _TABLE = "sources.csv"
 """File of the table over all sources."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.parameters import MOTION_DETECTOR
 from vehicle_pf_tracker.evaluation.evaluation_folder import read_document
-from vehicle_pf_tracker.following.known_networks import KNOWN_NETWORKS
+from vehicle_pf_tracker.following.networks.known_networks import KNOWN_NETWORKS
 from vehicle_pf_tracker.results.run_folder import RUN_FILE
 from vehicle_pf_tracker.trackers.traffic.session import DetectionTotals
 

@@ -26,7 +26,7 @@ from vehicle_pf_tracker.cli.target_options import parse_box
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.results.estimates import write_estimates
 from vehicle_pf_tracker.results.output_files import make_folder
 

@@ -221,7 +221,7 @@ class SourceOptions(TopicOption):
     def open_source(self) -> ImageSource:
         """Open the source; the truth beside its images is not read."""
         from vehicle_pf_tracker.recordings.source import open_source
-        from vehicle_pf_tracker.recordings.truth_files import Beside
+        from vehicle_pf_tracker.recordings.truth.files import Beside
 
         return open_source(self.source, topic=self.topic, fps=self.fps, beside=Beside.IGNORED)
 

@@ -33,7 +33,7 @@ from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.following.driver import OfflineTracker, follow
 from vehicle_pf_tracker.recordings.source import ImageSource, open_source
-from vehicle_pf_tracker.recordings.truth_files import Beside
+from vehicle_pf_tracker.recordings.truth.files import Beside
 from vehicle_pf_tracker.results.estimates import EstimateRow, summary, write_tracks
 from vehicle_pf_tracker.results.output_files import write_json
 from vehicle_pf_tracker.results.run_folder import (

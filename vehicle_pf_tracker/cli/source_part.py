@@ -17,8 +17,8 @@ from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop
 from vehicle_pf_tracker.core.errors import InputError
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.following.processes import OnProgress
-    from vehicle_pf_tracker.recordings.reader import StampedFrame
+    from vehicle_pf_tracker.core.progress import ShowCount
+    from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
     from vehicle_pf_tracker.recordings.source import ImageSource
     from vehicle_pf_tracker.showing.pictures import Numbered
 
@@ -63,7 +63,7 @@ class Moment:
 
 
 def numbered_part(
-    source: ImageSource, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
+    source: ImageSource, start: Moment | None, end: Moment | None, stop: Stop, progress: ShowCount
 ) -> tuple[tuple[int, StampedFrame], Numbered]:
     """Return the first frame from `start` on, and all to `end`, with their numbers in the source.
 
@@ -82,7 +82,7 @@ def numbered_part(
 
 
 def _numbered(
-    source: ImageSource, start: Moment | None, end: Moment | None, stop: Stop, progress: OnProgress
+    source: ImageSource, start: Moment | None, end: Moment | None, stop: Stop, progress: ShowCount
 ) -> Iterator[tuple[int, StampedFrame]]:
     """Yield the frames of the part with their numbers in the source."""
     first_ns: int | None = None

@@ -14,7 +14,7 @@ from vehicle_pf_tracker.cli.requests import NameChoices, OverwriteOption, option
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.parameters.table import specs
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.results.output_files import write_csv
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 from vehicle_pf_tracker.scenes.scene import Scene

@@ -34,8 +34,8 @@ from vehicle_pf_tracker.detection.parameters import (
 )
 from vehicle_pf_tracker.following.counted_vehicles import session_and_counter
 from vehicle_pf_tracker.following.detection_file import DetectionFile
-from vehicle_pf_tracker.following.known_networks import KNOWN_NETWORKS
-from vehicle_pf_tracker.following.model_files import model_file
+from vehicle_pf_tracker.following.networks.known_networks import KNOWN_NETWORKS
+from vehicle_pf_tracker.following.networks.model_files import model_file
 from vehicle_pf_tracker.following.paced_detector import call
 from vehicle_pf_tracker.following.traffic_following import TrafficRun
 from vehicle_pf_tracker.parameters.configuration import Configuration

@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.following.processes import wait_or_kill
+from vehicle_pf_tracker.workers.processes import wait_or_kill
 
 BASELINES_VARIABLE = "VEHICLE_PF_TRACKER_BASELINES"
 """Environment variable that names the interpreter."""

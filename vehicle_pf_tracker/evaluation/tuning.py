@@ -31,6 +31,7 @@ from optuna.trial import FrozenTrial, TrialState
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.progress import ShowCount
 from vehicle_pf_tracker.evaluation.cache_key import result_key
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import GridCell
@@ -39,7 +40,6 @@ from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means, summarise
 from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.evaluation.tuning_aims import OBJECTIVES, default_search
-from vehicle_pf_tracker.following.processes import OnProgress
 from vehicle_pf_tracker.parameters.table import ParameterSpec, Value, specs, unknown_name
 from vehicle_pf_tracker.trackers.registry import Variant
 
@@ -205,7 +205,7 @@ def open_study(what: SearchTask, journal: Path) -> optuna.Study:
 
 
 def search(
-    what: SearchTask, count: int, study: optuna.Study, runner: Runner, on_progress: OnProgress
+    what: SearchTask, count: int, study: optuna.Study, runner: Runner, on_progress: ShowCount
 ) -> list[FrozenTrial]:
     """Make trials until there are `count`, and return them in order.
 

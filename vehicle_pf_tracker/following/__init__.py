@@ -3,7 +3,11 @@
 
 """Following vehicles through a source without ROS.
 
-`driver` follows given targets, `traffic_following` all vehicles; `library` and `traffic_library`
-are the interfaces for Python programs. The other modules load networks, and share work among
-processes and machines. It may import every room but `ros`, `evaluation` and `cli`, which are above.
+- one vehicle: `offline_tracker` follows it frame by frame, `target_following` several through one
+  source, `library` for Python programs
+- all vehicles: `counted_vehicles` follows and counts image by image, `traffic_following` through a
+  source, `traffic_library` for Python programs
+- `live_facts`: the numbers of both for a page
+- detections: `detectors` makes the detector that parameters ask for, `paced_detector` lets it look
+  at every k-th image, `networks/` loads its network; `detection_file` reads them from a file
 """

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.progress import ShowShare, silent
 from vehicle_pf_tracker.counting.counter import COUNTED_MODES, Counter
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.counting.vehicle_class import VehicleClasses
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import Detector
 from vehicle_pf_tracker.following.detectors import detector_maker
-from vehicle_pf_tracker.following.fetching import Progress, silent
 from vehicle_pf_tracker.following.live_facts import RecentCrossings, traffic_facts
 from vehicle_pf_tracker.following.paced_detector import PacedDetector, Run, call
 from vehicle_pf_tracker.image.compressed_image import CodedImage
@@ -164,7 +164,7 @@ class _PacedMaker:
 
 
 def session_and_counter(
-    configuration: Configuration, run: Run = call, progress: Progress = silent
+    configuration: Configuration, run: Run = call, progress: ShowShare = silent
 ) -> tuple[TrafficSession, Counter]:
     """Make the session and the counter that parameters of `TRAFFIC` ask for.
 
@@ -174,7 +174,7 @@ def session_and_counter(
         The parameters.
     run : callable
         Calls the network.
-    progress : Progress
+    progress : ShowShare
         Shows how a network is fetched.
 
     Raises

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from vehicle_pf_tracker.core.progress import ShowShare, silent
 from vehicle_pf_tracker.detection.detector import Detector
 from vehicle_pf_tracker.detection.motion_detector import MotionDetector
 from vehicle_pf_tracker.detection.network_detector import NetworkDetector
@@ -16,8 +17,7 @@ from vehicle_pf_tracker.detection.parameters import (
     MOTION_DETECTOR,
     DetectorParameters,
 )
-from vehicle_pf_tracker.following.fetching import Progress, silent
-from vehicle_pf_tracker.following.opened_network import open_network
+from vehicle_pf_tracker.following.networks.opened_network import open_network
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class _Same:
 
 
 def detector_maker(
-    parameters: DetectorParameters, progress: Progress = silent
+    parameters: DetectorParameters, progress: ShowShare = silent
 ) -> Callable[[], Detector] | None:
     """Return a function that makes the detector; None where there shall be none.
 

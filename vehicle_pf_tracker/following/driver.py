@@ -22,7 +22,7 @@ from vehicle_pf_tracker.following.live_facts import target_facts
 from vehicle_pf_tracker.image.stillness import Stillness
 from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
-from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
 from vehicle_pf_tracker.results.estimates import (
     REJECTED_MODE,
     WAITING_MODE,

@@ -20,7 +20,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.following.driver import OfflineTracker
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.recordings.source import frame_at, open_source
-from vehicle_pf_tracker.recordings.truth_files import Beside
+from vehicle_pf_tracker.recordings.truth.files import Beside
 from vehicle_pf_tracker.results.estimates import (
     EstimateRow,
     start_of_clock,

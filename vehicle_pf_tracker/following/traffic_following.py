@@ -19,7 +19,7 @@ from vehicle_pf_tracker.detection.parameters import MODEL_DETECTOR, MOTION_DETEC
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles
 from vehicle_pf_tracker.following.detection_file import DetectionFile
 from vehicle_pf_tracker.following.driver import unreached
-from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
 from vehicle_pf_tracker.results.estimates import clock_words, start_of_clock
 from vehicle_pf_tracker.results.traffic_results import TrackFiles
 from vehicle_pf_tracker.results.traffic_summary import TrafficSummary

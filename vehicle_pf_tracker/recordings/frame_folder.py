@@ -28,8 +28,8 @@ from vehicle_pf_tracker.recordings.footage import (
     stamp_of,
 )
 from vehicle_pf_tracker.recordings.image_names import NamedImages, natural_key, number_images
-from vehicle_pf_tracker.recordings.truth_files import Beside, read_truth, truth_beside
-from vehicle_pf_tracker.recordings.truth_labels import Images
+from vehicle_pf_tracker.recordings.truth.files import Beside, read_truth, truth_beside
+from vehicle_pf_tracker.recordings.truth.labels import Images
 
 IMAGE_FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
 """The image files that are read, and what a CompressedImage calls them."""

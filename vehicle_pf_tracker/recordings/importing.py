@@ -11,10 +11,10 @@ from pathlib import Path
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.image.compressed_image import jpeg
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.recordings.footage import Footage, Picture
+from vehicle_pf_tracker.recordings.opened_footage import open_footage
 from vehicle_pf_tracker.recordings.recording_names import is_recording
-from vehicle_pf_tracker.recordings.video import open_footage
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
 
 IMPORT_FORMATS = ("compressed", "raw")
 

@@ -10,14 +10,8 @@ from collections.abc import Iterator
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.recordings.decoders import (
-    OpenCVDecoder,
-    quiet_opencv,
-)
-from vehicle_pf_tracker.recordings.footage import (
-    Footage,
-    Picture,
-)
+from vehicle_pf_tracker.recordings.decoders import OpenCVDecoder, quiet_opencv
+from vehicle_pf_tracker.recordings.footage import Footage, Picture
 
 
 class LiveCamera(Footage):

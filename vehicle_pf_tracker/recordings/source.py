@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Images from any source: recordings, videos, folders, cameras, streams."""
+"""Opening of sources of images by their names: recordings, videos, folders, cameras, streams."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from typing import TypeAlias
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.footage import Footage
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.opened_footage import open_footage
 from vehicle_pf_tracker.recordings.recording_names import is_recording
-from vehicle_pf_tracker.recordings.truth_files import Beside
-from vehicle_pf_tracker.recordings.video import open_footage
+from vehicle_pf_tracker.recordings.truth.files import Beside
 
 ImageSource: TypeAlias = Recording | Footage
 """A stream of stamped images, with truth where it is known."""

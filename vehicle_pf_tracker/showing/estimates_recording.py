@@ -15,9 +15,9 @@ import numpy as np
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import jpeg
-from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.reader import StampedFrame
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags import messages
+from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.showing import drawing
 from vehicle_pf_tracker.trackers.estimate import Mode

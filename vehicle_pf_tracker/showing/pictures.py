@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.recordings.reader import StampedFrame
+from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
 from vehicle_pf_tracker.showing.contact_sheet import ContactSheet
 from vehicle_pf_tracker.showing.side_products import SideProducts
 from vehicle_pf_tracker.showing.video_file import (

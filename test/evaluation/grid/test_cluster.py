@@ -14,8 +14,8 @@ from evaluation_samples import here, make_plan, results, silent, system, write_r
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_cluster, run_cell
-from vehicle_pf_tracker.following import cluster
-from vehicle_pf_tracker.following.cluster import fingerprint, run_on_cluster
+from vehicle_pf_tracker.workers import cluster
+from vehicle_pf_tracker.workers.cluster import fingerprint, run_on_cluster
 
 
 @pytest.fixture

@@ -28,8 +28,8 @@ from vehicle_pf_tracker.evaluation.grid import running, sources
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_this_machine
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
 from vehicle_pf_tracker.evaluation.systems import System
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.reader import Recording
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 
 
 @pytest.fixture(scope="module")

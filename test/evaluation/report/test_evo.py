@@ -12,7 +12,7 @@ from rosbags.rosbag2 import Reader
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.showing.estimates_recording import run_recording
 
 

@@ -33,8 +33,8 @@ from traffic_rig import WARM_UP, TrafficRig, boxes, lanes
 
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.reader import Recording
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.results.estimates import read_estimates
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder

@@ -15,7 +15,7 @@ from plug_in_sample import install
 from small_recordings import record
 
 from vehicle_pf_tracker import track
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 from vehicle_pf_tracker.ros.replay.replaying import replay
 from vehicle_pf_tracker.trackers.registry import plug_ins

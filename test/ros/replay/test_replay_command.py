@@ -17,8 +17,8 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.following.driver import OfflineTracker
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.reader import Recording
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.results.estimates import read_estimates
 from vehicle_pf_tracker.trackers.registry import find_variant
 

@@ -28,7 +28,7 @@ from traffic_rig import NODE, WARM_UP, TrafficRig, boxes, hear_notices, lanes
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.ros import messages as ros_messages
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 from vehicle_pf_tracker.ros.traffic import traffic_node

@@ -21,7 +21,7 @@ from tracker_rig import FIRST_NS, PERIOD_NS
 from traffic_rig import NODE, WARM_UP, boxes, lanes
 
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.recordings.writer import RecordingWriter
+from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.results.estimates import read_estimates
 from vehicle_pf_tracker.ros.messages import stamp_ns
 

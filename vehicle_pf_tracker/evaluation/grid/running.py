@@ -16,6 +16,7 @@ from typing import Any, TypeAlias
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors, whole_folder
+from vehicle_pf_tracker.core.progress import ShowCount
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.baselines import Baseline, baseline_rows
 from vehicle_pf_tracker.evaluation.evaluation_folder import (
@@ -30,9 +31,7 @@ from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.restarts import measure_restarts, with_restarts
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.systems import BASELINE_PREFIX, System
-from vehicle_pf_tracker.following.cluster import run_on_cluster
 from vehicle_pf_tracker.following.driver import OfflineTracker
-from vehicle_pf_tracker.following.processes import OnProgress, run_in_processes
 from vehicle_pf_tracker.results import run_folder
 from vehicle_pf_tracker.results.estimates import (
     REJECTED_MODE,
@@ -42,6 +41,8 @@ from vehicle_pf_tracker.results.estimates import (
 )
 from vehicle_pf_tracker.results.output_files import flush, make_folder, write_json
 from vehicle_pf_tracker.trackers.registry import find_variant
+from vehicle_pf_tracker.workers.cluster import run_on_cluster
+from vehicle_pf_tracker.workers.processes import run_in_processes
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +182,7 @@ def _key_on_cluster(cell: GridCell) -> str:
     return f"{cell.source.name}-{cell.system.label}-{cell.seed}-{cell.key()}".replace(" ", "-")
 
 
-def complete(plan: Plan, folder: Path, runner: Runner, on_progress: OnProgress) -> int:
+def complete(plan: Plan, folder: Path, runner: Runner, on_progress: ShowCount) -> int:
     """Run the cells of `plan` that `folder` does not have, and return how many those were.
 
     Parameters

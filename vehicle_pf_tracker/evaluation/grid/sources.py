@@ -15,10 +15,10 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source, safe_name
-from vehicle_pf_tracker.recordings.bag_folder import recording_files
+from vehicle_pf_tracker.recordings.bags.bag_folder import recording_files
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.footage import Footage
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder, image_files
-from vehicle_pf_tracker.recordings.reader import Recording
 from vehicle_pf_tracker.recordings.recording_names import is_recording, is_url
 from vehicle_pf_tracker.recordings.source import open_source
 from vehicle_pf_tracker.recordings.url_copies import local_copy, recordings_at

@@ -93,7 +93,7 @@ class IncidentRecorder:
         if self._writing is not None and self._writing.is_alive():
             raise InputError("the seconds before are still being written")
         try:  # the one thing of a node that needs more than a robot has from apt
-            writer = import_module("vehicle_pf_tracker.recordings.writer").RecordingWriter
+            writer = import_module("vehicle_pf_tracker.recordings.bags.writer").RecordingWriter
         except ModuleNotFoundError as error:
             raise InputError(f"writing a recording needs {error.name} (pip)") from None
         with output_errors(ros_folder()):

@@ -14,7 +14,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.messages import DIAGNOSTIC_ARRAY, IMAGE_TYPES
+from vehicle_pf_tracker.recordings.bags.messages import DIAGNOSTIC_ARRAY, IMAGE_TYPES
 
 _SLICE = 0.05
 """Longest uninterrupted wait in s: changes of the graph and signals wake no executor."""

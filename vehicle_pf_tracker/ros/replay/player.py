@@ -12,7 +12,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
+from vehicle_pf_tracker.recordings.bags.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Spinner
 from vehicle_pf_tracker.ros.replay.pace import PlaybackClock, ReplayPace
 from vehicle_pf_tracker.ros.replay.pausing import offer_pausing

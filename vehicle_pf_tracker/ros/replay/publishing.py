@@ -18,9 +18,9 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
-from vehicle_pf_tracker.recordings.messages import COMPRESSED_IMAGE
-from vehicle_pf_tracker.recordings.reader import Recording
-from vehicle_pf_tracker.recordings.topic_table import TopicInfo
+from vehicle_pf_tracker.recordings.bags.messages import COMPRESSED_IMAGE
+from vehicle_pf_tracker.recordings.bags.reader import Recording
+from vehicle_pf_tracker.recordings.bags.topic_table import TopicInfo
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, recorded_qos
 

@@ -16,8 +16,8 @@ from rclpy.signals import SignalHandlerOptions
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.signals import ending_signals, handled
-from vehicle_pf_tracker.recordings.messages import COMPRESSED_IMAGE
-from vehicle_pf_tracker.recordings.reader import Recording
+from vehicle_pf_tracker.recordings.bags.messages import COMPRESSED_IMAGE
+from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.ros.replay.discovery import Spinner
 from vehicle_pf_tracker.ros.replay.pausing import keys_at_once
 from vehicle_pf_tracker.ros.replay.player import Player

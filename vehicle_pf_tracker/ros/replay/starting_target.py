@@ -11,7 +11,7 @@ from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S, is_nearest, max
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.following.driver import with_next
-from vehicle_pf_tracker.recordings.reader import RecordedMessage, Recording
+from vehicle_pf_tracker.recordings.bags.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 from vehicle_pf_tracker.ros.replay.tracker_link import TrackerLink
 

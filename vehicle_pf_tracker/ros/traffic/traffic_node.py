@@ -14,7 +14,7 @@ from std_msgs.msg import Int64
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.parameters import TOPIC_DETECTOR
-from vehicle_pf_tracker.following.model_files import is_fetched
+from vehicle_pf_tracker.following.networks.model_files import is_fetched
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.image_memory import return_memory
 from vehicle_pf_tracker.ros.messages import detections_type

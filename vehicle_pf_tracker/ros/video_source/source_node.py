@@ -21,8 +21,8 @@ from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.parameters.table import from_mapping, parameter, specs
 from vehicle_pf_tracker.recordings.footage import HIGHEST_FPS, Footage, StampedFrame
 from vehicle_pf_tracker.recordings.live_camera import LiveCamera
+from vehicle_pf_tracker.recordings.opened_footage import open_footage
 from vehicle_pf_tracker.recordings.recording_names import is_recording
-from vehicle_pf_tracker.recordings.video import open_footage
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.ros.node.parameters import describe, take_overrides
 from vehicle_pf_tracker.ros.video_source.outage import Outage

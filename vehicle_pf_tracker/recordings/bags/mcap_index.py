@@ -25,7 +25,7 @@ from mcap.records import Channel, Schema
 from mcap.summary import Summary
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.mcap_blocks import (
+from vehicle_pf_tracker.recordings.bags.mcap_blocks import (
     RECORD_HEAD,
     Block,
     DamageError,

@@ -13,8 +13,8 @@ from mcap.records import Channel
 from mcap.well_known import MessageEncoding
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.mcap_index import McapIndex
-from vehicle_pf_tracker.recordings.messages import IMAGE_TYPES
+from vehicle_pf_tracker.recordings.bags.mcap_index import McapIndex
+from vehicle_pf_tracker.recordings.bags.messages import IMAGE_TYPES
 
 
 @dataclass(frozen=True, slots=True)

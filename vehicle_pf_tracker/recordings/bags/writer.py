@@ -17,9 +17,9 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.outputs import BAG_INFORMATION, check_free, output_errors, whole_folder
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.bag_folder import RELIABLE_QOS, bag_information, to_yaml
-from vehicle_pf_tracker.recordings.messages import definition, serialize, type_hash
+from vehicle_pf_tracker.recordings.bags import messages, truth_messages
+from vehicle_pf_tracker.recordings.bags.bag_folder import RELIABLE_QOS, bag_information, to_yaml
+from vehicle_pf_tracker.recordings.bags.messages import definition, serialize, type_hash
 
 
 def _check_replaceable(target: Path, overwrite: bool) -> None:
@@ -124,8 +124,8 @@ class RecordingWriter:
 
     def write_truth(self, truth: Truth) -> None:
         """Write the truth of one frame, at the stamp of its image."""
-        for topic, message in messages.truth_to_messages(truth).items():
-            self.write(topic, messages.TRUTH_TYPES[topic], truth.stamp_ns, message)
+        for topic, message in truth_messages.truth_to_messages(truth).items():
+            self.write(topic, truth_messages.TRUTH_TYPES[topic], truth.stamp_ns, message)
 
     def write(self, topic: str, type_name: str, stamp_ns: int, message: Any) -> None:
         """Write any message of a type that `messages.message_class` knows.

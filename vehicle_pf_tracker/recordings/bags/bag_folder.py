@@ -16,7 +16,7 @@ from typing import Any
 import yaml
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.messages import type_hash
+from vehicle_pf_tracker.recordings.bags.messages import type_hash
 from vehicle_pf_tracker.recordings.recording_names import CONVERSION, MCAP_SUFFIX, SQLITE_SUFFIX
 
 VERSION = 9

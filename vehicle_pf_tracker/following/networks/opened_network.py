@@ -12,9 +12,9 @@ from typing import Any
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.progress import ShowShare, silent
 from vehicle_pf_tracker.detection.network import Network, Tensor
-from vehicle_pf_tracker.following.fetching import Progress, silent
-from vehicle_pf_tracker.following.model_files import discard, model_file
+from vehicle_pf_tracker.following.networks.model_files import discard, model_file
 
 
 class OpenedNetwork:
@@ -26,7 +26,7 @@ class OpenedNetwork:
     ----------
     model : str
         The file or URL.
-    progress : Progress
+    progress : ShowShare
         Shows how it is fetched.
 
     Raises
@@ -35,7 +35,7 @@ class OpenedNetwork:
         If ONNX Runtime is not installed, or the file cannot be used.
     """
 
-    def __init__(self, model: str, progress: Progress = silent) -> None:
+    def __init__(self, model: str, progress: ShowShare = silent) -> None:
         self._model = model
         self._session = _loaded(model, progress)
 
@@ -60,12 +60,12 @@ class OpenedNetwork:
         return self._session.run(names, inputs)
 
 
-def open_network(model: str, progress: Progress = silent) -> OpenedNetwork:
+def open_network(model: str, progress: ShowShare = silent) -> OpenedNetwork:
     """Load a network; see `OpenedNetwork`."""
     return OpenedNetwork(model, progress)
 
 
-def _loaded(model: str, progress: Progress) -> Network:
+def _loaded(model: str, progress: ShowShare) -> Network:
     """Load a network from its file, which is fetched before where it is not here."""
     os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")  # by default it reports to its makers
     try:

@@ -13,7 +13,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from typing import TypeAlias, TypeVar
+from typing import TypeVar
 
 import cv2
 
@@ -21,7 +21,6 @@ from vehicle_pf_tracker.core.errors import InputError
 
 TaskT = TypeVar("TaskT")
 ResultT = TypeVar("ResultT")
-
 
 PATIENCE = 10.0
 """Seconds that a child gets to end by itself: a node on a busy machine needs a few to clean up."""
@@ -149,7 +148,3 @@ def wait_or_kill(process: subprocess.Popen[bytes] | subprocess.Popen[str]) -> in
     except subprocess.TimeoutExpired:
         process.kill()
         return process.wait()
-
-
-OnProgress: TypeAlias = Callable[[int, int | None], None]
-"""Function of the number of runs or frames that are done, and of all, None if unknown."""

@@ -14,7 +14,7 @@ from pathlib import Path
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.recordings.text_tables import cells_of, number_of, numbers_in, table_rows
-from vehicle_pf_tracker.recordings.truth_labels import ABSENT_SIDES, Images, Label
+from vehicle_pf_tracker.recordings.truth.labels import ABSENT_SIDES, Images, Label
 
 _REQUIRED = ("frame", "x", "y", "w", "h")
 _PRESENCE: Mapping[float, Occlusion | None] = {1.0: None}

@@ -17,10 +17,10 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.recordings.box_sizes import misfit
-from vehicle_pf_tracker.recordings.data_set_truth import in_order
 from vehicle_pf_tracker.recordings.footage import LARGEST_PX
-from vehicle_pf_tracker.recordings.truth_formats import reader_of
-from vehicle_pf_tracker.recordings.truth_labels import OTHER_SHAPES, Images, Label, UnreadTruthError
+from vehicle_pf_tracker.recordings.truth.data_sets import in_order
+from vehicle_pf_tracker.recordings.truth.formats import reader_of
+from vehicle_pf_tracker.recordings.truth.labels import OTHER_SHAPES, Images, Label, UnreadTruthError
 
 _IDS_SHOWN = 20
 """Identities that an error lists: more are hard to read on a terminal."""

@@ -9,8 +9,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.mcap_blocks import Block, DamageError
-from vehicle_pf_tracker.recordings.mcap_index import McapIndex
+from vehicle_pf_tracker.recordings.bags.mcap_blocks import Block, DamageError
+from vehicle_pf_tracker.recordings.bags.mcap_index import McapIndex
 
 
 class ReadNotices:

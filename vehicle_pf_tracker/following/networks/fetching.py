@@ -14,18 +14,16 @@ import hashlib
 import importlib
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any, TypeAlias
+from typing import IO, Any
 from urllib.parse import quote, unquote
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import output_errors
+from vehicle_pf_tracker.core.progress import ShowShare, silent
 from vehicle_pf_tracker.results.output_files import make_folder
-
-Progress: TypeAlias = Callable[[str, float | None], None]
-"""Function of words about a transfer, and of its share done (0 to 1), None if unknown."""
 
 _SECONDS = 30.0
 """Silence of a server after which it is given up: a slow one sends something meanwhile."""
@@ -46,11 +44,7 @@ _NO_RANGE = 416
 """Status of a server that has nothing after the part that is there already."""
 
 
-def silent(words: str, share: float | None) -> None:
-    """Show no progress."""
-
-
-def fetch(url: str, path: Path, demanded: str, progress: Progress = silent) -> None:
+def fetch(url: str, path: Path, demanded: str, progress: ShowShare = silent) -> None:
     """Fetch a file, which appears once it is whole and has the sum demanded.
 
     Where the server can, this resumes from the part that an earlier fetch has left.
@@ -63,7 +57,7 @@ def fetch(url: str, path: Path, demanded: str, progress: Progress = silent) -> N
         Place at which it is kept.
     demanded : str
         SHA-256 that it must have; empty where none is known.
-    progress : Progress
+    progress : ShowShare
         Shows the transfer.
 
     Raises
@@ -124,7 +118,7 @@ class _Download:
         SHA-256 of the whole file; empty before.
     """
 
-    def __init__(self, url: str, path: Path, progress: Progress, requests: Any) -> None:
+    def __init__(self, url: str, path: Path, progress: ShowShare, requests: Any) -> None:
         self._url = url
         self._path = path
         self._progress = progress

@@ -14,17 +14,26 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.image.compressed_image import decode_compressed
 from vehicle_pf_tracker.image.encodings import frame_of_message
-from vehicle_pf_tracker.recordings import messages
-from vehicle_pf_tracker.recordings.bag_folder import recording_files
+from vehicle_pf_tracker.recordings.bags import messages
+from vehicle_pf_tracker.recordings.bags.bag_folder import recording_files
+from vehicle_pf_tracker.recordings.bags.mcap_blocks import Message
+from vehicle_pf_tracker.recordings.bags.mcap_index import McapIndex, read_index
+from vehicle_pf_tracker.recordings.bags.merged_messages import merged_messages
+from vehicle_pf_tracker.recordings.bags.messages import deserialize
+from vehicle_pf_tracker.recordings.bags.read_notices import ReadNotices
+from vehicle_pf_tracker.recordings.bags.sqlite_index import read_sqlite_index
+from vehicle_pf_tracker.recordings.bags.topic_table import (
+    TopicInfo,
+    choose_image_topic,
+    list_topics,
+)
+from vehicle_pf_tracker.recordings.bags.truth_messages import (
+    TRUTH_TOPICS,
+    TRUTH_TYPES,
+    truth_from_messages,
+)
 from vehicle_pf_tracker.recordings.footage import StampedFrame
-from vehicle_pf_tracker.recordings.mcap_blocks import Message
-from vehicle_pf_tracker.recordings.mcap_index import McapIndex, read_index
-from vehicle_pf_tracker.recordings.merged_messages import merged_messages
-from vehicle_pf_tracker.recordings.messages import deserialize
-from vehicle_pf_tracker.recordings.read_notices import ReadNotices
 from vehicle_pf_tracker.recordings.recording_names import SQLITE_SUFFIX
-from vehicle_pf_tracker.recordings.sqlite_index import read_sqlite_index
-from vehicle_pf_tracker.recordings.topic_table import TopicInfo, choose_image_topic, list_topics
 
 __all__ = ["RecordedMessage", "Recording", "StampedFrame"]
 
@@ -158,7 +167,7 @@ class Recording:
         """
         if not self._has_truth():
             return ()
-        return self._assemble(self._select(messages.TRUTH_TOPICS))
+        return self._assemble(self._select(TRUTH_TOPICS))
 
     def first_truth(self) -> Truth | None:
         """Read the earliest truth alone, without reading the whole recording."""
@@ -167,7 +176,7 @@ class Recording:
         # In the order of log times, so that the first stamp is among the first messages. Half a
         # second is a choice: far more than a recorder needs for the three topics of one frame.
         early: list[tuple[McapIndex, Message]] = []
-        for entry in self._select(messages.TRUTH_TOPICS):
+        for entry in self._select(TRUTH_TOPICS):
             # Topics of one stamp may be recorded some time apart.
             if early and entry[1].log_time_ns > early[0][1].log_time_ns + 500_000_000:
                 break
@@ -234,9 +243,9 @@ class Recording:
     def _has_truth(self) -> bool:
         """Return whether there is truth; raise if its topics are there but cannot hold any."""
         # A topic of that name but of another type is another's: its bytes would be misread.
-        truth_topics = [info for info in self.topics if info.name in messages.TRUTH_TOPICS]
+        truth_topics = [info for info in self.topics if info.name in TRUTH_TOPICS]
         for info in truth_topics:
-            expected = messages.TRUTH_TYPES[info.name]
+            expected = TRUTH_TYPES[info.name]
             if not info.is_cdr or info.type_name != expected:
                 kind = info.type_name or "an unknown type"
                 raise InputError(f"the truth topic {info.name} carries {kind}, not {expected}")
@@ -246,12 +255,10 @@ class Recording:
 
     def _assemble(self, found: Iterable[tuple[McapIndex, Message]]) -> tuple[Truth, ...]:
         by_topic = ((index.channels[one.channel_id].topic, one.data) for index, one in found)
-        received = (
-            (topic, deserialize(data, messages.TRUTH_TYPES[topic])) for topic, data in by_topic
-        )
+        received = ((topic, deserialize(data, TRUTH_TYPES[topic])) for topic, data in by_topic)
         try:
             # Of the last file alone: in those before it a frame goes on in the next file.
-            return messages.truth_from_messages(received, self.files[-1].is_truncated)
+            return truth_from_messages(received, self.files[-1].is_truncated)
         except InputError as error:
             raise InputError(f"the truth of {self.path} is broken: {error}") from error
 

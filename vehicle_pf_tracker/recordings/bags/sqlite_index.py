@@ -18,8 +18,8 @@ from urllib.parse import quote
 from mcap.records import Channel, Schema
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.mcap_blocks import Block, DamageError, Message
-from vehicle_pf_tracker.recordings.mcap_index import McapIndex
+from vehicle_pf_tracker.recordings.bags.mcap_blocks import Block, DamageError, Message
+from vehicle_pf_tracker.recordings.bags.mcap_index import McapIndex
 from vehicle_pf_tracker.recordings.recording_names import CONVERSION
 
 _TOPICS = "SELECT id, name, type, serialization_format, offered_qos_profiles FROM topics"

@@ -18,7 +18,7 @@ from xml.etree import ElementTree
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
 from vehicle_pf_tracker.recordings.text_tables import number_of
-from vehicle_pf_tracker.recordings.truth_labels import (
+from vehicle_pf_tracker.recordings.truth.labels import (
     ABSENT_SIDES,
     OTHER_SHAPES,
     Images,

@@ -9,12 +9,8 @@ import heapq
 from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import TypeAlias
 
-from vehicle_pf_tracker.recordings.mcap_blocks import (
-    Block,
-    DamageError,
-    Message,
-)
-from vehicle_pf_tracker.recordings.mcap_index import McapIndex
+from vehicle_pf_tracker.recordings.bags.mcap_blocks import Block, DamageError, Message
+from vehicle_pf_tracker.recordings.bags.mcap_index import McapIndex
 
 _WHOLE_BLOCK = -1
 """Offset of a block that is not opened yet, below those of all messages: it sorts before them."""

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import TypeAlias
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.annotation_tools import cvat, label_studio
-from vehicle_pf_tracker.recordings.data_set_truth import in_order, kitti, mot, own
 from vehicle_pf_tracker.recordings.text_tables import cells_of, is_number
-from vehicle_pf_tracker.recordings.truth_labels import Reader, UnreadTruthError
+from vehicle_pf_tracker.recordings.truth.annotation_tools import cvat, label_studio
+from vehicle_pf_tracker.recordings.truth.data_sets import in_order, kitti, mot, own
+from vehicle_pf_tracker.recordings.truth.labels import Reader, UnreadTruthError
 
 Test: TypeAlias = Callable[[Sequence[str]], bool]
 """Decides by the cells of the first line."""

@@ -11,8 +11,8 @@ import time
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.following import processes
-from vehicle_pf_tracker.following.processes import run_in_processes, wait_or_kill
+from vehicle_pf_tracker.workers import processes
+from vehicle_pf_tracker.workers.processes import run_in_processes, wait_or_kill
 
 
 def answer(task):

@@ -12,8 +12,9 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import unquote, urldefrag, urlsplit
 
 from vehicle_pf_tracker.core.errors import InputError, suggestion
-from vehicle_pf_tracker.following.fetching import Progress, fetch, silent, sum_of
-from vehicle_pf_tracker.following.known_networks import KNOWN_NETWORKS, installed
+from vehicle_pf_tracker.core.progress import ShowShare, silent
+from vehicle_pf_tracker.following.networks.fetching import fetch, sum_of
+from vehicle_pf_tracker.following.networks.known_networks import KNOWN_NETWORKS, installed
 from vehicle_pf_tracker.recordings.recording_names import is_url
 
 _UNSAFE = re.compile(r"[^A-Za-z0-9._-]")
@@ -22,7 +23,7 @@ _LONGEST_NAME = 80
 """Letters of a file's own name that are kept: with sum and endings less than the 255 of Linux."""
 
 
-def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
+def model_file(model: str, progress: ShowShare = silent) -> tuple[Path, str]:
     """Return the file of a network, and its SHA-256.
 
     Parameters
@@ -30,7 +31,7 @@ def model_file(model: str, progress: Progress = silent) -> tuple[Path, str]:
     model : str
         A path; a name of `KNOWN_NETWORKS`; or a URL, at whose end ``#sha256=`` may stand with the
         sum that the file must have. What a name or a URL means is fetched unless the cache has it.
-    progress : Progress
+    progress : ShowShare
         Shows the transfer.
 
     Raises
