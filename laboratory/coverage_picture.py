@@ -73,11 +73,13 @@ def _draw_levels(axes: Axes, runs: Mapping[str, Runs]) -> None:
 
 def _draw_drive(axes: Axes, paths: Mapping[str, list[Path]]) -> None:
     """Error in each frame of a drive, and the radius of the 95 % ellipse."""
-    for name, colour in _SHOWN.items():
-        files = [one for one in paths.get(name, ()) if one.name.split(".")[1] == _DRIVE]
-        if not files:
-            continue
-        run = Runs(files[:1])
+    files = _files_of_drive(paths)
+    if not files:
+        axes.set(title=f"there are no runs of the scene `{_DRIVE}`", xticks=[], yticks=[])
+        return
+    for name, file in files.items():
+        colour = _SHOWN[name]
+        run = Runs([file])
         _, areas = run.calibrated(CALIBRATIONS[name])
         # The first frame is left out of a run.
         frames = np.arange(2, len(areas) + 2)
@@ -101,6 +103,16 @@ def _draw_drive(axes: Axes, paths: Mapping[str, list[Path]]) -> None:
         ylabel="px",
         yscale="log",
         ylim=(0.05, None),
-        title=f"scene `{_DRIVE}`, seed {files[0].name.split('.')[2]}",
+        title=f"scene `{_DRIVE}`, seed {file.name.split('.')[2]}",
     )
     axes.legend(fontsize=8, loc="upper left")
+
+
+def _files_of_drive(paths: Mapping[str, list[Path]]) -> dict[str, Path]:
+    """Return the first run of the drive, ``VARIANT.SCENE.SEED.npy``, of each shown variant."""
+    first = {}
+    for name in _SHOWN:
+        for file in paths.get(name, ()):
+            if file.name.split(".")[1] == _DRIVE:
+                first.setdefault(name, file)
+    return first

@@ -13,6 +13,7 @@ method): once by all cameras, and for each camera by all others. ``fit.json`` ha
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import math
 import pickle
@@ -34,6 +35,7 @@ from laboratory.stress import (
     variant_system,
 )
 from vehicle_pf_tracker.cli.main import exit_status
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import ParameterSpec, specs
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 
@@ -129,9 +131,17 @@ def _system(label: str, setting: Setting) -> StressSystem:
 def listed_cases(
     options: argparse.Namespace, name: str, kinds: Sequence[str], **limits: int
 ) -> list[Case]:
-    """List cases, or read those of a run before: listing takes a minute."""
-    # Named by the caller: another selection needs another name or another folder.
-    path = options.output / f"{name}.pickle"
+    """List cases, or read those that a run before listed by the same options: it takes a minute."""
+    # Recordings that were added to a folder since do not show; they need another output.
+    selection = (
+        [str(folder.resolve()) for folder in options.sequences],
+        options.cameras.read_text(encoding="utf-8"),
+        tuple(kinds),
+        options.seed,
+        sorted(limits.items()),
+    )
+    digest = hashlib.sha256(repr(selection).encode()).hexdigest()[:8]
+    path = options.output / f"{name}_{digest}.pickle"
     if not path.exists():
         sources = find_sequences(options.sequences, options.cameras)
         cases = list_cases(sources, kinds=kinds, seed=options.seed, **limits)
@@ -141,10 +151,22 @@ def listed_cases(
 
 
 def fit(options: argparse.Namespace) -> dict[str, Setting]:
-    """Fit by all cameras (key "") and by all but each."""
+    """Fit by all cameras (key "") and by all but each.
+
+    Raises
+    ------
+    InputError
+        If there is one camera alone: without it nothing is left to fit by.
+    """
     cases = listed_cases(
         options, "fit_cases", FITTED_KINDS, per_sequence=options.cases, max_frames=FITTED_FRAMES
     )
+    cameras = {case.camera for case in cases}
+    if len(cameras) < 2:
+        raise InputError(
+            f"all sequences are of the camera {', '.join(cameras)}: a setting is judged on a "
+            "camera that it was not fitted by, which takes two cameras or more"
+        )
     settings = draw_settings(options.budget, options.seed)
     systems = [_system(f"{index}", setting) for index, setting in enumerate(settings)]
     results = run_battery(

@@ -105,9 +105,12 @@ def draw_pictures(folder: Path, pictures: Sequence[Picture]) -> None:
 def _figure(picture: Picture, frames: list[SceneFrame], rows: list[EstimateRow]) -> Figure:
     count = -(-len(picture.frames) // _COLUMNS)
     figure = Figure(figsize=(2.4 * _COLUMNS, 1.78 * count), layout="constrained")
-    grid = figure.subplots(count, _COLUMNS).flat
-    for axes, number in zip(grid, picture.frames, strict=True):
+    grid = list(figure.subplots(count, _COLUMNS, squeeze=False).flat)
+    for axes, number in zip(grid, picture.frames, strict=False):
         _draw(axes, frames[number - 1], rows[number - 1])
+    # Places of the last row that no frame is left for.
+    for axes in grid[len(picture.frames) :]:
+        axes.set_axis_off()
     return figure
 
 

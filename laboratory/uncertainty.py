@@ -8,7 +8,7 @@
     python -m laboratory.uncertainty run runs/report --seeds 5
     python -m laboratory.uncertainty report runs/report --docs docs
 
-`fit` writes `vehicle_pf_tracker/trackers/uncertainty.py`; `report` the tables and the picture
+`fit` writes `vehicle_pf_tracker/trackers/uncertainty_table.py`; `report` the tables and the picture
 of docs/road.md. Every scene is run as it is, and with a rough camera or from other views; runs that
 are there are kept.
 """

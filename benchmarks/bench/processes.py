@@ -9,9 +9,12 @@ import os
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+from collections import deque
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import IO
 
 import yaml
 
@@ -57,11 +60,17 @@ class NodeProcess:
             text=True,
         )
         assert self._process.stderr is not None
+        self._reader: threading.Thread | None = None
         said = []
         # Line by line until it is ready; a node that ends before has closed its stream.
         for line in self._process.stderr:
             said.append(line)
             if _READY in line:
+                # Read on for as long as it runs: a full pipe would stop it.
+                self._reader = threading.Thread(
+                    target=_discard, args=[self._process.stderr], daemon=True
+                )
+                self._reader.start()
                 return
         self.end()
         raise InputError(f"the node {' '.join(words)} ended at once: {''.join(said)[-2000:]}")
@@ -86,6 +95,8 @@ class NodeProcess:
         # Asked first, and killed if it does not answer.
         self._process.terminate()
         wait_or_kill(self._process)
+        if self._reader is not None:
+            self._reader.join()
         assert self._process.stderr is not None
         self._process.stderr.close()
         self._log.close()
@@ -95,6 +106,11 @@ class NodeProcess:
 
     def __exit__(self, *failure: object) -> None:
         self.end()
+
+
+def _discard(stream: IO[str]) -> None:
+    """Read a stream to its end, and keep nothing of it."""
+    deque(stream, maxlen=0)
 
 
 class StepMeter:

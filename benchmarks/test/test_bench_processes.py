@@ -1,14 +1,15 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Words that the measured nodes are started with."""
+"""Measured nodes: the words that they are started with, their processes and meters."""
 
 import ast
 import importlib
+import time
 from pathlib import Path
 
 from benchmarks.bench.metered_node import METER_RECORD
-from benchmarks.bench.processes import StepMeter, tracker_words
+from benchmarks.bench.processes import NodeProcess, StepMeter, tracker_words
 
 
 def test_a_metered_node_gets_target_image_and_parameters():
@@ -31,3 +32,21 @@ def test_the_meter_reads_what_a_node_writes():
     assert meter.cpu_seconds == 0
     Path(meter.path).write_bytes(METER_RECORD.pack(1.5, 3))
     assert meter.cpu_seconds == 1.5
+
+
+def test_a_node_that_says_much_after_it_is_ready_is_not_stopped(tmp_path):
+    """A pipe holds 64 KiB: a node whose words nobody reads would stop at them."""
+    done = tmp_path / "done"
+    code = (
+        "import pathlib, sys, time\n"
+        "print('ready:', file=sys.stderr, flush=True)\n"
+        "sys.stderr.write('x' * 1_000_000)\n"
+        "sys.stderr.flush()\n"
+        f"pathlib.Path({str(done)!r}).touch()\n"
+        "time.sleep(60)\n"
+    )
+    with NodeProcess(["-c", code]):
+        deadline = time.monotonic() + 20
+        while not done.exists() and time.monotonic() < deadline:
+            time.sleep(0.01)
+    assert done.exists()

@@ -40,6 +40,8 @@ FAULT_EVERY, LASTS = 20.0, 2.0
 """Seconds between two failures of the detector, and how long one lasts."""
 TARGET_EVERY = CHANGE_EVERY = 5.0
 """Seconds between two targets, and between two changes of a parameter."""
+LATE = 0.005
+"""Seconds to listen before an image that is late: time for the some eight answers to one image."""
 _DEPTH, _LONG_DEPTH = 10, 100
 """Images that wait for a node: two thirds of a second of a camera, and more than any pause."""
 # Changes in their order, of every effect, each undone later.
@@ -188,8 +190,8 @@ class Soak:
             # 3. Until the next is due: by the clock of the whole run, so that delays do not add up.
             while (left := began + number / self._rate - time.monotonic()) > 0:
                 self._hear(min(left, 0.01))
-            # What has come is judged also where no time was left to listen.
-            self._hear(0.0)
+            # Answers are taken also where the next image is late already.
+            self._hear(LATE)
         # Two seconds for the last answers.
         for _ in range(100):
             self._hear(0.02)

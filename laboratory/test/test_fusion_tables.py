@@ -5,14 +5,23 @@
 
 from collections import namedtuple
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
-from laboratory import fusion_ablation, fusion_clips, fusion_reliability, readme_table
-from laboratory.fusion_fit import fitted, objective
+from laboratory import (
+    fusion_ablation,
+    fusion_clips,
+    fusion_fit,
+    fusion_reliability,
+    fusion_scene_pictures,
+    readme_table,
+)
+from laboratory.fusion_fit import fitted, listed_cases, objective
 from laboratory.stress import Reliability, Result, Score
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.estimate import Mode
 
 Made = namedtuple("Made", "name kind sequence camera")
@@ -88,6 +97,12 @@ def test_the_figure_has_a_line_for_plain_and_one_for_harder_cases(tmp_path):
     assert hard == [[0.85, 0]]
 
 
+def test_a_picture_may_have_a_row_that_is_not_full(tmp_path):
+    short = fusion_scene_pictures.Picture("short", "turn", 0, (1, 2, 3, 4))
+    fusion_scene_pictures.draw_pictures(tmp_path, [short])
+    assert (tmp_path / "short.webp").stat().st_size > 0
+
+
 def drive(first, last, speed):
     """Boxes of a vehicle that ends at the right border of an image of 200 x 100 px."""
     return {
@@ -148,3 +163,45 @@ def test_the_objective_by_hand():
     assert objective(score(0.8)) == pytest.approx(0.8 + 0.5 + 1.0)
     doubts = replace(score(0.8), doubted=0.1, claimed_hidden=0.2)
     assert objective(doubts) == pytest.approx(0.8 + 0.5 + 1.0 - 0.3)
+
+
+def make_options(tmp_path, **values):
+    cameras = tmp_path / "cameras.csv"
+    cameras.write_text("")
+    given = {"sequences": [tmp_path], "cameras": cameras, "output": tmp_path, "seed": 0, "cases": 1}
+    return SimpleNamespace(**given | values)
+
+
+@pytest.fixture
+def listing(monkeypatch):
+    """Calls that list cases anew; each has a case of camera a alone."""
+    calls = []
+
+    def list_cases(sources, **choice):
+        calls.append(choice)
+        return [Made("case", "plain", "a/one", "a")]
+
+    monkeypatch.setattr(fusion_fit, "find_sequences", lambda folders, cameras: [])
+    monkeypatch.setattr(fusion_fit, "list_cases", list_cases)
+    return calls
+
+
+def test_cases_are_listed_once_for_the_same_options(tmp_path, listing):
+    for _ in range(2):
+        listed_cases(make_options(tmp_path), "plain_cases", ("plain",), per_sequence=1)
+    assert len(listing) == 1
+
+
+@pytest.mark.parametrize(
+    ("changed", "limit"), [({"seed": 1}, 1), ({"sequences": [Path("elsewhere")]}, 1), ({}, 2)]
+)
+def test_other_options_list_other_cases(tmp_path, listing, changed, limit):
+    listed_cases(make_options(tmp_path), "plain_cases", ("plain",), per_sequence=1)
+    other = make_options(tmp_path, **changed)
+    listed_cases(other, "plain_cases", ("plain",), per_sequence=limit)
+    assert len(listing) == 2
+
+
+def test_one_camera_alone_cannot_be_left_out(tmp_path, listing):
+    with pytest.raises(InputError, match="all sequences are of the camera a"):
+        fusion_fit.fit(make_options(tmp_path))

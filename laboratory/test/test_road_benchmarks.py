@@ -18,6 +18,7 @@ from laboratory.covariance_coverage import (
     fitted_table,
     runs_of,
 )
+from laboratory.coverage_picture import draw
 from laboratory.road_speed import roads_of, settings_of
 from laboratory.scenes.road import RoadSceneParameters, camera_of
 from laboratory.uncertainty import rows_of
@@ -92,6 +93,12 @@ def test_the_table_is_a_module_that_says_the_same(tmp_path):
     exec(compile(text, "table", "exec"), scope)
     assert set(scope["CALIBRATIONS"]) == {"*", "pf"}
     assert scope["CALIBRATIONS"]["pf"] == fit(Runs(runs_of(tmp_path)["pf"]))
+
+
+def test_the_picture_is_drawn_without_runs_of_the_scene_that_it_shows(tmp_path):
+    made(tmp_path, "fusion", 0)
+    draw(tmp_path / "uncertainty.png", runs_of(tmp_path))
+    assert (tmp_path / "uncertainty.png").stat().st_size > 0
 
 
 def test_folders_without_runs(tmp_path):

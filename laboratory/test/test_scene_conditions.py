@@ -3,6 +3,7 @@
 
 """Weather, light and transmission in which a scene is seen."""
 
+import cv2
 import numpy as np
 import pytest
 
@@ -72,6 +73,15 @@ def test_a_beam_outside_of_the_image_is_cut_off():
 def test_few_bits_leave_blocks():
     image = seen("compression", 0)
     assert 3 < np.abs(image.astype(int) - FRAME).mean() < 30
+
+
+def test_a_stream_keeps_red_apart_from_blue():
+    """OpenCV writes blue first: a red vehicle is coded as red."""
+    red = np.zeros_like(FRAME)
+    red[..., 0] = FRAME[..., 0]
+    received = seen("compression", 0, red)
+    as_sent = cv2.imencode(".jpg", red[..., ::-1], (cv2.IMWRITE_JPEG_QUALITY, 10))[1]
+    assert np.array_equal(received, cv2.imdecode(as_sent, cv2.IMREAD_COLOR)[..., ::-1])
 
 
 def test_every_other_frame_is_kept_at_half_the_rate(tmp_path):
