@@ -2,10 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 
 import json
+from pathlib import Path
 
 import pytest
 
 from reproduction.__main__ import main
+from reproduction.catalogue import PAPERS
+from reproduction.experiment import PAPER_RULE, PRINTED_RULE
+from reproduction.page import PAGE, page_of_data
+from reproduction.page_text import page_text
+
+DOCS = Path(__file__).parents[2] / "docs"
 
 WORDS = ["--quick", "--seeds", "1", "--first-seed", "100", "--workers", "1"]
 
@@ -35,12 +42,15 @@ def test_one_experiment_writes_its_folder_and_its_section_of_the_page(tmp_path, 
     assert "| 100 |" in page  # the seed
     assert f"apf-fig4: {verdict['holds']}  (" in capsys.readouterr().out
     section = page.partition("\n### apf-fig4")[2]
-    assert "| claim | the paper's rule | our interpretation | as printed | verdict |" in section
+    overview = page.partition("\n## Claims")[2].partition("\n## Evidence")[0]
     assert f"`python -m reproduction apf-fig4 {' '.join(WORDS[:5])}`" in section
     for claim in verdict["claims"]:
-        cells = [f"**{f['holds']}**: {f['numbers']}" for f in claim["findings"]]
-        row = [f"{claim['claim']} ({claim['place']})", *cells, claim["rule"]]
-        assert f"| {' | '.join(row)} |" in section
+        words = [finding["holds"] for finding in claim["findings"]]
+        row = [claim["claim"], f"**{words[0]}**", *words[1:], "[apf-fig4](#apf-fig4)"]
+        assert f"| {' | '.join(row)} |" in overview
+        assert f"| **{claim['claim']}** ({claim['place']}) |  | *{claim['rule']}* |" in section
+        for finding in claim["findings"]:
+            assert f"| {' | '.join(finding.values())} |" in section
 
 
 @pytest.mark.slow
@@ -50,15 +60,47 @@ def test_the_page_has_what_was_made_before_too_and_a_second_time_nothing_changes
     reproduce(out, "apf-fig2", "--docs", str(docs))
     page = (docs / "reproduction.md").read_text()
     assert (
-        page.index("\n## Scharcanski") < page.index("\n### apf-fig2") < page.index("\n### apf-fig4")
+        page.index("\n### Scharcanski")
+        < page.index("\n### apf-fig2")
+        < page.index("\n### apf-fig4")
     )
     assert "Khong" not in page  # nothing of it was made
-    assert (
-        "| claim | result | verdict |" in page.partition("\n### apf-fig2")[2]
-    )  # no interpretations
     files = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     reproduce(out, "apf-fig2", "apf-fig4", "--docs", str(docs))
     assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == files
+
+
+def test_the_page_of_the_documents_is_what_its_data_make():
+    assert page_of_data(DOCS / "reproduction.json", PAPERS) == (DOCS / PAGE).read_text("utf-8")
+
+
+def test_the_answer_counts_the_papers_own_claims():
+    """Two of APF's hold in part, one of which we added."""
+    claims = [
+        {"claim": claim, "place": "V", "rule": "", "findings": [finding(holds), finding(printed)]}
+        for claim, holds, printed in (
+            ("it follows", "yes", "no"),
+            ("it is fast", "partly", "yes"),
+            ("(not a claim of the paper's) it is red", "partly", "no"),
+        )
+    ]
+    for claim in claims:
+        claim["findings"][1]["interpretation"] = PRINTED_RULE
+    verdict = {
+        "claims": claims,
+        "seeds": [0],
+        "holds": "partly",
+        "under": {},
+        "command": "",
+        "remarks": [],
+    }
+    page = page_text(PAPERS, {"apf-fig2": verdict}, {"apf-fig2": "a.svg"}, "make", "")
+    assert "Of 2 claims 1 hold here, 1 hold in\npart, and 0 do not." in page
+    assert "| Scharcanski et al. 2011: APF | 2 | 1 | 1 | 0 | 1 of 2 |" in page
+
+
+def finding(holds):
+    return {"interpretation": PAPER_RULE, "holds": holds, "numbers": "1 px"}
 
 
 def test_a_page_of_several_versions_of_the_code_is_refused(tmp_path, capsys):
