@@ -189,7 +189,7 @@ def compression(size: tuple[int, int], seed: int) -> Condition:
         # OpenCV codes blue, green, red: JPEG keeps less of blue than of red.
         picture = cv2.cvtColor(frame, cv2.COLOR_RGB2BGR)
         _, code = cv2.imencode(".jpg", picture, (cv2.IMWRITE_JPEG_QUALITY, _QUALITY))
-        received = cv2.imdecode(code, cv2.IMREAD_COLOR)
+        received = np.asarray(cv2.imdecode(code, cv2.IMREAD_COLOR))
         return np.asarray(cv2.cvtColor(received, cv2.COLOR_BGR2RGB), np.uint8)
 
     return apply
