@@ -10,7 +10,12 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.counting.counter import Counter
-from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan, Region
+from vehicle_pf_tracker.parameters.counting_plan import (
+    CountingLine,
+    CountingPlan,
+    CountingZone,
+    Region,
+)
 from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
 from vehicle_pf_tracker.showing import drawing
 from vehicle_pf_tracker.showing.heat_picture import HeatPicture
@@ -53,6 +58,16 @@ def test_occlusions_survived_are_counted():
     assert summary.ended_hidden == 1
     assert len(summary.vehicles) == 3
     assert summary.most_at_once == 3
+
+
+def test_the_occupancy_of_a_single_image_is_unknown():
+    square = CountingZone("yard", ((0, 0), (50, 0), (50, 50), (0, 50)))
+    summary = TrafficSummary(Counter(CountingPlan(zones=(square,))))
+    summary.add([estimate(1, "T")])
+    assert summary.zones.add(0, {"yard": 1}) + summary.zones.rest() == []
+    (yard,) = summary.to_json()["zones"]
+    assert yard == {"zone": "yard", "seconds": 0.0, "mean": None, "max": None, "occupied": None}
+    assert summary.sentences()[-1].endswith("occupancy unknown, as no time passed between images")
 
 
 def test_leaving_is_no_occlusion_and_ends_none():

@@ -170,13 +170,7 @@ class TrafficSummary:
                 for each in _intervals(self.counter, line.name, to)
             ],
             "zones": [
-                {
-                    "zone": zone,
-                    "seconds": round(found.seconds, 3),
-                    "mean": round(found.mean, 4),
-                    "max": found.largest,
-                    "occupied": round(found.share, 4),
-                }
+                {"zone": zone, "seconds": round(found.seconds, 3), **_occupancy(found)}
                 for zone, found in self.zones.overall.items()
             ],
         }
@@ -189,7 +183,20 @@ def _direction(counter: Counter, place: str, direction: str) -> str:
     return f"{count} {direction}{_listed(known - apart)}{_besides(apart)}"
 
 
+def _occupancy(found: Occupancy) -> dict[str, float | None]:
+    """Return the numbers of an occupancy; all None where images stand for no time."""
+    if not found.seconds:
+        return dict.fromkeys(("mean", "max", "occupied"))
+    return {
+        "mean": round(found.mean, 4),
+        "max": found.largest,
+        "occupied": round(found.share, 4),
+    }
+
+
 def _inside(found: Occupancy) -> str:
+    if not found.seconds:
+        return "occupancy unknown, as no time passed between images"
     return (
         f"{found.mean:.1f} inside on average, at most {found.largest}, occupied "
         f"{100 * found.share:.0f} % of the time"
