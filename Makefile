@@ -30,6 +30,9 @@ RESEARCH := $(addsuffix /test,reproduction laboratory benchmarks)
 # Share of the package's branches and lines that the tests must run through.
 COVERED := 92
 
+# The tests start hundreds of processes, and each would compile the package anew (0.3 s).
+unexport PYTHONDONTWRITEBYTECODE
+
 # ROS stays on this machine.
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 
@@ -50,15 +51,40 @@ def on_a_robot(*words, **options):
     return subprocess.run(command_line, capture_output=True, text=True, check=False, **options)
 
 
+# Of words that end before anything is done: status, and what is printed.
+ANSWERS = """
+import contextlib, io, json, sys
+from vehicle_pf_tracker.cli.main import main
+sys.modules.update(dict.fromkeys({absent!r}))
+def answer(words):
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        with contextlib.redirect_stderr(io.StringIO()) as err:
+            status = main(words)
+    return status, out.getvalue(), err.getvalue()
+print(json.dumps([answer(words) for words in json.loads(sys.argv[1])]))
+"""
+USAGES = [["evaluate", "a", "-o", "b", "--seeds", "x"], ["tune", "--help"], ["report"]]
+
+
+@pytest.fixture(scope="module")
+def answers():
+    """Status, output and errors by command line, all of one process on a robot."""
+    asked = [*([verb, "--help"] for verb in command.VERBS), *USAGES]
+    words = [sys.executable, "-c", ANSWERS.format(absent=ABSENT), json.dumps(asked)]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    found = json.loads(done.stdout)
+    return {tuple(words): answer for words, answer in zip(asked, found, strict=True)}
+
+
 @pytest.mark.parametrize("verb", command.VERBS)
-def test_every_verb_has_its_help_without_it(verb):
-    done = on_a_robot(verb, "--help")
-    assert done.returncode == 0, done.stderr
-    assert f"usage: vehicle-pf-tracker {verb}" in done.stdout
+def test_every_verb_has_its_help_without_it(answers, verb):
+    status, out, err = answers[verb, "--help"]
+    assert status == 0, err
+    assert f"usage: vehicle-pf-tracker {verb}" in out
 
 
 def test_a_recording_is_made_and_tracked_without_it(tmp_path):
-    made = on_a_robot("synth", "bar", tmp_path / "recording")
+    made = on_a_robot("synth", "bar", tmp_path / "recording", "--set", "speed=20")
     assert made.returncode == 0, made.stderr  # a slow machine shows progress there
     words = ("--variant", "pf", "--set", "kernels=opencv", "-o", tmp_path / "out")
     run = on_a_robot("run", tmp_path / "recording", *words)
@@ -76,11 +102,8 @@ def test_a_shell_s_completion_is_written_without_it():
     assert int(done.stdout) == len(command.VERBS)
 
 
-@pytest.mark.parametrize(
-    ("words", "status"),
-    [(["evaluate", "a", "-o", "b", "--seeds", "x"], 2), (["tune", "--help"], 0), (["report"], 2)],
-)
-def test_usage_is_told_before_what_is_missing(words, status):
-    done = on_a_robot(*words)
-    assert done.returncode == status
-    assert "needs the Python module" not in done.stderr
+@pytest.mark.parametrize(("words", "status"), list(zip(USAGES, (2, 0, 2), strict=True)))
+def test_usage_is_told_before_what_is_missing(answers, words, status):
+    found, _, err = answers[tuple(words)]
+    assert found == status
+    assert "needs the Python module" not in err

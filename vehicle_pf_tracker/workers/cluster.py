@@ -9,7 +9,6 @@ compared before the first task, and again by each task, as workers may join on t
 
 from __future__ import annotations
 
-import asyncio
 import hashlib
 import importlib
 import logging
@@ -163,6 +162,8 @@ def _distributed() -> Any:
 @contextmanager
 def _connected(address: str, seconds: float) -> Iterator[Any]:
     """Connect to a scheduler that has workers, and disconnect at the end of the block."""
+    import asyncio  # noqa: PLC0415 - 40 ms that only a cluster costs
+
     distributed = _distributed()
     # Its log would print a traceback beside our sentence when the scheduler is lost.
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
