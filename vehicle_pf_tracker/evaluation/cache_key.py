@@ -14,6 +14,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from vehicle_pf_tracker.results.code_digest import code_digest
 from vehicle_pf_tracker.results.run_folder import versions
 from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT, Variant
 
@@ -64,7 +65,7 @@ _SHARED = (
 
 @functools.cache
 def source_digest(modules: frozenset[str]) -> str:
-    """Digest the sources of the `_SHARED` folders and of those that `modules` are in.
+    """Digest the code of the `_SHARED` folders and of those that `modules` are in.
 
     Parameters
     ----------
@@ -79,8 +80,4 @@ def source_digest(modules: frozenset[str]) -> str:
             raise ModuleNotFoundError(f"{name} is to count for a cache key, and is not there")
         own = Path(found.origin)
         paths |= set(own.parent.glob("*.py")) if "." in name else {own}
-    digest = hashlib.sha256()
-    # Sorted, as a set of paths has another order in each process.
-    for path in sorted(paths):
-        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
-    return digest.hexdigest()
+    return code_digest((f"{path.parent.name}/{path.name}", path) for path in paths)

@@ -9,7 +9,6 @@ compared before the first task, and again by each task, as workers may join on t
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import logging
 import socket
@@ -23,6 +22,7 @@ from typing import Any, TypeVar
 import cv2
 
 from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.results.code_digest import code_digest
 from vehicle_pf_tracker.results.run_folder import versions
 
 TaskT = TypeVar("TaskT")
@@ -40,13 +40,13 @@ memory, and its steps timed beside each other."""
 
 def fingerprint() -> dict[str, str]:
     """Return versions and a digest of our code, which decide the numbers on this machine."""
-    digest = hashlib.sha256()
-    for path in sorted(_PACKAGE.rglob("*.py")):
-        # With its place: a module that is moved is other code.
-        digest.update(path.relative_to(_PACKAGE).as_posix().encode() + b"\0" + path.read_bytes())
+    # With its place: a module that is moved is other code.
+    code = code_digest(
+        (path.relative_to(_PACKAGE).as_posix(), path) for path in _PACKAGE.rglob("*.py")
+    )
     # Not the platform's whole name, which has the kernel's build in it.
     decisive = {name: str(value) for name, value in versions().items() if name != "platform"}
-    return {**decisive, "code": digest.hexdigest()[:12]}
+    return {**decisive, "code": code[:12]}
 
 
 def run_on_cluster(
