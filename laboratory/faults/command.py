@@ -15,7 +15,7 @@ __all__ = ["Request", "run"]
 
 def run(request: Request) -> int:
     """Give the faults, and print what held; return 1 where something did not."""
-    from laboratory.faults.giving import give  # noqa: PLC0415 - needs ROS
+    from laboratory.faults.kinds import give  # noqa: PLC0415 - needs ROS
 
     rows = []
     # One folder for all kinds: built messages are used again.

@@ -1,38 +1,25 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""A detector of vehicles that fails in one way or another, and what a node makes of its boxes."""
+"""A detector of vehicles that fails in one way or another."""
 
 from __future__ import annotations
 
-import contextlib
-import io
 import math
-import os
 import struct
-import sys
 from collections.abc import Callable
-from importlib import import_module
-from importlib.util import find_spec
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from rclpy.serialization import serialize_message
-from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
 
-from laboratory.faults.lanes import Sighting
 from laboratory.faults.node_process import Tester
 from vehicle_pf_tracker.core.array import Array
 
-CONFIRMED = (1, 2, 3)
-"""Modes in ~/tracks of vehicles that have had enough evidence."""
-FORMATS = {2: "u1", 6: "<u4", 7: "<f4"}
-"""numpy's words for the datatypes of sensor_msgs/PointField that ~/tracks has."""
-LOW = 0.05
+LOW_SCORE = 0.05
 """Score of a flood's boxes: that of what a detector gives without a threshold."""
-STAMP = 4
+STAMP_OFFSET = 4
 """Byte at which the stamp is in a serialized message."""
 NAN = math.nan
 HUGE = 1e300
@@ -48,41 +35,6 @@ UNUSABLE = {
 }
 
 Fault = Callable[[Header, Array], object]
-
-
-def vision(folder: Path) -> Any:
-    """Import vision_msgs.msg, built in `folder` from its definitions where it is not installed."""
-    if find_spec("vision_msgs") is None:
-        # Built by the tests' helper: vision_msgs is not installed everywhere.
-        sys.path.append(str(Path(__file__).resolve().parents[2] / "test" / "ros"))
-        built = import_module("built_messages")
-        with contextlib.redirect_stdout(io.StringIO()):  # each file that is written
-            path = str(built.build("vision_msgs", built.VISION, folder))
-        sys.path.append(path)
-        # For the node's process.
-        known = os.environ.get("PYTHONPATH")
-        os.environ["PYTHONPATH"] = os.pathsep.join([path, *([known] if known else [])])
-    return import_module("vision_msgs.msg")
-
-
-def sightings(cloud: PointCloud2) -> list[Sighting]:
-    """Read ~/tracks by the fields that the message itself names."""
-    # By the fields that the message states, as a subscriber that knows nothing else reads it.
-    kind = np.dtype(
-        {
-            "names": [field.name for field in cloud.fields],
-            "formats": [FORMATS[field.datatype] for field in cloud.fields],
-            "offsets": [field.offset for field in cloud.fields],
-            "itemsize": cloud.point_step,
-        }
-    )
-    points = np.frombuffer(bytes(cloud.data), kind)
-    return [
-        Sighting(
-            int(point["id"]), float(point["x"]), float(point["y"]), int(point["mode"]) in CONFIRMED
-        )
-        for point in points
-    ]
 
 
 class Detector:
@@ -124,7 +76,7 @@ class Detector:
     def _flood(self, count: int) -> Fault:
         rows = np.random.default_rng(3).uniform(0, 150, (count, 4))
         # Serialized once, and only stamped anew: so many boxes take Python long to build.
-        serialized = bytearray(serialize_message(self.message(Header(), rows, LOW)))
+        serialized = bytearray(serialize_message(self.message(Header(), rows, LOW_SCORE)))
 
         def flood(header: Header, boxes: Array) -> None:
             stamp = header.stamp
@@ -134,7 +86,7 @@ class Detector:
                 self.right(header, boxes)
                 return
             # The stamp follows the four bytes that say how a message is encoded.
-            struct.pack_into("<iI", serialized, STAMP, stamp.sec, stamp.nanosec)
+            struct.pack_into("<iI", serialized, STAMP_OFFSET, stamp.sec, stamp.nanosec)
             self._topic.publish(bytes(serialized))
 
         return flood
@@ -153,14 +105,14 @@ class Detector:
         """Make detections (left, top, width, height)."""
         made = self._messages.Detection2DArray(header=header)
         for x, y, width, height in boxes.tolist():
-            one = self._messages.Detection2D()
-            one.bbox.center.position.x = x + width / 2
-            one.bbox.center.position.y = y + height / 2
-            one.bbox.size_x = width
-            one.bbox.size_y = height
+            detection = self._messages.Detection2D()
+            detection.bbox.center.position.x = x + width / 2
+            detection.bbox.center.position.y = y + height / 2
+            detection.bbox.size_x = width
+            detection.bbox.size_y = height
             result = self._messages.ObjectHypothesisWithPose()
             result.hypothesis.class_id = "car"
             result.hypothesis.score = score
-            one.results = [result]
-            made.detections.append(one)
+            detection.results = [result]
+            made.detections.append(detection)
         return made

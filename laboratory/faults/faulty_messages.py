@@ -9,67 +9,26 @@ import array
 import random
 from collections.abc import Callable
 
-import numpy as np
 from geometry_msgs.msg import Point32, PointStamped, PolygonStamped
 from sensor_msgs.msg import Image, RegionOfInterest
-from std_msgs.msg import Header
 
-from vehicle_pf_tracker.core.frame import Frame
+from laboratory.faults.drive import FIRST_NS, HEIGHT, PERIOD_NS, WIDTH, header_at
 from vehicle_pf_tracker.image.encodings import ENCODINGS
-from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
+from vehicle_pf_tracker.ros.messages import stamp_ns
 
-WIDTH, HEIGHT = 64, 48
-"""Size of the right images, px: small, so that thousands are sent in a minute."""
-TARGET_BOX = (4.0, 18.0, 12.0, 10.0)
-"""Target in them: x, y, width, height, px."""
-PERIOD_NS = 33_000_000
-"""Time from one image to the next, ns: 30 Hz."""
-FIRST_NS = 1_700_000_000_000_000_000
-"""Stamp of the first image, ns: of today, whose digits a float64 does not hold."""
 DAY_NS = 86_400_000_000_000
 """Leap of a stamp that is a day off, ns."""
-_TURN = 36
-"""Images from one end of the way to the other: the vehicle drives to and fro."""
 _LARGEST = 2**32 - 1
 """Largest uint32, as sizes are in messages."""
+# Almost right, other people's, none, and far too long.
+_NO_ENCODINGS = (
+    "", "rgb", "RGB8", "32FC1", "rgb8; DROP", "x" * 1000, "\u00fc8", "bayer_rggb", "8UC2",
+)  # fmt: skip
 # Numbers on the edge: none, negative, on a border, overflowing when squared as float32, not finite.
 _NUMBERS = (0.0, -1.0, 31.5, 1e30, -1e30, float("nan"), float("inf"), float("-inf"))
 
 
-def header_at(nanoseconds: int, frame_id: str = "camera") -> Header:
-    """Make a header with this stamp."""
-    made = Header(frame_id=frame_id)
-    made.stamp.sec, made.stamp.nanosec = divmod(nanoseconds, 1_000_000_000)
-    return made
-
-
-class Drive:
-    """Good images for ever: a vehicle that drives to and fro over noise."""
-
-    def __init__(self) -> None:
-        noise = np.random.default_rng(7).integers(90, 130, (HEIGHT, WIDTH, 3), np.uint8)
-        self._frames = [self._frame(noise, offset) for offset in range(_TURN)]
-
-    def frame(self, number: int) -> Frame:
-        """Frame of the image `number`."""
-        # To and fro: the way back is the way there, without its two ends.
-        place = number % (2 * _TURN - 2)
-        return self._frames[min(place, 2 * _TURN - 2 - place)]
-
-    def image(self, number: int) -> Image:
-        """Make the image `number`."""
-        return image_message(header_at(FIRST_NS + number * PERIOD_NS), self.frame(number))
-
-    @staticmethod
-    def _frame(noise: Frame, offset: int) -> Frame:
-        frame: Frame = noise.copy()
-        x, y, width, height = (int(value) for value in TARGET_BOX)
-        frame[y : y + height, x + offset : x + offset + width] = (200, 40, 30)
-        frame[y : y + height // 2, x + offset : x + offset + width] = (30, 60, 210)
-        return frame
-
-
-class Faults:
+class FaultyMessages:
     """Draws faulty images and targets.
 
     What looks like a real change of the stream, another size or another time, is not drawn twice
@@ -104,7 +63,7 @@ class Faults:
         self._kinds[kind](image)
         return image
 
-    def good(self) -> None:
+    def note_good(self) -> None:
         """Say that a good image was sent, after which anything may look real."""
         self._looks_real = False
 
@@ -116,19 +75,7 @@ class Faults:
         return array.array("B", self._random.randbytes(count))
 
     def _encoding(self, image: Image) -> None:
-        # Almost right, other people's, none, and far too long.
-        junk = (
-            "",
-            "rgb",
-            "RGB8",
-            "32FC1",
-            "rgb8; DROP",
-            "x" * 1000,
-            "\u00fc8",
-            "bayer_rggb",
-            "8UC2",
-        )
-        image.encoding = self._random.choice(junk)
+        image.encoding = self._random.choice(_NO_ENCODINGS)
 
     def _cut(self, image: Image) -> None:
         image.data = self._bytes(self._random.randrange(len(image.data)))
@@ -157,15 +104,15 @@ class Faults:
     def _mixed(self, image: Image) -> None:
         draw = self._random
         image.encoding = draw.choice([*ENCODINGS, "", "mono32"])
-        image.height = draw.randrange(48)
-        image.width = draw.randrange(64)
+        image.height = draw.randrange(HEIGHT)
+        image.width = draw.randrange(WIDTH)
         image.step = draw.choice((0, image.width, 3 * image.width, 4 * image.width + 5))
         image.is_bigendian = draw.choice((0, 1, 255))
         image.data = self._bytes(draw.choice((0, image.step * image.height, 5, 20_000)))
 
     def _other_size(self, image: Image) -> None:
-        image.height = self._random.randrange(1, 48)
-        image.width = self._random.randrange(1, 64)
+        image.height = self._random.randrange(1, HEIGHT)
+        image.width = self._random.randrange(1, WIDTH)
         image.step = 3 * image.width
         image.data = self._bytes(image.step * image.height)
 

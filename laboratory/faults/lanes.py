@@ -1,21 +1,16 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""A small grey road with vehicles in lanes that come and go, and whose number is on which."""
+"""A small grey road whose vehicles come and go in lanes, and are detected with errors."""
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-
-FOREIGN = 0.2
-"""Share of its images from which on a number that is on another vehicle has been handed on."""
 
 Corners = dict[int, tuple[float, float]]
 """Left upper corner of each vehicle in an image, px."""
@@ -55,8 +50,8 @@ class Road:
         shape = self.height, self.width, 3
         return np.asarray(np.random.default_rng(1).integers(96, 112, shape, np.uint8), np.uint8)
 
-    def painted(self, empty: Frame, corners: Corners) -> Frame:
-        """Paint each vehicle in a colour of its own."""
+    def with_vehicles(self, empty: Frame, corners: Corners) -> Frame:
+        """Paint each vehicle in a colour of its own onto a copy of the empty image."""
         frame: Frame = empty.copy()
         width, height = self.size
         for number, (x, y) in corners.items():
@@ -132,70 +127,3 @@ class Traffic:
         if self._rng.random() < self._road.false:
             rows.append(np.array([*self._rng.uniform(0, 100, 2), 0.75 * width, 0.75 * height]))
         return np.array(rows).reshape(-1, 4)
-
-
-@dataclass(frozen=True)
-class Sighting:
-    """One vehicle in the tracker's answer: number, centre in px, and whether it is confirmed."""
-
-    identity: int
-    x: float
-    y: float
-    is_confirmed: bool
-
-
-class Numbers:
-    """Keeps who had which number, in memory that does not grow.
-
-    Attributes
-    ----------
-    issued : int
-        The highest number that was issued.
-    reissued : int
-        Numbers that came back after they were gone, or came below one that was issued before.
-    of : array
-        Count of the numbers that each vehicle had, shape (vehicles,).
-    handed_on : int
-        Numbers that went over to another vehicle.
-    """
-
-    def __init__(self, road: Road, total: int) -> None:
-        self.issued = self.reissued = self.handed_on = 0
-        self.of = np.zeros(total, np.int32)
-        self._road = road
-        self._votes: dict[int, Counter[int]] = {}
-
-    def judge(self, answer: Iterable[Sighting], corners: Corners) -> None:
-        """Take the answer to an image, and where the vehicles are in it."""
-        sightings = [one for one in answer if one.identity]  # tentative ones have no number yet
-        identities = {sighting.identity for sighting in sightings}
-        # Two tracks of one answer must not have one number.
-        self.reissued += len(sightings) - len(identities)
-        # A number that is gone is closed: memory must not grow with the hours.
-        for gone in self._votes.keys() - identities:
-            self._close(self._votes.pop(gone))
-        # The highest before this answer, as new ones come in any order within it.
-        highest = self.issued
-        for one in sightings:
-            if one.identity not in self._votes:
-                self.reissued += one.identity <= highest
-                self.issued = max(self.issued, one.identity)
-                self._votes[one.identity] = Counter()
-            vehicle = self._road.nearest(one.x, one.y, corners)
-            if one.is_confirmed and vehicle is not None:
-                self._votes[one.identity][vehicle] += 1
-
-    def _close(self, votes: Counter[int]) -> None:
-        """Note whose number it was."""
-        if votes:
-            ((vehicle, own),) = votes.most_common(1)
-            self.of[vehicle] += 1
-            self.handed_on += votes.total() - own > FOREIGN * votes.total()
-
-    def report(self) -> None:
-        """Print what became of the numbers."""
-        missing = (self.of == 0).sum()
-        split = (self.of > 1).sum()
-        print(f"numbers issued: {self.issued}; twice: {self.reissued}")
-        print(f"vehicles without a number: {missing}; with more than one: {split}")
-        print(f"numbers that went over to another vehicle: {self.handed_on}")

@@ -55,7 +55,7 @@ class Ledger:
         True where a good image may be answered without an estimate, as before there is a target.
     counts : Counter of str
         Answers by the kind of image and their mode, and other events.
-    seconds, wrong : list of str
+    second_answers, wrong_answers : list of str
         Answers to images that had theirs, and answers that are wrong in themselves.
     lost : int
         Images that never reached the node; known after `close`.
@@ -64,8 +64,8 @@ class Ledger:
     node: NodeProcess
     may_wait: bool = False
     counts: Counter[str] = field(default_factory=Counter)
-    seconds: list[str] = field(default_factory=list)
-    wrong: list[str] = field(default_factory=list)
+    second_answers: list[str] = field(default_factory=list)
+    wrong_answers: list[str] = field(default_factory=list)
     lost: int = 0
     _waiting: dict[int, deque[_Sent]] = field(default_factory=dict)
     _latencies: list[float] = field(default_factory=list)
@@ -103,7 +103,7 @@ class Ledger:
                 continue
             # The image has had its answer, or was never sent.
             if key not in self._waiting:
-                self.seconds.append(f"{key}: {answer}")
+                self.second_answers.append(f"{key}: {answer}")
                 continue
             # The oldest of those with this stamp.
             sent = self._waiting[key].popleft()
@@ -121,7 +121,7 @@ class Ledger:
         if sent.is_good:
             self._latencies.append(time.monotonic() - sent.when)
         if not _is_right(mode, values, sent, may_wait=self.may_wait):
-            self.wrong.append(f"{sent} is answered {mode}: {values}")
+            self.wrong_answers.append(f"{sent} is answered {mode}: {values}")
 
     def take(self, tester: Tester, image: Image, *, is_good: bool) -> None:
         """Send an image and wait for its answer, and a moment longer for no second one."""
@@ -133,8 +133,8 @@ class Ledger:
             tester.spin(0.002)
             if time.monotonic() > deadline or not self.node.is_alive:
                 raise FaultError(f"no answer to {image.header}:\n{self.node.output[-4000:]}")
-        if self.seconds or self.wrong:
-            raise FaultError((self.seconds + self.wrong)[0])
+        if self.second_answers or self.wrong_answers:
+            raise FaultError((self.second_answers + self.wrong_answers)[0])
 
     def weigh(self) -> None:
         """Note the node's memory."""
@@ -160,15 +160,18 @@ class Ledger:
         growth = self._growth()
         print(f"{self.node.name}: {self.answered} images answered, {self.lost} lost in transit")
         print(f"  others without an answer: {max(self.unanswered - self.lost, 0)}")
-        print(f"  second answers: {len(self.seconds)}; wrong answers: {len(self.wrong)}")
+        print(f"  second answers: {len(self.second_answers)}", end="; ")
+        print(f"wrong answers: {len(self.wrong_answers)}")
         for words, count in sorted(self.counts.items()):
             print(f"  {words:18} {count}")
         middle, high, most = np.percentile(np.array(self._latencies or [0.0]) * 1e3, [50, 95, 99])
         print(f"  answers after {middle:.1f} ms (p50), {high:.1f} (p95), {most:.1f} (p99)")
-        for words in [*self.seconds, *self.wrong][:_SHOWN]:
+        for words in [*self.second_answers, *self.wrong_answers][:_SHOWN]:
             print(f"  {words}")
         # An image that DDS lost on its way needs no answer.
-        is_complete = self.unanswered <= self.lost and not self.seconds and not self.wrong
+        is_complete = (
+            self.unanswered <= self.lost and not self.second_answers and not self.wrong_answers
+        )
         return is_complete and growth <= GROWTH and all(self.node.changes)
 
     def _growth(self) -> float:

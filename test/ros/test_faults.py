@@ -22,7 +22,7 @@ needs_vision = pytest.mark.skipif(
 )
 
 
-def give(start_process, *words: str, timeout: float = 120.0) -> str:
+def give(start_process, *words: str, timeout: float = 300.0) -> str:
     process = start_process("-m", "laboratory", "faults", *words)
     status = process.wait(timeout)
     assert status == 0, process.output

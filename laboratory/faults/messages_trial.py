@@ -8,7 +8,8 @@ from __future__ import annotations
 import random
 import time
 
-from laboratory.faults.faulty_messages import TARGET_BOX, Drive, Faults
+from laboratory.faults.drive import TARGET_BOX, Drive
+from laboratory.faults.faulty_messages import FaultyMessages
 from laboratory.faults.ledger import Ledger
 from laboratory.faults.node_process import NodeProcess, Tester
 
@@ -26,7 +27,7 @@ def give_messages(tester: Tester, variant: str, count: int, seed: int) -> bool:
     """
     drive = Drive()
     draw = random.Random(seed)
-    faults = Faults(drive.image, seed)
+    faults = FaultyMessages(drive.image, seed)
     sides = zip(("x", "y", "width", "height"), TARGET_BOX, strict=True)
     words = [f"target.{name}:={value}" for name, value in sides]
     # A deep queue, so that none is dropped, and few particles, so that thousands are soon through.
@@ -46,7 +47,7 @@ def give_messages(tester: Tester, variant: str, count: int, seed: int) -> bool:
         ledger.take(tester, image, is_good=is_good)
         # Two faulty sizes or times that agree with no good image between have to be believed.
         if is_good:
-            faults.good()
+            faults.note_good()
         # Once a second: reading it costs time, too.
         if time.monotonic() >= weighed + 1:
             weighed = time.monotonic()

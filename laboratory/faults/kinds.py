@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The faults that a request asks for, given one kind after the other."""
+"""Kinds of faults by their name, and the trial that gives each."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from laboratory.faults.detector import vision
-from laboratory.faults.detector_faults import give_detector_faults
-from laboratory.faults.files import give_files
-from laboratory.faults.messages import give_messages
+from laboratory.faults.detector_trial import give_detector_faults
+from laboratory.faults.files_trial import give_files
+from laboratory.faults.messages_trial import give_messages
 from laboratory.faults.node_process import FaultError, Tester
 from laboratory.faults.soak import Soak
+from laboratory.faults.vision_messages import vision_messages
 
 if TYPE_CHECKING:
     from laboratory.faults.request import Request
@@ -43,7 +43,7 @@ def _messages(tester: Tester, request: Request) -> bool:
 
 
 def _detector(tester: Tester, request: Request, folder: Path) -> bool:
-    messages = None if request.motion else vision(folder)
+    messages = None if request.motion else vision_messages(folder)
     return give_detector_faults(tester, messages, request.seconds, request.only)
 
 

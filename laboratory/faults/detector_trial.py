@@ -18,11 +18,12 @@ from typing import Any
 import numpy as np
 from sensor_msgs.msg import PointCloud2
 
-from laboratory.faults.detector import Detector, Fault, sightings
-from laboratory.faults.faulty_messages import header_at
+from laboratory.faults.detector import Detector, Fault
+from laboratory.faults.drive import header_at
 from laboratory.faults.lanes import Corners, Road, Traffic
 from laboratory.faults.ledger import VARYING_PARTS, Ledger
 from laboratory.faults.node_process import NodeProcess, Tester
+from laboratory.faults.numbers import sightings
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.ros.messages import image_message, stamp_ns
 from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT
@@ -142,7 +143,9 @@ class Trial:
         """End the node; return whether all held."""
         self._ledger.close()
         ledger = self._ledger
-        return self._is_good and not (ledger.unanswered or ledger.seconds or ledger.wrong)
+        return self._is_good and not (
+            ledger.unanswered or ledger.second_answers or ledger.wrong_answers
+        )
 
     def _play(self, count: int, detect: Fault, shift: int) -> None:
         """Show images; with a shift the camera moves by so many px each time, for a second."""
@@ -172,7 +175,7 @@ class Trial:
 
     def _painted(self, corners: Corners) -> Frame:
         """Paint the vehicles, each with windows and shadows of its own, as pixels hold it by."""
-        frame = ROAD.painted(self._empty, corners)
+        frame = ROAD.with_vehicles(self._empty, corners)
         for number, (x, y) in corners.items():
             left = int(x)
             top = int(y)
