@@ -22,7 +22,7 @@ from laboratory.scenes import make_scene
 from laboratory.stress.scoring import Score, score_estimates
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.tables import NO_SCORE, markdown
-from vehicle_pf_tracker.following.driver import OfflineTracker
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.results.output_files import write_text

@@ -19,16 +19,9 @@ from reproduction.page import write_page
 from reproduction.running import complete
 from vehicle_pf_tracker.cli.console import USAGE_STATUS, UsageError, counting
 from vehicle_pf_tracker.cli.main import exit_status
-from vehicle_pf_tracker.cli.requests import (
-    WorkersOption,
-    add_options,
-    natural,
-    option,
-    positional,
-    positive,
-    request_of,
-    switch,
-)
+from vehicle_pf_tracker.cli.option_values import natural, positive
+from vehicle_pf_tracker.cli.requests import add_options, option, positional, request_of, switch
+from vehicle_pf_tracker.cli.shared_options import WorkersOption
 
 PROGRAM = "python -m reproduction"
 CELLS = "cells.jsonl"

@@ -17,8 +17,9 @@ from reproduction.apf_systems import APF_RIVALS, INTERPRETATIONS, SIX_SYSTEMS
 from reproduction.bands import BANDS_NOTE, draw_band, legend_of, log_errors
 from reproduction.numbers import median_and_range
 from reproduction.shading import shade_occlusions
+from vehicle_pf_tracker.evaluation.occlusion_scores import SETTLING_FRAMES
 from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
-from vehicle_pf_tracker.evaluation.scores import SETTLING_FRAMES, Scores
+from vehicle_pf_tracker.evaluation.scores import Scores
 
 _PLACE = "section IV, figure 6"
 

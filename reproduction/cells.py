@@ -18,7 +18,7 @@ from reproduction.paper_scenes import FIXED_SCENES, PAPER_SCENES, make_scene
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
-from vehicle_pf_tracker.following.driver import with_target
+from vehicle_pf_tracker.following.offline_tracker import with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import Value, from_mapping, specs, to_mapping
 from vehicle_pf_tracker.results.estimates import EstimateRow

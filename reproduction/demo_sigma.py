@@ -17,7 +17,7 @@ from collections.abc import Sequence
 
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.following.driver import OfflineTracker
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.scenes.scene import SceneFrame

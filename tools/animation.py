@@ -19,12 +19,13 @@ import numpy as np
 from PIL import Image
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.following.driver import OfflineTracker
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker
 from vehicle_pf_tracker.parameters.table import Value, from_mapping
 from vehicle_pf_tracker.results.output_files import replacing
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 from vehicle_pf_tracker.scenes.scene import SceneFrame
-from vehicle_pf_tracker.showing.drawing import MODE_COLOURS, Annotator, write_words
+from vehicle_pf_tracker.showing.drawing import write_words
+from vehicle_pf_tracker.showing.target_drawing import MODE_COLOURS, Annotator
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 SCENE = "highway"

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, positive, switch
+from vehicle_pf_tracker.cli.option_values import positive
+from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional, switch
 
 FAULT_KINDS = ("messages", "parameters", "recordings", "detector", "soak")
 

@@ -20,8 +20,9 @@ from laboratory.stress import (
 from laboratory.stress.battery import QUICK_FRAMES, QUICK_PER_SEQUENCE
 from laboratory.stress.report import MARKDOWN, table_rows, write_report
 from vehicle_pf_tracker.cli.console import counting, print_rows, tell_notices
-from vehicle_pf_tracker.cli.requests import option, positive
-from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest, chosen
+from vehicle_pf_tracker.cli.option_values import positive
+from vehicle_pf_tracker.cli.requests import option
+from vehicle_pf_tracker.cli.system_options import FEW_SEEDS, EvaluationRequest, asked_systems
 
 STORE = "scores.jsonl"
 
@@ -71,7 +72,7 @@ def run(request: Request) -> int:
 
 
 def _systems(request: Request) -> list[StressSystem]:
-    systems, notes = chosen(request)
+    systems, notes = asked_systems(request)
     tell_notices(notes)
     return [StressSystem.of(system) for system in systems]
 

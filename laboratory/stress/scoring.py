@@ -16,7 +16,8 @@ from laboratory.stress.calibration import Reliability
 from laboratory.stress.cases import Case
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.metrics import is_on_target
-from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames, score_occlusions
+from vehicle_pf_tracker.evaluation.occlusion_scores import score_occlusions
+from vehicle_pf_tracker.evaluation.scores import FrameScore, score_frames
 from vehicle_pf_tracker.recordings.footage import stamp_of
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode

@@ -9,7 +9,7 @@ from reproduction.running import cell_key, run_together
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.following.driver import OfflineTracker
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 

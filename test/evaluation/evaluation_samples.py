@@ -12,7 +12,7 @@ from drive import box_of, frame_of, stamp_of
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.grid.cells import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete, run_cell
-from vehicle_pf_tracker.evaluation.grid.sources import describe
+from vehicle_pf_tracker.evaluation.grid.sources import describe_recordings
 from vehicle_pf_tracker.evaluation.systems import System
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
@@ -69,7 +69,7 @@ def system(name, label=None, **changed):
 
 
 def make_plan(paths, systems=None, seeds=SEEDS):
-    described = dict(describe([str(path) for path in paths], None, 0.01))
+    described = dict(describe_recordings([str(path) for path in paths], None, 0.01))
     systems = [system("pf"), system("ms")] if systems is None else systems
     command = ["vehicle-pf-tracker", "evaluate", "free", "-o", "evaluation"]
     return Plan(described, systems, seeds, command)

@@ -9,10 +9,8 @@ from scoring_samples import PERIOD_NS, scored
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.metrics import (
-    curves,
-    measure,
-)
+from vehicle_pf_tracker.evaluation.curves import curves
+from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import Scores, score_frames
 from vehicle_pf_tracker.results.estimates import EstimateRow
 

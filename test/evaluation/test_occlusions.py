@@ -5,7 +5,8 @@ import pytest
 from scoring_samples import NONE, PARTIAL, PERIOD_NS, TOTAL, row, run_of, scored
 
 from vehicle_pf_tracker.evaluation.metrics import measure
-from vehicle_pf_tracker.evaluation.scores import FrameScore, count_failures, score_occlusions
+from vehicle_pf_tracker.evaluation.occlusion_scores import score_occlusions
+from vehicle_pf_tracker.evaluation.scores import FrameScore, count_failures
 from vehicle_pf_tracker.results.estimates import EstimateRow
 
 

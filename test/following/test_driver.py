@@ -11,7 +11,7 @@ from failing import ERROR, failing
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.following.driver import OfflineTracker, with_target
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker, with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.results.estimates import REJECTED_MODE, WAITING_MODE
 from vehicle_pf_tracker.trackers.attempts import TrackerError

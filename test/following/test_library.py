@@ -17,7 +17,7 @@ from small_recordings import TARGET, record
 
 from vehicle_pf_tracker import Box, InputError, track
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.showing.drawing import MODE_COLOURS
+from vehicle_pf_tracker.showing.target_drawing import MODE_COLOURS
 
 NOTEBOOK = Path(__file__).parents[2] / "docs" / "example.ipynb"
 

@@ -7,7 +7,7 @@ import pytest
 from drive import box_of, drive
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.following.driver import OfflineTracker, with_target
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker, with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.trackers.registry import VARIANTS

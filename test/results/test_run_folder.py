@@ -10,10 +10,10 @@ from drive import box_of, drive
 
 from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.following.driver import OfflineTracker, with_target
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker, with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.results.output_files import write_json, write_text
-from vehicle_pf_tracker.results.run_folder import describe_run, write_run
+from vehicle_pf_tracker.results.run_folder import describe_target_run, write_run
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 PF = VARIANTS["pf"]
@@ -30,7 +30,7 @@ def done():
     )
     rows = list(tracker.rows(drive(4)))
     source = "bag", "/camera/image_raw", ("a note",)
-    described = describe_run(tracker.session, tracker.start_frame, ("run", "bag"), *source)
+    described = describe_target_run(tracker.session, tracker.start_frame, ("run", "bag"), *source)
     return rows, described, tracker
 
 

@@ -10,7 +10,12 @@ import pytest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.showing.contact_sheet import THUMB_WIDTH, ContactSheet
-from vehicle_pf_tracker.showing.drawing import MODE_COLOURS, Annotator, annotated, estimate_words
+from vehicle_pf_tracker.showing.target_drawing import (
+    MODE_COLOURS,
+    Annotator,
+    estimate_words,
+    frame_with_targets,
+)
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 BLACK = np.zeros((120, 160, 3), np.uint8)
@@ -67,7 +72,7 @@ def test_the_path_ends_where_the_vehicle_is_lost():
 def test_a_frame_gets_its_time_and_a_line_for_each_target_and_stays_as_it_was():
     frame = BLACK.copy()
     row = EstimateRow.without(7, 0, "LOST")
-    picture = annotated(frame, 1_500_000_000, [(Annotator("van"), row, None)])
+    picture = frame_with_targets(frame, 1_500_000_000, [(Annotator("van"), row, None)])
     assert not frame.any()
     assert picture[:20].any() and picture[20:40].any()
     assert estimate_words("van", row) == "van LOST"

@@ -12,12 +12,12 @@ from vehicle_pf_tracker.recordings.bags.messages import (
     serialize,
 )
 from vehicle_pf_tracker.results.estimates import WAITING_MODE, EstimateRow
-from vehicle_pf_tracker.showing.drawing import MODE_COLOURS
 from vehicle_pf_tracker.showing.estimates_recording import (
     LINE_LIST,
     LINE_LOOP,
     image_annotations,
 )
+from vehicle_pf_tracker.showing.target_drawing import MODE_COLOURS
 
 STAMP = 3_000_000_007
 

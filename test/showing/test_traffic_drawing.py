@@ -17,8 +17,8 @@ from vehicle_pf_tracker.showing.drawing import draw_box, write_labels
 from vehicle_pf_tracker.showing.grids import draw_pixel_grid
 from vehicle_pf_tracker.showing.traffic_drawing import (
     Trails,
-    annotated,
     draw_vehicle,
+    frame_with_vehicles,
     identity_colour,
 )
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
@@ -62,7 +62,7 @@ def test_a_trail_is_drawn_behind_a_vehicle_until_it_is_lost():
             vehicle(2, 100 + index, 150, TrackMode.TENTATIVE),
         ]
         trails.add(estimates)
-    picture = annotated(BLACK, "", estimates, counter, trails)
+    picture = frame_with_vehicles(BLACK, "", estimates, counter, trails)
     on_road = picture[200, :180].any(axis=1)
     assert on_road[145:].all()  # 60 positions, the last at 199
     assert not on_road[:139].any()
@@ -85,7 +85,7 @@ def test_a_speed_is_written_where_the_road_is_known(monkeypatch):
         for index in range(25):
             estimates = [vehicle(1, 50 + 4 * index, 200)]  # 4 px in 40 ms are 10 m/s
             counter.update(estimates, index * 40_000_000)
-        annotated(BLACK, "", estimates, counter, Trails())
+        frame_with_vehicles(BLACK, "", estimates, counter, Trails())
         assert said in written
         written.clear()
 
@@ -111,7 +111,9 @@ def test_colours_of_neighbouring_numbers_differ():
 
 def test_the_frame_stays_as_it_was():
     frame = BLACK.copy()
-    picture = annotated(frame, "0:00.0", [vehicle(1, 160, 200)], Counter(CountingPlan()), Trails())
+    picture = frame_with_vehicles(
+        frame, "0:00.0", [vehicle(1, 160, 200)], Counter(CountingPlan()), Trails()
+    )
     assert picture.any()
     assert not frame.any()
 
@@ -122,12 +124,12 @@ def test_lines_and_zones_are_drawn_with_their_counts():
         (CountingZone("yard", ((10.0, 200.0), (90.0, 200.0), (90.0, 230.0), (10.0, 230.0))),),
     )
     counter = Counter(plan)
-    picture = annotated(BLACK, "", [], counter, Trails())
+    picture = frame_with_vehicles(BLACK, "", [], counter, Trails())
     assert picture[150, 5:315].all()
     assert picture[200:230, 10].all()
     for index, bottom in enumerate([120, 180]):
         counter.update([vehicle(1, 200, bottom)], index)
-    other = annotated(BLACK, "", [], counter, Trails())
+    other = frame_with_vehicles(BLACK, "", [], counter, Trails())
     assert (picture != other).any()  # 1 in
 
 
@@ -143,7 +145,7 @@ def written(monkeypatch, estimates, words=""):
         places[words] = (left, corner[1] - 10 * width - pen, right, corner[1] + pen)
 
     monkeypatch.setattr(drawing, "write_words", note)
-    annotated(BLACK, words, estimates, Counter(CountingPlan()), Trails())
+    frame_with_vehicles(BLACK, words, estimates, Counter(CountingPlan()), Trails())
     return places
 
 
@@ -180,7 +182,7 @@ def test_the_name_of_a_line_at_the_border_is_whole(monkeypatch, corner):
     note = lambda picture, words, at, colour, width=1: places.update({words: (at, width)})  # noqa: E731
     monkeypatch.setattr(drawing, "write_words", note)
     plan = CountingPlan((CountingLine("stop line", corner, (160.0, 120.0)),), ())
-    annotated(BLACK, "", [], Counter(plan), Trails())
+    frame_with_vehicles(BLACK, "", [], Counter(plan), Trails())
     ((words, ((left, bottom), width)),) = places.items()
     pen = max(1, round(width))
     (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, pen)

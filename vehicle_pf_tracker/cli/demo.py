@@ -16,8 +16,9 @@ from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import PROGRAM_NAME, tell_notice
 from vehicle_pf_tracker.cli.missing_modules import EVALUATION_MODULES
-from vehicle_pf_tracker.cli.requests import OverwriteOption, option
+from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.run import SHEET_FILE
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.results.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.results.run_folder import ESTIMATES_FILE

@@ -14,28 +14,26 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli import console, report
+from vehicle_pf_tracker.cli.option_values import names_in, positive
 from vehicle_pf_tracker.cli.report import ReportParts
-from vehicle_pf_tracker.cli.requests import (
+from vehicle_pf_tracker.cli.requests import option, switch
+from vehicle_pf_tracker.cli.shared_options import (
     IdOption,
     MaxDiffOption,
     SchedulerOption,
     TopicOption,
-    names_in,
-    option,
-    positive,
-    switch,
 )
 from vehicle_pf_tracker.cli.system_options import (
     DEFAULT_SEEDS,
     FEW_SEEDS,
     EvaluationRequest,
-    chosen,
+    asked_systems,
     runner_of,
 )
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.grid.cells import ALL_CELLS, Part, Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete
-from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
+from vehicle_pf_tracker.evaluation.grid.sources import describe_recordings, find_recordings
 from vehicle_pf_tracker.parameters.table import parse_assignments, specs
 
 if TYPE_CHECKING:
@@ -154,9 +152,11 @@ def run(request: Request) -> int:
 
 def _run_grid(request: Request, sources: Sequence[str]) -> int:
     """Run the missing cells of the grid, and write the report unless a part was asked for."""
-    systems, notes = chosen(request)
+    systems, notes = asked_systems(request)
     with console.stages("evaluate") as on_stage:
-        recordings = describe(sources, request.topic, request.max_diff, on_stage, request.id)
+        recordings = describe_recordings(
+            sources, request.topic, request.max_diff, on_stage, request.id
+        )
     console.tell_notices(notes)
     seeds = request.some_seeds(DEFAULT_SEEDS)
     command = list(request.command)

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import counting, tell_notices
-from vehicle_pf_tracker.cli.requests import OverwriteOption, TruthOptions, option, positional
+from vehicle_pf_tracker.cli.requests import option, positional
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption, TruthOptions
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.recordings.importing import IMPORT_FORMATS, import_recording
 

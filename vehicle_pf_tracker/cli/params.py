@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.cli.requests import NameChoices, VerbRequest, positional
+from vehicle_pf_tracker.cli.option_values import NameChoices
+from vehicle_pf_tracker.cli.requests import VerbRequest, positional
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.trackers.registry import NODES, Variant, find_node

@@ -11,6 +11,7 @@ from pathlib import Path
 import yaml
 
 from vehicle_pf_tracker.cli.console import counting
+from vehicle_pf_tracker.cli.option_values import positive
 from vehicle_pf_tracker.cli.pick_page import ask
 from vehicle_pf_tracker.cli.picked_shapes import (
     PAIRS_SECTION,
@@ -19,7 +20,8 @@ from vehicle_pf_tracker.cli.picked_shapes import (
     checked,
     words_of,
 )
-from vehicle_pf_tracker.cli.requests import OverwriteOption, SourceOptions, option, positive, switch
+from vehicle_pf_tracker.cli.requests import option, switch
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption, SourceOptions
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.parameters.files import read_yaml_file
 from vehicle_pf_tracker.recordings.source import ImageSource, frame_at

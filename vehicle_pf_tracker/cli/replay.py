@@ -12,16 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import UsageError, shown_progress, tell_notice, tell_notices
-from vehicle_pf_tracker.cli.requests import (
-    OverwriteOption,
-    RosOptions,
-    TopicOption,
-    number,
-    option,
-    positional,
-    positive_number,
-    switch,
-)
+from vehicle_pf_tracker.cli.option_values import number, positive_number
+from vehicle_pf_tracker.cli.requests import option, positional, switch
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption, RosOptions, TopicOption
 from vehicle_pf_tracker.cli.target_options import parse_box
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -29,9 +22,14 @@ from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.results.estimates import write_estimates
 from vehicle_pf_tracker.results.output_files import make_folder
+from vehicle_pf_tracker.results.run_folder import ESTIMATES_FILE
 
 if TYPE_CHECKING:
     from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions, ReplayReport
+
+
+ANSWERS = (ESTIMATES_FILE, f"*/{ESTIMATES_FILE}")
+"""Patterns of the files that `-o` replaces: of one node, and of each of several."""
 
 
 @contextmanager
@@ -39,10 +37,6 @@ def shown_replay() -> Iterator[Callable[[int, float | None], None]]:
     """Return a function that shows a replay's progress."""
     with shown_progress() as show:
         yield lambda frames, share: show(f"played {frames} frame{'s' * (frames > 1)}", share)
-
-
-ANSWERS = ("estimates.csv", "*/estimates.csv")
-"""Patterns of the files that `-o` replaces: of one node, and of each of several."""
 
 
 def _seconds(text: str) -> float:
@@ -171,7 +165,7 @@ def write_answers(folder: Path, nodes: Sequence[NodeReport]) -> None:
     """
     for node in nodes:
         place = folder if len(nodes) == 1 else folder / node.name.strip("/").replace("/", "_")
-        write_estimates(make_folder(place) / "estimates.csv", node.rows, node.road)
+        write_estimates(make_folder(place) / ESTIMATES_FILE, node.rows, node.road)
 
 
 def summary(report: ReplayReport) -> str:

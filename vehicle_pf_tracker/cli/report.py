@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle_pf_tracker.cli.console import stages, tell_notices
-from vehicle_pf_tracker.cli.requests import VerbRequest, names_in, option, positional
+from vehicle_pf_tracker.cli.option_values import names_in
+from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional
 from vehicle_pf_tracker.core.outputs import Products, claimed
 
 if TYPE_CHECKING:

@@ -12,16 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from vehicle_pf_tracker.cli.console import counting, tell_notices
+from vehicle_pf_tracker.cli.option_values import positive
 from vehicle_pf_tracker.cli.pick_page import ask
 from vehicle_pf_tracker.cli.picked_shapes import PAIR_FORM, PAIRS_SECTION, pair_of
-from vehicle_pf_tracker.cli.requests import (
-    OverwriteOption,
-    SourceOptions,
-    VerbRequest,
-    option,
-    positional,
-    positive,
-)
+from vehicle_pf_tracker.cli.requests import VerbRequest, option, positional
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption, SourceOptions
 from vehicle_pf_tracker.cli.target_options import read_list
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import claimed

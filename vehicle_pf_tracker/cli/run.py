@@ -5,10 +5,10 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 from vehicle_pf_tracker.cli.console import (
     PROGRAM_NAME,
@@ -18,20 +18,22 @@ from vehicle_pf_tracker.cli.console import (
     tell_notices,
 )
 from vehicle_pf_tracker.cli.many_sources import follow_each
-from vehicle_pf_tracker.cli.requests import MaxDiffOption, NameChoices, TruthOptions, option, switch
+from vehicle_pf_tracker.cli.option_values import NameChoices
+from vehicle_pf_tracker.cli.requests import option, switch
 from vehicle_pf_tracker.cli.serving import served
+from vehicle_pf_tracker.cli.shared_options import MaxDiffOption, TruthOptions
 from vehicle_pf_tracker.cli.source_lists import SeveralSources
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import Stop, stopping
 from vehicle_pf_tracker.cli.target_options import by_name
-from vehicle_pf_tracker.cli.tracking_options import chosen
 from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.association import max_diff_ns
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.evaluation.columns import METRIC_COLUMNS, number_text
 from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.scores import score_frames
-from vehicle_pf_tracker.following.driver import OfflineTracker, follow
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker
+from vehicle_pf_tracker.following.target_following import follow_targets
 from vehicle_pf_tracker.recordings.source import ImageSource, open_source
 from vehicle_pf_tracker.recordings.truth.files import Beside
 from vehicle_pf_tracker.results.estimates import EstimateRow, summary, write_tracks
@@ -40,7 +42,7 @@ from vehicle_pf_tracker.results.run_folder import (
     ESTIMATES_FILE,
     METRICS_FILE,
     RUN_FILE,
-    describe_run,
+    describe_target_run,
     write_run,
 )
 from vehicle_pf_tracker.results.trajectories import trajectory_files, write_trajectories
@@ -54,6 +56,11 @@ TRACKS = "tracks.csv"
 """Table of several targets, instead of `ESTIMATES_FILE`."""
 PRODUCTS = (ESTIMATES_FILE, METRICS_FILE, RUN_FILE, SHEET_FILE, TRACKS)
 """Files of a run, which `--overwrite` replaces: no others in the folder are touched."""
+
+Trackers: TypeAlias = Mapping[str, OfflineTracker]
+"""Tracker of each target, by the target's name."""
+Rows: TypeAlias = Mapping[str, list[EstimateRow]]
+"""Estimates of each target, a row for each frame, by the target's name."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,11 +94,12 @@ def run(request: Request) -> int:
     if not request.is_of_several:
         return run_one(request)
     variant = find_variant(request.variant)
-    return follow_each(request, variant, run_one, functools.partial(chosen, variant))
+    return follow_each(request, variant, run_one, lambda each: each.configuration(variant))
 
 
 def run_one(request: Request) -> int:
     """Track in one source, write the results, and print a summary of each target."""
+    # 1. Check what the command names; nothing is written yet.
     variant = find_variant(request.variant)
     # What cannot be read of the truth beside images costs the scores, and not the run.
     source = open_source(
@@ -102,53 +110,22 @@ def run_one(request: Request) -> int:
         identity=request.id,
         beside=Beside.NOTED,
     )
-    path = request.output or Path("results", short_name(request.source) or "run")
-    outputs = (Products(path, PRODUCTS), request.video, request.recording, *_tum_files(request))
+    folder = request.output or Path("results", short_name(request.source) or "run")
+    outputs = (Products(folder, PRODUCTS), request.video, request.recording, *_tum_files(request))
     stop = Stop()
     with claimed(outputs, (*request.inputs, request.truth), overwrite=request.overwrite):
-        status = _track(request, variant, source, path, stop)
-    return stop.ended(status)
-
-
-def _track(
-    request: Request, variant: Variant, source: ImageSource, folder: Path, stop: Stop
-) -> int:
-    """Track, write the results, print notices and summaries, and return the exit status."""
-    sheet = folder / SHEET_FILE
-    pictures = Pictures(request.video, particles=request.particles, sheet=sheet)
-    trackers, rows = _follow(request, variant, source, stop, pictures)
-    ended = cut_short(stop, source, max(map(len, rows.values())))
-    of_trackers = [
-        f"{name}: {sentence}" if len(trackers) > 1 else sentence
-        for name, tracker in trackers.items()
-        for sentence in tracker.notices
-    ]
-    pictures.write_sheet()  # before the notices, which say whether it failed
-    side = pictures.side
-    notices = [*source.notices, *of_trackers, *side.notices, *ended]
-    tell_notices(notices)
-    (folder / TRACKS).unlink(missing_ok=True)
-    for name, tracker in trackers.items():
-        provenance = request.command, request.source, source.image_topic, notices
-        description = describe_run(tracker.session, tracker.start_frame, *provenance)
-        part = folder if len(trackers) == 1 else folder / name
-        write_run(part, rows[name], description, tracker.road_columns)
-    if len(trackers) > 1:
-        write_tracks(folder / TRACKS, rows)
-    else:
-        _score(request, source, folder, *rows.values())
-    if request.tum:
-        write_trajectories(request.tum, rows, source.truth())
-    for name, of_target in rows.items():
-        size = trackers[name].session.size
-        print(f"{name + ': ' if len(rows) > 1 else ''}{summary(of_target, size)}")
-    has_sheet = sheet.exists()
-    print(f"results are in {folder}{f'; {SHEET_FILE} shows the key frames' if has_sheet else ''}")
-    if pictures.has_video:
-        print(f"the video is {request.video}")
-    if request.recording and not side.failed(_recording_of(request)):
-        print(f"the recording is {request.recording}, for Foxglove and `ros2 bag play`")
-    return stop.status if ended else int(bool(side.notices))
+        # 2. Follow the targets to the end or to a signal.
+        sheet = folder / SHEET_FILE
+        pictures = Pictures(request.video, particles=request.particles, sheet=sheet)
+        trackers, rows = _follow(request, variant, source, stop, pictures)
+        ended = cut_short(stop, source, max(map(len, rows.values())))
+        pictures.write_sheet()  # before the notices, which say whether it failed
+        notices = [*source.notices, *_notices(trackers), *pictures.side.notices, *ended]
+        tell_notices(notices)
+        # 3. Write the results, score them where there is truth, and say where they are.
+        _write(request, source, folder, trackers, rows, notices)
+        _tell(request, folder, trackers, rows, pictures)
+    return stop.ended(stop.status if ended else int(bool(pictures.side.notices)))
 
 
 def _tum_files(request: Request) -> list[Path]:
@@ -162,21 +139,21 @@ def _tum_files(request: Request) -> list[Path]:
 
 def _follow(
     request: Request, variant: Variant, source: ImageSource, stop: Stop, pictures: Pictures
-) -> tuple[dict[str, OfflineTracker], dict[str, list[EstimateRow]]]:
+) -> tuple[Trackers, Rows]:
     """Follow all targets to the end or to a signal; return their trackers and rows by name."""
     with (
         stopping(stop),
         counting("tracked") as progress,
         served(request.serve, request.token, pictures.side) as page,
     ):
-        (first, found), frames = numbered_part(source, request.start, request.end, stop, progress)
-        trackers = _trackers(request, variant, source, first, found.stamp_ns)
+        (number, first), frames = numbered_part(source, request.start, request.end, stop, progress)
+        trackers = _trackers(request, variant, source, number, first.stamp_ns)
         if not request.recording:
-            return trackers, follow(trackers, frames, pictures, page=page)
+            return trackers, follow_targets(trackers, frames, pictures, page=page)
         node = f"{variant.name}_tracker"
         recording = run_recording(request.recording, node, list(trackers), source.truth())
         with pictures.side.growing(_recording_of(request), recording) as on_frame:
-            return trackers, follow(trackers, frames, pictures, on_frame, page)
+            return trackers, follow_targets(trackers, frames, pictures, on_frame, page)
 
 
 def _recording_of(request: Request) -> str:
@@ -186,16 +163,16 @@ def _recording_of(request: Request) -> str:
 
 def _trackers(
     request: Request, variant: Variant, source: ImageSource, first: int, first_ns: int
-) -> dict[str, OfflineTracker]:
+) -> Trackers:
     """Make a tracker for each target given; without any, for the one configured, or for truth."""
-    configuration = chosen(variant, request)
+    configuration = request.configuration(variant)
     targets = by_name(request.given_targets(), first)
     box = configuration.session.target.box
     targets = targets or {"1": {} if box is None else {first: box}}
     truth = None
     if not any(targets.values()):
-        earliest = first_ns - max_diff_ns(request.max_diff)
-        truth = next((one for one in source.truth() if one.stamp_ns >= earliest), None)
+        earliest_ns = first_ns - max_diff_ns(request.max_diff)
+        truth = next((state for state in source.truth() if state.stamp_ns >= earliest_ns), None)
         if truth is None:
             tell_notices(source.notices)  # they say which truth was seen and not read
             raise UsageError(
@@ -213,6 +190,45 @@ def _trackers(
         )
         for name, boxes in targets.items()
     }
+
+
+def _notices(trackers: Trackers) -> list[str]:
+    """Collect the irregularities of all targets, with their names where there are several."""
+    return [
+        f"{name}: {sentence}" if len(trackers) > 1 else sentence
+        for name, tracker in trackers.items()
+        for sentence in tracker.notices
+    ]
+
+
+def _write(
+    request: Request,
+    source: ImageSource,
+    folder: Path,
+    trackers: Trackers,
+    rows: Rows,
+    notices: Sequence[str],
+) -> None:
+    """Write the results of each target, the scores of a single one, and the trajectories."""
+    is_single = len(trackers) == 1
+    (folder / TRACKS).unlink(missing_ok=True)
+    for name, tracker in trackers.items():
+        description = describe_target_run(
+            tracker.session,
+            tracker.start_frame,
+            request.command,
+            request.source,
+            source.image_topic,
+            notices,
+        )
+        own = folder if is_single else folder / name
+        write_run(own, rows[name], description, tracker.road_columns)
+    if is_single:
+        _score(request, source, folder, *rows.values())
+    else:
+        write_tracks(folder / TRACKS, rows)
+    if request.tum:
+        write_trajectories(request.tum, rows, source.truth())
 
 
 def _score(
@@ -233,3 +249,18 @@ def run_rows(metrics: Metrics) -> list[list[str]]:
         for column, value in values
         if value is not None
     ]
+
+
+def _tell(
+    request: Request, folder: Path, trackers: Trackers, rows: Rows, pictures: Pictures
+) -> None:
+    """Print a summary of each target, and where the results are."""
+    for name, of_target in rows.items():
+        label = f"{name}: " if len(rows) > 1 else ""
+        print(f"{label}{summary(of_target, trackers[name].session.size)}")
+    has_sheet = (folder / SHEET_FILE).exists()
+    print(f"results are in {folder}{f'; {SHEET_FILE} shows the key frames' if has_sheet else ''}")
+    if pictures.has_video:
+        print(f"the video is {request.video}")
+    if request.recording and not pictures.side.failed(_recording_of(request)):
+        print(f"the recording is {request.recording}, for Foxglove and `ros2 bag play`")

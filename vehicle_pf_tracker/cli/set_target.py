@@ -8,7 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.requests import RosOptions, positional
+from vehicle_pf_tracker.cli.requests import positional
+from vehicle_pf_tracker.cli.shared_options import RosOptions
 from vehicle_pf_tracker.cli.target_options import parse_box
 from vehicle_pf_tracker.core.box import Box
 

@@ -18,13 +18,8 @@ from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 from vehicle_pf_tracker.cli.console import UsageError
-from vehicle_pf_tracker.cli.requests import (
-    SchedulerOption,
-    VerbRequest,
-    add_options,
-    option,
-    positional,
-)
+from vehicle_pf_tracker.cli.requests import VerbRequest, add_options, option, positional
+from vehicle_pf_tracker.cli.shared_options import SchedulerOption
 from vehicle_pf_tracker.cli.tracking_options import TrackingRequest
 from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.errors import InputError, read_text

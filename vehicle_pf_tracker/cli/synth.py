@@ -10,7 +10,9 @@ from dataclasses import astuple, dataclass
 from pathlib import Path
 
 from vehicle_pf_tracker.cli.console import UsageError, counting
-from vehicle_pf_tracker.cli.requests import NameChoices, OverwriteOption, option, positional, switch
+from vehicle_pf_tracker.cli.option_values import NameChoices
+from vehicle_pf_tracker.cli.requests import option, positional, switch
+from vehicle_pf_tracker.cli.shared_options import OverwriteOption
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.core.outputs import claimed
 from vehicle_pf_tracker.parameters.table import specs

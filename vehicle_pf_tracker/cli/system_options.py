@@ -11,15 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from vehicle_pf_tracker.cli.console import UsageError, tell_notice
-from vehicle_pf_tracker.cli.requests import (
-    SchedulerOption,
-    WorkersOption,
-    natural,
-    option,
-    positional,
-    positive,
-)
-from vehicle_pf_tracker.cli.tracking_options import configure
+from vehicle_pf_tracker.cli.option_values import natural, positive
+from vehicle_pf_tracker.cli.parameter_options import configure
+from vehicle_pf_tracker.cli.requests import option, positional
+from vehicle_pf_tracker.cli.shared_options import SchedulerOption, WorkersOption
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.baselines import BASELINE_MODELS, Baseline, unknown_baseline
 from vehicle_pf_tracker.evaluation.systems import BASELINE_PREFIX, System
@@ -135,7 +130,7 @@ class EvaluationRequest(WorkersOption):
         return range(self.first_seed, self.first_seed + (self.seeds or usual))
 
 
-def chosen(request: EvaluationRequest) -> tuple[list[System], list[str]]:
+def asked_systems(request: EvaluationRequest) -> tuple[list[System], list[str]]:
     """Return the systems that a request asks for, and notes about them.
 
     Raises

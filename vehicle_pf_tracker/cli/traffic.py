@@ -15,13 +15,13 @@ from typing import Any
 from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.many_sources import follow_each
 from vehicle_pf_tracker.cli.network_advice import advice_over_sources, network_advice
-from vehicle_pf_tracker.cli.requests import option, positive_number
-from vehicle_pf_tracker.cli.serving import served
+from vehicle_pf_tracker.cli.option_values import positive_number
+from vehicle_pf_tracker.cli.requests import option
+from vehicle_pf_tracker.cli.serving import ServeAddress, served
 from vehicle_pf_tracker.cli.source_lists import SeveralSources
 from vehicle_pf_tracker.cli.source_part import cut_short, numbered_part
 from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
 from vehicle_pf_tracker.cli.target_options import by_name
-from vehicle_pf_tracker.cli.tracking_options import ServeAddress, chosen
 from vehicle_pf_tracker.core.addresses import short_name
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
@@ -42,7 +42,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.recordings.source import ImageSource
 from vehicle_pf_tracker.results.output_files import make_folder, write_json
-from vehicle_pf_tracker.results.run_folder import RUN_FILE, describe
+from vehicle_pf_tracker.results.run_folder import RUN_FILE, describe_run
 from vehicle_pf_tracker.results.traffic_results import (
     COUNTS_FILE,
     MOT_TRACKS,
@@ -196,7 +196,7 @@ def _document(
         "images_with_ambiguous_blobs": tracking.session.found.ambiguous,
         "summary": tracking.summary.to_json(),
     }
-    document = describe(request.command, request.source, topic, notices, **facts)
+    document = describe_run(request.command, request.source, topic, notices, **facts)
     if kind == MODEL_DETECTOR:
         document["versions"]["onnxruntime"] = metadata.version("onnxruntime")
         document["model_sha256"] = model_file(configuration.tracker.detector.model)[1]
@@ -205,7 +205,7 @@ def _document(
 
 def _configuration(request: Request) -> Configuration:
     """Return the parameters; the options of the detector go before files and ``--set``."""
-    configuration = chosen(TRAFFIC_VARIANT, request)
+    configuration = request.configuration(TRAFFIC_VARIANT)
     if configuration.session.target.box is not None:
         raise InputError("target.x to target.height are for one vehicle; give --target x,y,w,h")
     if request.detections and (request.detector or request.model):

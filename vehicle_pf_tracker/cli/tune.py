@@ -18,24 +18,18 @@ from vehicle_pf_tracker.cli.console import (
     tell_notice,
     tell_notices,
 )
-from vehicle_pf_tracker.cli.requests import (
-    MaxDiffOption,
-    NameChoices,
-    SchedulerOption,
-    TopicOption,
-    option,
-    positional,
-    positive,
-)
+from vehicle_pf_tracker.cli.option_values import NameChoices, positive
+from vehicle_pf_tracker.cli.parameter_options import ParameterOptions, configure
+from vehicle_pf_tracker.cli.requests import option, positional
+from vehicle_pf_tracker.cli.shared_options import MaxDiffOption, SchedulerOption, TopicOption
 from vehicle_pf_tracker.cli.system_options import make_system, runner_of, settable
-from vehicle_pf_tracker.cli.tracking_options import StartOptions, configure
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.cells import Plan
 from vehicle_pf_tracker.evaluation.grid.running import complete
-from vehicle_pf_tracker.evaluation.grid.sources import describe, find_recordings
+from vehicle_pf_tracker.evaluation.grid.sources import describe_recordings, find_recordings
 from vehicle_pf_tracker.evaluation.tuning_aims import OBJECTIVES, default_search
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
@@ -61,7 +55,7 @@ Recordings = Sequence[tuple[Source, dict[int, Truth]]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Request(StartOptions, TopicOption, MaxDiffOption, SchedulerOption):
+class Request(ParameterOptions, TopicOption, MaxDiffOption, SchedulerOption):
     """Request of `tune`."""
 
     sources: Sequence[str] = positional(
@@ -104,6 +98,7 @@ class Request(StartOptions, TopicOption, MaxDiffOption, SchedulerOption):
 def run(request: Request) -> int:
     """Search, write the results, and print whether the gain holds or how to find out."""
     from vehicle_pf_tracker.evaluation import tuning
+    from vehicle_pf_tracker.evaluation.search_space import search_space
 
     variant = find_variant(request.variant)
     given = [] if request.params is None else [request.params]
@@ -111,12 +106,12 @@ def run(request: Request) -> int:
     configuration = configure(variant, given, assigned)
     base = make_system(variant, "", configuration, {})
     words = [word for text in request.search for word in text.split(",") if word]
-    space = tuning.search_space(variant, dict(base.parameters), words)
+    space = search_space(variant, dict(base.parameters), words)
     with stages("tune") as on_stage:
         tuned = find_recordings(request.sources)
         held_out = find_recordings(request.held_out)
         locations = [*tuned, *held_out]
-        recordings = describe(locations, request.topic, request.max_diff, on_stage)
+        recordings = describe_recordings(locations, request.topic, request.max_diff, on_stage)
     sources = [source for source, _ in recordings[: len(tuned)]]
     for other, _ in recordings[len(tuned) :]:
         if other.digest in {source.digest for source in sources}:

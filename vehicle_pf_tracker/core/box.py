@@ -24,6 +24,8 @@ Position: TypeAlias = tuple[float, float]
 LARGEST_SHARE = 4
 """Largest side of a target, in sides of the image. A vehicle close to the camera extends beyond the
 image; a box of more than four images is a mistake in its units or its order of numbers."""
+LARGEST_COORDINATE_PX = 1e5
+"""Bound of coordinates that a user gives, px: three times the largest side of an image (32767)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,9 +21,9 @@ from vehicle_pf_tracker.evaluation.columns import (
     Column,
     number_text,
 )
+from vehicle_pf_tracker.evaluation.occlusion_scores import OcclusionScore
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates, Summaries
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredRun
-from vehicle_pf_tracker.evaluation.scores import OcclusionScore
 from vehicle_pf_tracker.evaluation.statistics import Summary
 
 NO_SCORE = "-"

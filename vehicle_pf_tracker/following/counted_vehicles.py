@@ -24,7 +24,7 @@ from vehicle_pf_tracker.following.paced_detector import PacedDetector, Run, call
 from vehicle_pf_tracker.image.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
-from vehicle_pf_tracker.showing.traffic_drawing import Trails, annotated
+from vehicle_pf_tracker.showing.traffic_drawing import Trails, frame_with_vehicles
 from vehicle_pf_tracker.trackers.traffic.association import check_library
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
@@ -111,11 +111,11 @@ class CountedVehicles:
         hidden = f", {modes[TrackMode.OCCLUDED]} hidden" if modes[TrackMode.OCCLUDED] else ""
         count = f"{sum(modes[mode] for mode in COUNTED_MODES)} vehicles{hidden}"
         words = f"{head}{_LEARNING if self.is_learning else count}"
-        return annotated(frame, words, self.estimates, self.counter, self.trails)
+        return frame_with_vehicles(frame, words, self.estimates, self.counter, self.trails)
 
     def shown(self, frame: Frame) -> Frame:
         """Return a copy of the last image with vehicles and counts, without words about all."""
-        return annotated(frame, "", self.estimates, self.counter, self.trails)
+        return frame_with_vehicles(frame, "", self.estimates, self.counter, self.trails)
 
     def facts(self) -> dict[str, object]:
         """Return the number of vehicles, and what was counted, by name."""

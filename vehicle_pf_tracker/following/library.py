@@ -17,7 +17,7 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.following.driver import OfflineTracker
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.recordings.source import frame_at, open_source
 from vehicle_pf_tracker.recordings.truth.files import Beside
@@ -27,7 +27,7 @@ from vehicle_pf_tracker.results.estimates import (
     summary,
     write_estimates,
 )
-from vehicle_pf_tracker.showing.drawing import Annotator, annotated
+from vehicle_pf_tracker.showing.target_drawing import Annotator, frame_with_targets
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.registry import find_variant
 
@@ -120,7 +120,7 @@ class Estimates(Sequence[EstimateRow]):
         for earlier in self.rows[:number]:
             start_ns = start_of_clock(start_ns, earlier.stamp_ns)
         elapsed_ns = row.stamp_ns - start_ns
-        return ShownEstimate(row, annotated(frame, elapsed_ns, states))
+        return ShownEstimate(row, frame_with_targets(frame, elapsed_ns, states))
 
     def _repr_html_(self) -> str:
         last = max((row.frame for row in self.rows if row.box is not None), default=0)

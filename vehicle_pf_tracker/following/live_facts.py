@@ -71,7 +71,7 @@ def traffic_facts(
             to,
             counter.count(line.name, to),
             len(last := [one for one in recent.at(line.name, to) if counter.is_vehicle(one.label)]),
-            _mean([one.speed_kmh for one in last]),
+            _mean_kmh([one.speed_kmh for one in last]),
             "{} to {}".format(*counter.interval(line.name, to)),
         )
         for line in counter.plan.lines
@@ -113,8 +113,9 @@ def _table(
     return {"title": title, "columns": columns, "rows": list(rows)}
 
 
-def _mean(values: Iterable[float | None]) -> str | None:
-    known = [value for value in values if value is not None]
+def _mean_kmh(speeds: Iterable[float | None]) -> str | None:
+    """Return the mean of the speeds that are known, in words; None without any."""
+    known = [kmh for kmh in speeds if kmh is not None]
     return f"{fmean(known):.0f}" if known else None
 
 

@@ -18,12 +18,12 @@ from vehicle_pf_tracker.counting.zone_occupancy import USUAL_INTERVAL_S
 from vehicle_pf_tracker.detection.parameters import MODEL_DETECTOR, MOTION_DETECTOR
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles
 from vehicle_pf_tracker.following.detection_file import DetectionFile
-from vehicle_pf_tracker.following.driver import unreached
+from vehicle_pf_tracker.following.offline_tracker import unreached
 from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
 from vehicle_pf_tracker.results.estimates import clock_words, start_of_clock
 from vehicle_pf_tracker.results.traffic_results import TrackFiles
 from vehicle_pf_tracker.results.traffic_summary import TrafficSummary
-from vehicle_pf_tracker.showing.live_page import PAGE_NAME, LivePage
+from vehicle_pf_tracker.showing.live_page import LivePage
 from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
 from vehicle_pf_tracker.showing.traffic_pictures import TrafficPictures
 from vehicle_pf_tracker.trackers.attempts import TrackerError
@@ -138,10 +138,8 @@ class TrafficRun(CountedVehicles):
                 elapsed = clock_words(found.stamp_ns - start_ns)
                 draw = partial(self.drawn, found.frame, f"{elapsed}  frame {number}  ")
                 take((), draw, found.frame, found.stamp_ns)
-                if page is not None and not pictures.side.failed(PAGE_NAME):
-                    with pictures.side.attempt(PAGE_NAME):
-                        when = f"{elapsed}, frame {number}"
-                        page.show(partial(self.shown, found.frame), partial(self.page_facts, when))
+                facts = partial(self.page_facts, f"{elapsed}, frame {number}")
+                pictures.show(page, partial(self.shown, found.frame), facts)
 
     def sentences(self, detector: str) -> list[str]:
         """Return the summary, a line for each fact, or why there is no vehicle.

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.core.box import LARGEST_COORDINATE_PX, Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.parameters.table import (
@@ -24,8 +24,8 @@ from vehicle_pf_tracker.parameters.table import (
 )
 from vehicle_pf_tracker.parameters.table import to_mapping as values_of
 
-_LARGEST = 1e5
-"""Bound of target coordinates in px: three times the largest side of an image (32767 px)."""
+_COORDINATES = (-LARGEST_COORDINATE_PX, LARGEST_COORDINATE_PX)
+"""Bounds of the position of a target, px."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,13 +80,13 @@ _target_number = functools.partial(parameter, 0.0, unit="px", effect="starts")
 class TargetParameters:
     """The box to start on."""
 
-    x: float = _target_number("Left edge of the target.", bounds=(-_LARGEST, _LARGEST))
-    y: float = _target_number("Top edge of the target.", bounds=(-_LARGEST, _LARGEST))
+    x: float = _target_number("Left edge of the target.", bounds=_COORDINATES)
+    y: float = _target_number("Top edge of the target.", bounds=_COORDINATES)
     width: float = _target_number(
-        "Width of the target; 0 waits for a target.", bounds=(0.0, _LARGEST)
+        "Width of the target; 0 waits for a target.", bounds=(0.0, LARGEST_COORDINATE_PX)
     )
     height: float = _target_number(
-        "Height of the target; 0 waits for a target.", bounds=(0.0, _LARGEST)
+        "Height of the target; 0 waits for a target.", bounds=(0.0, LARGEST_COORDINATE_PX)
     )
 
     @property

@@ -14,12 +14,10 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from vehicle_pf_tracker.core.box import Position
+from vehicle_pf_tracker.core.box import LARGEST_COORDINATE_PX, Position
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.parameters.files import read_yaml_file
 
-_LARGEST = 1e5
-"""Bound of coordinates in px: three times the largest side of an image (32767 px)."""
 _MOST_CORNERS = 100
 """Corners of a polygon; drawn by hand it has ten, and every vehicle is tested against all."""
 _LONGEST_NAME = 80
@@ -242,7 +240,7 @@ def _point(value: Any, what: str) -> Position:
     if not (
         isinstance(value, list)
         and len(value) == 2
-        and all(type(part) in (int, float) and abs(part) <= _LARGEST for part in value)
+        and all(type(part) in (int, float) and abs(part) <= LARGEST_COORDINATE_PX for part in value)
     ):
         raise InputError(f"{what} has the point {str(value)[:60]}, which is not [x, y] in px")
     return float(value[0]), float(value[1])

@@ -14,7 +14,7 @@ from vehicle_pf_tracker.road.lens import LENS_MODELS, Lens
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
 from vehicle_pf_tracker.road.poses import Pose
 
-_LARGEST = 1e7
+_LARGEST_NUMBER = 1e7
 """Bound of every number: no image is as wide, and map coordinates (UTM) are below it."""
 
 
@@ -202,6 +202,8 @@ def parse_numbers(text: str, name: str) -> tuple[float, ...]:
         numbers = tuple(float(word) for word in text.split(",")) if text.strip() else ()
     except ValueError:
         raise InputError(f"{name} must be numbers apart by commas, got {text!r}") from None
-    if not all(abs(number) <= _LARGEST for number in numbers):
-        raise InputError(f"{name} has a number that is not finite or above {_LARGEST:g}: {text!r}")
+    if not all(abs(number) <= _LARGEST_NUMBER for number in numbers):
+        raise InputError(
+            f"{name} has a number that is not finite or above {_LARGEST_NUMBER:g}: {text!r}"
+        )
     return numbers

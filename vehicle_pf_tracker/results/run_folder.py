@@ -25,10 +25,15 @@ from vehicle_pf_tracker.results.output_files import make_folder, write_json
 from vehicle_pf_tracker.trackers.session import Session
 
 
-def describe_run(
-    session: Session, start_frame: int | None, command: Sequence[str], *source: Any
+def describe_target_run(
+    session: Session,
+    start_frame: int | None,
+    command: Sequence[str],
+    source: str,
+    topic: str,
+    notices: Sequence[str],
 ) -> dict[str, Any]:
-    """Make the content of `run.json` for the run of one target; see `describe`.
+    """Make the content of `run.json` for the run of one target; see `describe_run`.
 
     `seed` is the one in use: the drawn one where the parameter `seed` is -1; `kernels` likewise
     those that `auto` chose.
@@ -36,9 +41,11 @@ def describe_run(
     tracker = session.tracker
     box = session.settings.target.box
     return {
-        **describe(
+        **describe_run(
             command,
-            *source,
+            source,
+            topic,
+            notices,
             variant=session.variant.name,
             seed=tracker.seed,
             parameters={**to_mapping(tracker.parameters), **to_mapping(session.settings)},
@@ -49,7 +56,7 @@ def describe_run(
     }
 
 
-def describe(
+def describe_run(
     command: Sequence[str], source: str, topic: str, notices: Sequence[str], **facts: Any
 ) -> dict[str, Any]:
     """Make the part of `run.json` that every run has, without passwords of addresses.

@@ -1,11 +1,10 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Drawing into images: words, boxes, and the estimates of targets."""
+"""Drawing into images: words, boxes, paths, and labels that do not cover each other."""
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import TypeAlias
@@ -16,13 +15,9 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, Position, intersections
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.results.estimates import EstimateRow, clock_words
-from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 Colour = tuple[int, int, int]
 """Red, green, blue."""
-
-
 _LETTER_SCALE = 0.45
 """Scale of OpenCV's letters by the width of their strokes: ten widths high."""
 LETTER = 14
@@ -38,10 +33,10 @@ _LAST_PIXEL = 20_000
 """Pixels beyond which OpenCV's coordinates, of 16 bits and a fraction, overflow."""
 NEUTRAL: Colour = (200, 200, 200)
 """Colour of what is not sure: grey, which claims nothing."""
-_PARTICLE: Colour = (96, 160, 255)
-"""Colour of particles: blue, which no mode has."""
-_PATH_LENGTH = 300
-"""Positions shown of a path: ten seconds of video, longer ones hide the road."""
+
+Label: TypeAlias = tuple[Box, Colour, tuple[str, ...]]
+"""Box in px, its colour, and choices of words for it: the first that find room are written."""
+Labels: TypeAlias = list[Label]
 
 
 def line_width(picture: Frame) -> int:
@@ -120,11 +115,6 @@ def draw_path(
     cv2.polylines(picture, [path], closed, colour, line_width(picture), cv2.LINE_AA)
 
 
-Label: TypeAlias = tuple[Box, Colour, tuple[str, ...]]
-"""Box in px, its colour, and choices of words for it: the first that find room are written."""
-Labels: TypeAlias = list[Label]
-
-
 def write_labels(picture: Frame, labels: Iterable[Label], width: float = 0) -> None:
     """Write words around boxes, in the picture, where no others are; the first go first.
 
@@ -162,95 +152,3 @@ def dashes(corners: Sequence[Position], dash: float) -> Iterator[Array]:
         length = float(np.hypot(*(end - start)))
         for along in np.arange(0.0, length, 2 * dash):
             yield start + (end - start) / length * np.array([[along], [min(along + dash, length)]])
-
-
-MODE_COLOURS: dict[str, Colour] = {
-    Mode.TRACKING.value: (64, 220, 64),
-    Mode.OCCLUDED.value: (255, 176, 0),
-    Mode.LOST.value: (255, 48, 48),
-}
-"""Colour of each mode, (red, green, blue); `NEUTRAL` for frames without an estimate."""
-
-
-class Annotator:
-    """Drawing of one target in frame after frame, with the path behind it.
-
-    Parameters
-    ----------
-    name : str
-        Name of the target; empty where there is only one.
-    particles : bool
-        Draw the particles too.
-    """
-
-    def __init__(self, name: str = "", *, particles: bool = False) -> None:
-        self.name = name
-        self._shows_particles = particles
-        self._path: deque[tuple[float, float]] = deque(maxlen=_PATH_LENGTH)
-
-    def follow(self, estimate: Estimate | None) -> None:
-        """Continue the path; a lost target ends it."""
-        if estimate is None or estimate.mode is Mode.LOST:
-            self._path.clear()
-        else:
-            self._path.append(estimate.position)
-
-    def draw(self, picture: Frame, estimate: Estimate | None, words: str = "") -> bool:
-        """Draw a frame's estimate into `picture`, with `words` beside it.
-
-        A predicted position, under an occluder, is dashed; a lost target has neither box nor path,
-        nor words. Returns whether anything was drawn.
-        """
-        if estimate is None or estimate.mode is Mode.LOST:
-            return False
-        colour = MODE_COLOURS[estimate.mode.value]
-        width = line_width(picture)
-        if self._shows_particles:
-            for centre in pixels_at(estimate.particles):
-                cv2.circle(picture, centre, width, _PARTICLE, -1)
-        draw_path(picture, self._path, colour)
-        is_predicted = estimate.mode is Mode.OCCLUDED
-        draw_box(picture, estimate.box, colour, width, dashed=is_predicted)
-        if label := words or self.name:
-            write_labels(picture, [(estimate.box, colour, (label,))])
-        return True
-
-
-def draw_target(
-    picture: Frame, annotator: Annotator, mode: str, estimate: Estimate | None, words: str, row: int
-) -> bool:
-    """Draw a target with its words: beside it, or into a row at the upper left where it has no box.
-
-    Returns whether the row was used.
-    """
-    if annotator.draw(picture, estimate, words):
-        return False
-    write_line(picture, words, MODE_COLOURS.get(mode, NEUTRAL), row)
-    return True
-
-
-def estimate_words(name: str, row: EstimateRow) -> str:
-    """Return name, mode and confidence of a target in one line; the name may be empty."""
-    confidence = "" if row.confidence is None else f" {row.confidence:.2f}"
-    return f"{name} {row.mode}{confidence}".lstrip()
-
-
-def annotated(
-    frame: Frame,
-    elapsed_ns: int | None,
-    states: Iterable[tuple[Annotator, EstimateRow, Estimate | None]],
-) -> Frame:
-    """Return a copy of `frame` with all targets, their modes beside them, and a line for the time.
-
-    A target without a box has a line below that. Where no time is given, there is no such line.
-    """
-    picture: Frame = np.array(frame, order="C")
-    number = 0
-    line = 1 if elapsed_ns is None else 2
-    for annotator, row, estimate in states:
-        words = estimate_words(annotator.name, row)
-        line += draw_target(picture, annotator, row.mode, estimate, words, line)
-        number = row.frame
-    if elapsed_ns is not None:
-        write_line(picture, f"{clock_words(elapsed_ns)}  frame {number}", NEUTRAL)
-    return picture

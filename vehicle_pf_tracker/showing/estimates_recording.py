@@ -19,7 +19,7 @@ from vehicle_pf_tracker.recordings.bags import messages
 from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
 from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.results.estimates import EstimateRow
-from vehicle_pf_tracker.showing import drawing
+from vehicle_pf_tracker.showing import drawing, target_drawing
 from vehicle_pf_tracker.trackers.estimate import Mode
 
 LINE_LOOP = 2
@@ -56,7 +56,7 @@ def image_annotations(name: str, row: EstimateRow, size: tuple[int, int]) -> Any
     width = drawing.line_width_of(size)
     stamp = messages.header(row.stamp_ns).stamp
     height = float(_LETTERS * width)
-    colour = _colour(drawing.MODE_COLOURS[row.mode])
+    colour = _colour(target_drawing.MODE_COLOURS[row.mode])
     is_dashed = row.mode == Mode.OCCLUDED
     dashes = drawing.dashes(box.corners, _DASH * width)
     ends = np.concatenate(list(dashes)) if is_dashed else box.corners
@@ -72,7 +72,7 @@ def image_annotations(name: str, row: EstimateRow, size: tuple[int, int]) -> Any
     words = messages.message_class("foxglove_msgs/msg/TextAnnotation")(
         timestamp=stamp,
         position=_point(max(box.x, 0.0), max(box.y - 2.0 * width, height)),
-        text=drawing.estimate_words(name, row),
+        text=target_drawing.estimate_words(name, row),
         font_size=height,
         text_color=colour,
         background_color=_colour((0, 0, 0), _GROUND_OPACITY),

@@ -1,12 +1,12 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Pictures of a run's frames: a video of them, and the sheet of its key frames."""
+"""Pictures of a run while it goes on: a video, the sheet of its key frames, and the live page."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, nullcontext
 from pathlib import Path
 from typing import TypeAlias
@@ -14,6 +14,7 @@ from typing import TypeAlias
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
 from vehicle_pf_tracker.showing.contact_sheet import ContactSheet
+from vehicle_pf_tracker.showing.live_page import PAGE_NAME, LivePage
 from vehicle_pf_tracker.showing.side_products import SideProducts
 from vehicle_pf_tracker.showing.video_file import (
     HIGHEST_RATE,
@@ -38,7 +39,7 @@ _RATE_FRAMES = 30
 
 
 class Pictures:
-    """Annotated frames: a video, and the key frames.
+    """Annotated frames: a video, the key frames, and the picture of the page.
 
     Parameters
     ----------
@@ -97,6 +98,14 @@ class Pictures:
                 add(draw, frame_size(frame), stamp_ns)
 
             yield take, itertools.chain(ahead, frames)
+
+    def show(
+        self, page: LivePage | None, draw: Draw, facts: Callable[[], Mapping[str, object]]
+    ) -> None:
+        """Show the next frame and its numbers on a live page, where there is one that works."""
+        if page is not None and not self.side.failed(PAGE_NAME):
+            with self.side.attempt(PAGE_NAME):
+                page.show(draw, facts)
 
     def write_sheet(self) -> None:
         """Write the picture of the key frames, where it was asked for and there was a frame."""

@@ -104,7 +104,7 @@ def draw_counts(picture: Frame, labels: Labels, counter: Counter, scale: float =
         labels.append((Box.around(highest, 0, 0), _PLAN, (words,)))
 
 
-def annotated(
+def frame_with_vehicles(
     frame: Frame, words: str, estimates: Iterable[TrackEstimate], counter: Counter, trails: Trails
 ) -> Frame:
     """Return a copy of `frame` with counts, vehicles and a line of words, if there are any."""

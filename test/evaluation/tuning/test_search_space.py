@@ -13,7 +13,7 @@ from optuna.distributions import FloatDistribution as Real
 from optuna.distributions import IntDistribution as Integer
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.evaluation.tuning import search_space
+from vehicle_pf_tracker.evaluation.search_space import search_space
 from vehicle_pf_tracker.evaluation.tuning_aims import default_search
 from vehicle_pf_tracker.parameters.table import parameter, specs, to_mapping
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant

@@ -9,15 +9,10 @@ pytest.importorskip("optuna", reason="the extra [evaluation] is not installed")
 
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
 from vehicle_pf_tracker.evaluation.grid.running import CellResult
+from vehicle_pf_tracker.evaluation.search_space import search_space
 from vehicle_pf_tracker.evaluation.statistics import mean_of_means
 from vehicle_pf_tracker.evaluation.systems import System
-from vehicle_pf_tracker.evaluation.tuning import (
-    SearchTask,
-    check_gain,
-    open_study,
-    search,
-    search_space,
-)
+from vehicle_pf_tracker.evaluation.tuning import SearchTask, check_gain, open_study, search
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 

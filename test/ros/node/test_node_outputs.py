@@ -16,7 +16,7 @@ from sensor_msgs.msg import Image, PointCloud2
 from tracker_rig import HEIGHT, PERIOD_NS, SPEED, WIDTH, Rig, on_target, road, values_of
 
 from vehicle_pf_tracker.ros import messages
-from vehicle_pf_tracker.showing.drawing import Annotator
+from vehicle_pf_tracker.showing.target_drawing import Annotator
 
 pytestmark = pytest.mark.ros
 

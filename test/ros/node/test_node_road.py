@@ -37,7 +37,7 @@ from tracker_rig import (
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.following.driver import OfflineTracker, with_target
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker, with_target
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.road import RoadParameters
 from vehicle_pf_tracker.road.lens import Lens

@@ -15,7 +15,7 @@ from tracker_rig import FIRST_NS, PERIOD_NS, SPEED, TARGET, road
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.following.driver import OfflineTracker
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.restarts import measure_restarts, with_restarts
 from vehicle_pf_tracker.evaluation.scores import score_frames
 from vehicle_pf_tracker.evaluation.systems import BASELINE_PREFIX, System
-from vehicle_pf_tracker.following.driver import OfflineTracker
+from vehicle_pf_tracker.following.offline_tracker import OfflineTracker
 from vehicle_pf_tracker.results import run_folder
 from vehicle_pf_tracker.results.estimates import (
     REJECTED_MODE,
@@ -95,8 +95,10 @@ def _run_variant(cell: GridCell, seen: SourceFootage) -> tuple[list[EstimateRow]
     tracker = _tracker(cell, first_truth=seen.truth[0])
     rows = list(tracker.rows(seen.frames()))
     notices = [*seen.recording.notices, *tracker.notices]
-    source = cell.source.path, cell.source.topic, notices
-    return rows, run_folder.describe_run(tracker.session, tracker.start_frame, [], *source)
+    description = run_folder.describe_target_run(
+        tracker.session, tracker.start_frame, [], cell.source.path, cell.source.topic, notices
+    )
+    return rows, description
 
 
 def _tracker(cell: GridCell, **target: Any) -> OfflineTracker:
@@ -117,7 +119,7 @@ def _run_baseline(cell: GridCell, seen: SourceFootage) -> tuple[list[EstimateRow
         rows = list(baseline_rows(baseline, seen.frames(), seen.truth[0]))
         opencv = baseline.versions["opencv"]
     started = (row.frame for row in rows if row.mode not in {WAITING_MODE, REJECTED_MODE})
-    description = run_folder.describe(
+    description = run_folder.describe_run(
         [],
         cell.source.path,
         cell.source.topic,

@@ -106,7 +106,7 @@ def footage(source: Source) -> SourceFootage:
     return HELD[source]
 
 
-def describe(
+def describe_recordings(
     locations: Sequence[str],
     topic: str | None,
     max_diff: float,

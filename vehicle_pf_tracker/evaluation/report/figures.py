@@ -19,8 +19,8 @@ from matplotlib.figure import Figure
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
+from vehicle_pf_tracker.evaluation.curves import Curve
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
-from vehicle_pf_tracker.evaluation.metrics import Curve
 from vehicle_pf_tracker.evaluation.plots import LINE_STYLES, stretches
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
+from vehicle_pf_tracker.evaluation.curves import Curve, curves
 from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
-from vehicle_pf_tracker.evaluation.metrics import Curve, Metrics, curves, measure
+from vehicle_pf_tracker.evaluation.metrics import Metrics, measure
 from vehicle_pf_tracker.evaluation.restarts import measure_restarts
 from vehicle_pf_tracker.evaluation.scores import score_frames
 

@@ -1,4 +1,10 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Fast measurement of windows: one interface, implemented in OpenCV and numpy, and in numba."""
+"""Fast measurement of windows: one interface, implemented in OpenCV and numpy, and in numba.
+
+`interface` has the kernels of OpenCV and numpy, and chooses. `numba_kernels` are numba's; they call
+modules of compiled functions: `numba_pixel_cells` (bin of each pixel), `numba_windows` (counts and
+similarities of windows), `numba_gradients`, `numba_edges` and `numba_counts` (edge points),
+`numba_mean_shift` and `numba_cells` (oriented gradients). `numba_jit` compiles, for `numba_types`.
+"""

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.ros.node.publishers import (
     in_pixels,
 )
 from vehicle_pf_tracker.ros.node.stream_localisation import StreamLocalisation
-from vehicle_pf_tracker.showing.drawing import Annotator, draw_target
+from vehicle_pf_tracker.showing.target_drawing import Annotator, draw_target
 from vehicle_pf_tracker.trackers.estimate import Estimate
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from vehicle_pf_tracker.core.association import PAIRED_WITHIN_S, is_nearest, max_diff_ns
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.following.driver import with_next
+from vehicle_pf_tracker.following.offline_tracker import with_next
 from vehicle_pf_tracker.recordings.bags.reader import RecordedMessage, Recording
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 from vehicle_pf_tracker.ros.replay.tracker_link import TrackerLink

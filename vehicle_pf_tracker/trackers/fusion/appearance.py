@@ -48,7 +48,7 @@ _STEP_PX = GRADIENT_CELL_PX / UPSAMPLING
 _SHIFTABLE_PX = 6.0
 """Offset in canonical px up to which cells are moved circularly instead of measured again: what is
 wrapped around was faded out. That is one and a half cells of 32."""
-_USUAL_SHARE = 0.3
+_LEAST_OF_FIRST = 0.3
 """Least usual response, fraction of that to the first frame: the second one of the sequences gives
 0.37 to 0.89 of it, a hidden vehicle 0.03. A filter may be trained anew while it is hidden."""
 _TINY_RESPONSE = 1e-3
@@ -229,7 +229,7 @@ class Appearance:
         spectrum = self._spectrum(self.patch(frame, position, size))
         self._filter.train(spectrum, 0.0)
         # The next patch may not show the vehicle: its response alone would be no safe level.
-        self._least_usual = _USUAL_SHARE * float(self._filter.respond(spectrum).max())
+        self._least_usual = _LEAST_OF_FIRST * float(self._filter.respond(spectrum).max())
 
     def learn(self, frame: Frame, view: View, position: Array, size: Array, stiff: float) -> None:
         """Train the filter on the target at `position` in the frame that `view` shows."""

@@ -87,7 +87,7 @@ class Departure(NamedTuple):
     ----------
     reason : str
         The border that it left by, or that it is too far to see.
-    way : (2,) array
+    return_direction : (2,) array
         Direction that a return has to move in: into the image, or on along the road.
     position, size : (2,) arrays
         Centre where it left, carried along with the background, and its width and height then, px.
@@ -100,7 +100,7 @@ class Departure(NamedTuple):
     """
 
     reason: str
-    way: Array
+    return_direction: Array
     position: Array
     size: Array
     response: float
@@ -158,7 +158,10 @@ class Departure(NamedTuple):
         # Motion is asked for beside frames, since scenery answers in every frame but stands still.
         first, latest, frames, elapsed = self.candidate
         moved = latest - first
-        if frames < PROOF_FRAMES or float(moved @ self.way) < PROOF_DISTANCE * self._extent:
+        if (
+            frames < PROOF_FRAMES
+            or float(moved @ self.return_direction) < PROOF_DISTANCE * self._extent
+        ):
             return None
         # Over periods, not frames: some may have been dropped. 1e-3: stamps may repeat.
         return latest, moved / max(elapsed, 1e-3)
@@ -182,7 +185,7 @@ class Departure(NamedTuple):
             return _Candidate(before.first, found, before.frames + 1, before.elapsed + elapsed)
         # Seen for the first time, it is as near to the border as one that enters. From the middle
         # of the view: with a camera that pans the place of departure itself may leave the image.
-        depth = float((found - view.patch.centre) @ self.way)
+        depth = float((found - view.patch.centre) @ self.return_direction)
         is_near = self.reason == TOO_FAR or depth < _ENTERS_WITHIN * self._extent
         return _Candidate(found, found) if is_near else None
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -123,6 +123,27 @@ class WeighedParticles:
     cloud: Cloud
 
 
+class Replacement(NamedTuple):
+    """Choice of the particles that a pass of resampling replaces, and of how.
+
+    Attributes
+    ----------
+    replaced : (N,) array of bool
+        True for the particles to replace.
+    parent_weights : (N,) array
+        Weights by which their parents are drawn.
+    jitter : float
+        Spread of the copies around these, as a share of sigma.
+    regime : str
+        Branch of the algorithm that was taken.
+    """
+
+    replaced: npt.NDArray[np.bool_]
+    parent_weights: Array
+    jitter: float
+    regime: str
+
+
 class RepeatedResampling(ColourTracker[RepeatedParametersT]):
     """Tables I and II of P3 but for the pass of resampling."""
 
@@ -173,35 +194,28 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
         self, frame: Frame, particles: WeighedParticles, elapsed: float
     ) -> tuple[WeighedParticles, int, str]:
         """Replace particles once; also returns their number, and the branch taken."""
-        replaced, weights, jitter, regime = self._choose(particles)
-        count = int(replaced.sum())
+        choice = self._choose(particles)
+        count = int(choice.replaced.sum())
         if count == 0:
-            return particles, 0, regime
+            return particles, 0, choice.regime
         # Jittered, as copies in one place would weigh the same again and end no degeneracy.
-        ancestors = RESAMPLING_SCHEMES[self._settings.resampling](weights, count, self._rng)
-        spread = jitter * self._settings.sigma * elapsed
+        draw = RESAMPLING_SCHEMES[self._settings.resampling]
+        ancestors = draw(choice.parent_weights, count, self._rng)
+        spread = choice.jitter * self._settings.sigma * elapsed
         parents = particles.cloud.positions[ancestors]
         copies = keep_inside(frame, parents + sample_normal(self._rng, count, spread))
         rho = self.similarity(frame, copies)
-        if count == len(replaced):  # `conventional`: nothing of the old cloud is left to copy
-            return self.weigh(copies, rho), count, regime
+        if count == len(choice.replaced):  # `conventional`: nothing of the old cloud is left
+            return self.weigh(copies, rho), count, choice.regime
         positions = particles.cloud.positions.copy()
         coefficients = particles.coefficients.copy()
-        positions[replaced] = copies
-        coefficients[replaced] = rho
-        return self.weigh(positions, coefficients), count, regime
+        positions[choice.replaced] = copies
+        coefficients[choice.replaced] = rho
+        return self.weigh(positions, coefficients), count, choice.regime
 
     @abstractmethod
-    def _choose(
-        self, particles: WeighedParticles
-    ) -> tuple[npt.NDArray[np.bool_], Array, float, str]:
-        """Choose the particles to replace (N,), and how.
-
-        Returns
-        -------
-        particles to replace, weights by which parents are drawn, both of shape (N,); spread of the
-        copies around them, as a share of sigma; and the branch taken
-        """
+    def _choose(self, particles: WeighedParticles) -> Replacement:
+        """Choose the particles to replace, and how."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,12 +226,11 @@ class ConventionalParameters(RepeatedResamplingParameters):
 class ConventionalTracker(RepeatedResampling[ConventionalParameters]):
     """Table I of P3."""
 
-    def _choose(
-        self, particles: WeighedParticles
-    ) -> tuple[npt.NDArray[np.bool_], Array, float, str]:
+    def _choose(self, particles: WeighedParticles) -> Replacement:
         """Replace all (steps 15 to 17)."""
         weights = particles.cloud.weights
-        return np.ones(len(weights), bool), weights, self._settings.jitter, "regular"
+        everyone = np.ones(len(weights), bool)
+        return Replacement(everyone, weights, self._settings.jitter, "regular")
 
 
 OCCLUSION_TESTS = ("n_eff", "similarity")
@@ -266,9 +279,7 @@ class AdaptiveParameters(RepeatedResamplingParameters):
 class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
     """Table II of P3."""
 
-    def _choose(
-        self, particles: WeighedParticles
-    ) -> tuple[npt.NDArray[np.bool_], Array, float, str]:
+    def _choose(self, particles: WeighedParticles) -> Replacement:
         """Replace low weights, or all but the best, by copies of the rest (steps 17, 20 and 22)."""
         settings = self._settings
         weights = particles.cloud.weights
@@ -282,7 +293,7 @@ class AdaptiveTracker(RepeatedResampling[AdaptiveParameters]):
             kept = weights >= min(settings.low_weight / len(weights), weights.max())  # step 19
             jitter = settings.jitter
             regime = "regular"
-        return ~kept, np.where(kept, weights, 0.0), jitter, regime
+        return Replacement(~kept, np.where(kept, weights, 0.0), jitter, regime)
 
     def _is_occluded(self, particles: WeighedParticles) -> bool:
         """Test for an occlusion (step 15), by effective sample size or by similarity."""

@@ -1,15 +1,14 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Tracking without ROS: frames in, one row per frame out."""
+"""One vehicle followed without ROS: frames in, one row per frame out."""
 
 from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from functools import partial
 from types import MappingProxyType
 from typing import Any, TypeVar
 
@@ -18,21 +17,11 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.following.live_facts import target_facts
 from vehicle_pf_tracker.image.stillness import Stillness
 from vehicle_pf_tracker.image.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
-from vehicle_pf_tracker.results.estimates import (
-    REJECTED_MODE,
-    WAITING_MODE,
-    EstimateRow,
-    start_of_clock,
-)
-from vehicle_pf_tracker.showing.drawing import Annotator, annotated
-from vehicle_pf_tracker.showing.estimates_recording import OnFrame
-from vehicle_pf_tracker.showing.live_page import PAGE_NAME, LivePage
-from vehicle_pf_tracker.showing.pictures import Numbered, Pictures
+from vehicle_pf_tracker.results.estimates import REJECTED_MODE, WAITING_MODE, EstimateRow
 from vehicle_pf_tracker.trackers.attempts import TrackerError
 from vehicle_pf_tracker.trackers.continuity import StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
@@ -112,17 +101,17 @@ class OfflineTracker:
         InputError
             If the target is invalid in the first frame, or no frame belongs to the first truth.
         """
-        stamped = (StampedFrame(*one) for one in frames)
-        for number, (found, following) in enumerate(with_next(stamped), start=first):
-            yield self.row(number, found, following, is_first=number == first)
+        stamped = (StampedFrame(stamp_ns, frame) for stamp_ns, frame in frames)
+        for number, (current, following) in enumerate(with_next(stamped), start=first):
+            yield self.row(number, current, following, is_first=number == first)
         self.check_started()
 
     def row(
-        self, number: int, found: StampedFrame, following: StampedFrame | None, *, is_first: bool
+        self, number: int, current: StampedFrame, following: StampedFrame | None, *, is_first: bool
     ) -> EstimateRow:
         """Take the next frame, with its number and the one after it; see `rows`."""
-        stamp_ns = found.stamp_ns
-        frame = found.frame
+        stamp_ns = current.stamp_ns
+        frame = current.frame
         next_ns = None if following is None else following.stamp_ns
         # One entry for each row, also where the frame is rejected below: columns stay as long.
         self._on_road.append({})
@@ -155,7 +144,7 @@ class OfflineTracker:
         """Places and speeds on the road of all frames so far, by name; none without a road."""
         if self._localisation is None:
             return {}
-        return {name: [one.get(name) for one in self._on_road] for name in ROAD_COLUMNS}
+        return {name: [scalars.get(name) for scalars in self._on_road] for name in ROAD_COLUMNS}
 
     @property
     def notices(self) -> list[str]:
@@ -224,76 +213,6 @@ def unreached(target: tuple[int, Box]) -> str:
 def with_target(settings: SessionParameters, box: Box) -> SessionParameters:
     """Return `settings` with the target `box`."""
     return replace(settings, target=TargetParameters(box.x, box.y, box.width, box.height))
-
-
-def follow(
-    trackers: Mapping[str, OfflineTracker],
-    frames: Numbered,
-    pictures: Pictures,
-    on_frame: OnFrame | None = None,
-    page: LivePage | None = None,
-) -> dict[str, list[EstimateRow]]:
-    """Track every target through the same frames, each decoded once.
-
-    Parameters
-    ----------
-    trackers : mapping of str to OfflineTracker
-        By the names of their targets.
-    frames : iterator of (int, StampedFrame)
-        Frames with their numbers, which follow each other.
-    pictures : Pictures
-        Pictures to make meanwhile.
-    on_frame : callable or None
-        Takes each frame with its rows.
-    page : LivePage or None
-        Page to show them on.
-
-    Returns
-    -------
-    dict of str to list of EstimateRow
-        The rows of each target.
-
-    Raises
-    ------
-    InputError
-        If a target is invalid in its frame, or the video cannot be written.
-    """
-    rows: dict[str, list[EstimateRow]] = {name: [] for name in trackers}
-    start_ns: int | None = None
-    annotators = _annotators(list(trackers), pictures)
-    with pictures.drawing(frames) as (take, all_frames):
-        for (number, found), later in with_next(all_frames):
-            following = later and later[1]
-            is_first = start_ns is None
-            start_ns = start_of_clock(start_ns, found.stamp_ns)
-            of_frame: dict[str, EstimateRow] = {}
-            states = []
-            for name, tracker in trackers.items():
-                of_frame[name] = row = tracker.row(number, found, following, is_first=is_first)
-                rows[name].append(row)
-                annotators[name].follow(tracker.estimate)
-                states.append((annotators[name], row, tracker.estimate))
-            if on_frame is not None:
-                on_frame(found, of_frame)
-            if found.frame is not None:
-                draw = partial(annotated, found.frame, found.stamp_ns - start_ns, states)
-                modes = tuple(row.mode for row in of_frame.values())
-                take(modes, draw, found.frame, found.stamp_ns)
-                if page is not None and not pictures.side.failed(PAGE_NAME):
-                    facts = partial(target_facts, of_frame, found.stamp_ns - start_ns)
-                    with pictures.side.attempt(PAGE_NAME):
-                        page.show(partial(annotated, found.frame, None, states), facts)
-    for tracker in trackers.values():
-        tracker.check_started()
-    return rows
-
-
-def _annotators(names: Sequence[str], pictures: Pictures) -> dict[str, Annotator]:
-    """Make what draws each target; a single one needs no name in the picture."""
-    is_single = len(names) == 1
-    return {
-        name: Annotator("" if is_single else name, particles=pictures.particles) for name in names
-    }
 
 
 def with_next(items: Iterable[ItemT]) -> Iterator[tuple[ItemT, ItemT | None]]:
