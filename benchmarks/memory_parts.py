@@ -32,7 +32,7 @@ def main() -> None:
 
 def parts() -> Sequence[tuple[str, Callable[[], object]]]:
     """Return what a node of `apf` loads, in its order; what is not installed is left out."""
-    modules = ("numpy", "cv2", "rclpy.node", "numba")
+    modules = ("numpy", "cv2", "rclpy.node", "llvmlite.binding")
     loads = [(f"`{name}`", importer(name)) for name in modules if has(name)]
     return [*loads, ("kernels and step of `apf`", step)]
 

@@ -53,7 +53,18 @@ MESSAGES = {
     "visualization_msgs",
 }  # fmt: skip
 ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", *MESSAGES}
-ON_A_ROBOT = {"rclpy", "launch", "launch_ros", *MESSAGES, "numpy", "scipy", "cv2", "yaml", "numba"}
+ON_A_ROBOT = {
+    "rclpy",
+    "launch",
+    "launch_ros",
+    *MESSAGES,
+    "numpy",
+    "scipy",
+    "cv2",
+    "yaml",
+    "numba",
+    "llvmlite",
+}
 """Modules that a robot has from apt, beside the standard library."""
 
 

@@ -39,9 +39,10 @@ on real video.
 ![Times faster than CSRT, by variant]({IMAGES}/steps.svg)
 """
 _MEMORY_PARTS = """
-`python -m benchmarks.memory_parts` prints what a node's memory is made of. Two thirds come with
-numba: its modules, and LLVM, by which compiled kernels are loaded too. More than a half of a node's
-memory is code of libraries, which all nodes of a machine share. `kernels: opencv` needs no numba.
+`python -m benchmarks.memory_parts` prints what a node's memory is made of. Compiled kernels are
+linked by LLVM, without numba; a start that has to compile them imports numba, which keeps another
+100 MB until the next start. More than a half of a node's memory is code of libraries, which all
+nodes of a machine share.
 """
 _BANDWIDTH = """## Distance from memory bandwidth
 A kernel has to fetch the part of the image that its windows cover; no code is faster than memory

@@ -15,28 +15,42 @@ from vehicle_pf_tracker.trackers.rehearsal import rehearse
 
 PROGRAM = """
 import sys
+from vehicle_pf_tracker.image.kernels.kernel import kernels_of
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.rehearsal import rehearse
 variant = VARIANTS[sys.argv[1]]
 rehearse(variant, variant.parameters())
-print(*sorted(name.rpartition(".")[2] for name in sys.modules if ".kernels.numba_" in name))
+modules = [module for name, module in sys.modules.items() if ".kernels.numba_" in name]
+kernels = {kernel for module in modules for kernel in kernels_of(module) if kernel.is_ready}
+print(*sorted(kernel.__name__ for kernel in kernels))
 """
-SHARED = {"numba_jit", "numba_kernels", "numba_pixel_cells", "numba_types"}
 
 
 @pytest.mark.parametrize(
     ("variant", "needed"),
     [
-        ("apf", {"numba_windows"}),
-        ("ms", {"numba_windows", "numba_mean_shift"}),
-        ("sfpf_edge", {"numba_windows", "numba_gradients", "numba_edges", "numba_counts"}),
+        ("apf", {"number_cells", "joint_cells", "compare_joint"}),
+        (
+            "ms",
+            {
+                "number_cells",
+                "joint_cells",
+                "place_windows",
+                "compare_kernels",
+                "shift_kernels",
+            },
+        ),
+        (
+            "sfpf_edge",
+            {"number_cells", "place_windows", "gradients", "count_edges", "compare_counts"},
+        ),
     ],
 )
 def test_a_rehearsal_loads_what_the_step_needs_and_nothing_else(variant, needed):
     pytest.importorskip("numba", reason="there is nothing to compile")
     words = [sys.executable, "-c", PROGRAM, variant]
     done = subprocess.run(words, capture_output=True, text=True, check=True)
-    assert set(done.stdout.split()) == SHARED | needed
+    assert set(done.stdout.split()) == needed
 
 
 @pytest.mark.parametrize("name", VARIANTS)

@@ -134,7 +134,7 @@ def compile_all(choice: str) -> Kernels:
 
 
 def may_compile(choice: str) -> bool:
-    """Tell whether the first use of these kernels imports numba, and perhaps compiles."""
+    """Tell whether the first use of these kernels links them, or even compiles."""
     # Looked for only: importing numba takes half a second.
     return choice != "opencv" and importlib.util.find_spec("numba") is not None
 
@@ -142,6 +142,12 @@ def may_compile(choice: str) -> bool:
 @functools.cache
 def load_numba() -> Kernels:
     """Make numba's kernels; once in a process."""
-    # Imported late: it takes half a second, and only here is it known to be needed.
+    if importlib.util.find_spec("numba") is None:
+        raise ModuleNotFoundError("No module named 'numba'", name="numba")
+    # Imported late: what is there may be broken, and only here is it known to be needed.
+    store = importlib.import_module(f"{__package__}.kernel_store")
+    if not store.has_any():
+        # Half a second, for the sentence about a broken one; where kernels are kept it worked.
+        importlib.import_module("numba")
     kernels: Kernels = importlib.import_module(f"{__package__}.numba_kernels").NumbaKernels()
     return kernels

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
@@ -20,15 +19,15 @@ from vehicle_pf_tracker.image.gradient_cells import (
     CellFeatures,
     Grey,
 )
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
+from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
 
 _UNSIGNED = DIRECTIONS // 2
 """Directions of gradients whose sign does not count."""
-_IMAGE = numba.types.Array(numba.uint8, 2, "C")
+_IMAGE = "uint8[:, ::1]"
 """Luminance of a patch, (H, W)."""
-_BYTES = numba.types.Array(numba.uint8, 1, "C", readonly=True)
+_BYTES = "Array(uint8, 1, 'C', readonly=True)"
 """The table of directions, flat."""
-_CELLS = numba.types.Array(numba.float32, 3, "C")
+_CELLS = "float32[:, :, ::1]"
 """Channels of cells as they are written, (r, channels, c)."""
 
 _DIRECTION_OF = DIRECTION_OF.ravel()
@@ -205,7 +204,7 @@ def _normalise(
                 )
 
 
-@compiled(_CELLS(_IMAGE, _BYTES, numba.intp))
+@compiled(_CELLS, _IMAGE, _BYTES, "intp")
 def _features(grey: Grey, direction_of: npt.NDArray[np.uint8], channels: int) -> CellFeatures:
     # Numba does not check indices; a short table would be read beyond its end.
     if len(direction_of) < 511 * 511:

@@ -8,13 +8,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import types
 
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled
+from vehicle_pf_tracker.image.kernels.kernel import compiled
 from vehicle_pf_tracker.image.kernels.numba_types import COUNTS, SCALE, Counts, Pixels, Reals, Scale
 
 
-@compiled(types.float64[::1](COUNTS, types.int64[::1], SCALE))
+@compiled("float64[::1]", COUNTS, "int64[::1]", SCALE)
 def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
     """Compare windows that are counted already; `totals` are those of all bins, shape (N,)."""
     values, roots = scale

@@ -10,11 +10,10 @@ from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from numba import types
 
 from vehicle_pf_tracker.image.gradients import DIRECTION_BINS
+from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_gradients import IMAGES, Images, Strengths
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_types import (
     BIN_TABLE,
     COUNTS,
@@ -29,9 +28,9 @@ Points: TypeAlias = tuple[Strengths, Table, Strengths]
 Tangents: TypeAlias = npt.NDArray[np.float64]
 Numbers: TypeAlias = npt.NDArray[np.int64]
 
-_NUMBERS = types.int64[::1]
+_NUMBERS = "int64[::1]"
 """One number of each window, (N,)."""
-_TANGENTS = types.Array(types.float64, 1, "C", readonly=True)
+_TANGENTS = "Array(float64, 1, 'C', readonly=True)"
 """Type of `TANGENTS`."""
 
 _NEVER = 1 << 31
@@ -285,14 +284,13 @@ def _check(
 
 
 @compiled(
-    _NUMBERS(
-        IMAGES,
-        RECTANGLES,
-        PAIR,
-        types.UniTuple(types.float32, 2),
-        types.Tuple((BIN_TABLE, _TANGENTS, types.boolean)),
-        COUNTS,
-    )
+    _NUMBERS,
+    IMAGES,
+    RECTANGLES,
+    PAIR,
+    "UniTuple(float32, 2)",
+    f"Tuple(({BIN_TABLE}, {_TANGENTS}, boolean))",
+    COUNTS,
 )
 def count_edges(
     images: Images,

@@ -9,20 +9,19 @@ from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from numba import types
 
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled
+from vehicle_pf_tracker.image.kernels.kernel import compiled
 from vehicle_pf_tracker.image.window import Grey
 
 Slopes: TypeAlias = npt.NDArray[np.int16]
 Strengths: TypeAlias = npt.NDArray[np.int32]
 Images: TypeAlias = tuple[Slopes, Slopes, Strengths]
 
-IMAGES = types.Tuple((types.int16[:, ::1], types.int16[:, ::1], types.int32[:, ::1]))
+IMAGES = "Tuple((int16[:, ::1], int16[:, ::1], int32[:, ::1]))"
 """Gradients along x and y, and squared magnitudes."""
 
 
-@compiled(IMAGES(types.uint8[:, ::1]))
+@compiled(IMAGES, "uint8[:, ::1]")
 def gradients(grey: Grey) -> Images:
     """Gradient and squared magnitude (H, W), the image mirrored at its border as OpenCV does it.
 

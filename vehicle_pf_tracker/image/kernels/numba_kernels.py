@@ -3,16 +3,13 @@
 
 """The kernels in numba, and windows and references in the form that they take.
 
-A module of kernels is imported when one of them is first called. That compiles them, or loads what
-was compiled before, but for those that only some of its variants need (`numba_jit.OnDemand`).
+Each kernel is compiled, or loaded, when it is first called (`kernel.Kernel`).
 """
 
 from __future__ import annotations
 
 import functools
-import importlib
-from types import ModuleType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,8 +17,18 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.gradients import DIRECTION_BINS, GradientDirections
-from vehicle_pf_tracker.image.kernels import numba_jit, numba_pixel_cells
+from vehicle_pf_tracker.image.kernels import (
+    kernel,
+    numba_cells,
+    numba_counts,
+    numba_edges,
+    numba_gradients,
+    numba_mean_shift,
+    numba_pixel_cells,
+    numba_windows,
+)
 from vehicle_pf_tracker.image.kernels.interface import Kernels
+from vehicle_pf_tracker.image.kernels.numba_edges import Numbers
 from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
     marginal_cells,
     number_cells,
@@ -40,18 +47,15 @@ from vehicle_pf_tracker.image.window import (
     to_grey,
 )
 
-if TYPE_CHECKING:
-    from vehicle_pf_tracker.image.kernels.numba_edges import Numbers
-
 _MODULES = (
-    "numba_windows",
-    "numba_gradients",
-    "numba_edges",
-    "numba_counts",
-    "numba_mean_shift",
-    "numba_cells",
+    numba_windows,
+    numba_pixel_cells,
+    numba_gradients,
+    numba_edges,
+    numba_counts,
+    numba_mean_shift,
+    numba_cells,
 )
-"""Modules that are imported when a kernel of theirs is first called, the commonest first."""
 
 _LANES = 16
 """Cells are padded to a multiple of this, so that loops over them fill vector registers: the
@@ -62,18 +66,11 @@ _MOST_ROOTS = 1 << 16
 processors."""
 
 
-@functools.cache
-def _kernels(module: str) -> ModuleType:
-    """Import one of `_MODULES`."""
-    return importlib.import_module(f"{__package__}.{module}")
-
-
 def load_all() -> None:
     """Compile or load every kernel."""
-    for module in (numba_pixel_cells, *map(_kernels, _MODULES)):
-        for kernel in vars(module).values():
-            if isinstance(kernel, numba_jit.OnDemand):
-                _ = kernel.ready
+    for module in _MODULES:
+        for one_kernel in kernel.kernels_of(module):
+            one_kernel.prepare()
 
 
 class CellTable(NamedTuple):
@@ -131,10 +128,9 @@ def kernel_similarity(
 ) -> Coefficients:
     """Compare kernel-weighted histograms; see `image.mean_shift`."""
     cells, pixels, _ = _placed_cells(frame, positions, window, reference, bits)
-    kernels = _kernels("numba_mean_shift")
     values = table_of(reference).values
-    similarity: Coefficients = kernels.compare_kernels(
-        cells, pixels, *kernels.ellipse(window), values
+    similarity: Coefficients = numba_mean_shift.compare_kernels(
+        cells, pixels, *numba_mean_shift.ellipse(window), values
     )
     return similarity
 
@@ -144,9 +140,8 @@ def mean_shift(
 ) -> Positions:
     """Move every position one mean-shift step; see `image.mean_shift`."""
     cells, pixels, first = _placed_cells(frame, positions, window, reference, bits)
-    kernels = _kernels("numba_mean_shift")
     values = table_of(reference).values
-    steps = kernels.shift_kernels(cells, pixels, *kernels.ellipse(window), values)
+    steps = numba_mean_shift.shift_kernels(cells, pixels, *numba_mean_shift.ellipse(window), values)
     # Pixels are integers from the first one covered; their middles are half a pixel further.
     return np.where(np.isnan(steps), positions, pixels + first + 0.5 + steps)
 
@@ -157,17 +152,18 @@ def _placed_cells(
     """Return cells of the part that windows cover, their middles in it, and its first pixel."""
     # Only the part of the frame that windows cover is numbered: cost follows them, not the frame.
     half = window.half_width, window.half_height
-    kernels = _kernels("numba_windows")
-    pixels, (left, top, right, bottom) = kernels.place_windows(
+    pixels, (left, top, right, bottom) = numba_windows.place_windows(
         positions, frame_size(frame), half, 0
     )
-    cells = kernels.joint_cells(frame[top:bottom, left:right], bits, table_of(reference).cells)
+    cells = numba_windows.joint_cells(
+        frame[top:bottom, left:right], bits, table_of(reference).cells
+    )
     return cells, pixels, (left, top)
 
 
 def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
     """Describe cells of a grey image; see `image.gradient_cells`."""
-    features: CellFeatures = _kernels("numba_cells").gradient_cells(grey, spare)
+    features: CellFeatures = numba_cells.gradient_cells(grey, spare)
     return features
 
 
@@ -181,7 +177,7 @@ class NumbaKernels(Kernels):
     mean_shift = staticmethod(mean_shift)
 
     def __init__(self) -> None:
-        super().__init__(numba_jit.notices())
+        super().__init__(kernel.notices())
 
     def similarity(
         self,
@@ -220,7 +216,7 @@ def _histogram_of_pixels(
     part = frame[top:bottom, left:right]
     table = _every_bin(feature.bins)
     if isinstance(feature, JointColour):
-        cells = _kernels("numba_windows").joint_cells(part, feature.bits, table)
+        cells = numba_windows.joint_cells(part, feature.bits, table)
     elif isinstance(feature, RgbMarginals):
         cells = marginal_cells(part, CHANNEL_BINS, table)
     else:
@@ -245,18 +241,17 @@ def _compare_pixels(
     feature: WindowFeature, frame: Frame, positions: Positions, window: Window, table: CellTable
 ) -> Reals:
     """Compare windows by their pixels."""
-    kernels = _kernels("numba_windows")
     # Each pixel counts once in each of its planes.
     planes = 3 if type(feature) is RgbMarginals else 1
     scale = table.values, roots_up_to(planes * window.width * window.height)
     half = window.half_width, window.half_height
     if isinstance(feature, JointColour):
-        similarity: Reals = kernels.compare_joint(
+        similarity: Reals = numba_windows.compare_joint(
             frame, positions, feature.bits, half, table.cells, scale
         )
         return similarity
     # Cells are made once for the part that all windows share.
-    pixels, (left, top, right, bottom) = kernels.place_windows(
+    pixels, (left, top, right, bottom) = numba_windows.place_windows(
         positions, frame_size(frame), half, 0
     )
     part = frame[top:bottom, left:right]
@@ -267,7 +262,7 @@ def _compare_pixels(
         cells = pair_cells(to_grey(part), table.cells)
         beside = window.half_width
     reach = window.half_width, beside, window.half_height
-    compared: Reals = kernels.compare_windows(cells, pixels, reach, scale)
+    compared: Reals = numba_windows.compare_windows(cells, pixels, reach, scale)
     return compared
 
 
@@ -284,7 +279,7 @@ def _compare_edges(
     totals = _count_edges(feature, frame, positions, window, table.cells, counts)
     # Edge points are at most the pixels of a window.
     scale = table.values, roots_up_to(window.width * window.height)
-    similarity: Reals = _kernels("numba_counts").compare_counts(counts, totals, scale)
+    similarity: Reals = numba_counts.compare_counts(counts, totals, scale)
     return similarity
 
 
@@ -299,18 +294,17 @@ def _count_edges(
     """Fill the counts (N, K + 1 or more) of the edge points' cells; their totals (N,)."""
     half = window.half_width, window.half_height
     # One pixel more makes every gradient in the windows that of the whole frame.
-    pixels, (left, top, right, bottom) = _kernels("numba_windows").place_windows(
+    pixels, (left, top, right, bottom) = numba_windows.place_windows(
         positions, frame_size(frame), half, 1
     )
-    edges = _kernels("numba_edges")
     grey = to_grey(frame[top:bottom, left:right])
-    totals: Numbers = edges.count_edges(
-        _kernels("numba_gradients").gradients(grey),
+    totals: Numbers = numba_edges.count_edges(
+        numba_gradients.gradients(grey),
         pixels,
         half,
         # Squared, as the strengths are, and in float32, as the version in numpy compares them.
         (np.float32(feature.threshold) ** 2, np.float32(feature.floor) ** 2),
-        (cells, edges.TANGENTS, feature.signed),
+        (cells, numba_edges.TANGENTS, feature.signed),
         counts,
     )
     return totals

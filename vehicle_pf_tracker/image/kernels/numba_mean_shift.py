@@ -11,9 +11,8 @@ from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from numba import types
 
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined
+from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_types import (
     CELL_PLANES,
     REALS,
@@ -27,7 +26,7 @@ from vehicle_pf_tracker.image.window import Window
 
 Offsets: TypeAlias = npt.NDArray[np.int64]
 
-_OFFSETS = types.Array(types.int64, 2, "C", readonly=True)
+_OFFSETS = "Array(int64, 2, 'C', readonly=True)"
 """x, y of the kernel's pixels from its centre, (P, 2); shared between frames."""
 _ARGUMENTS = CELL_PLANES, RECTANGLES, _OFFSETS, REALS, REALS
 """Both kernels take the same: cells, centres, offsets, profile and values."""
@@ -79,7 +78,7 @@ def _check(cells: Cells, pixels: Pixels, offsets: Offsets, profile: Reals, value
         raise IndexError("the profile is shorter than the ellipse")
 
 
-@compiled(types.float64[::1](*_ARGUMENTS))
+@compiled("float64[::1]", *_ARGUMENTS)
 def compare_kernels(
     cells: Cells, pixels: Pixels, offsets: Offsets, profile: Reals, values: Reals
 ) -> Reals:
@@ -119,7 +118,7 @@ def compare_kernels(
     return result
 
 
-@compiled(types.float64[:, ::1](*_ARGUMENTS))
+@compiled("float64[:, ::1]", *_ARGUMENTS)
 def shift_kernels(
     cells: Cells, pixels: Pixels, offsets: Offsets, profile: Reals, values: Reals
 ) -> Reals:

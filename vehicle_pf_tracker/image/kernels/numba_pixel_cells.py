@@ -12,10 +12,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.kernels.numba_jit import on_demand
+from vehicle_pf_tracker.image.kernels.kernel import compiled
 from vehicle_pf_tracker.image.kernels.numba_types import (
     BIN_TABLE,
     CELL_PLANES,
@@ -28,7 +27,7 @@ from vehicle_pf_tracker.image.similarity import Histogram
 from vehicle_pf_tracker.image.window import Grey
 
 
-@on_demand(CELL_PLANES(RGB_IMAGE, types.int64, BIN_TABLE))
+@compiled(CELL_PLANES, RGB_IMAGE, "int64", BIN_TABLE)
 def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
     """Cells of each channel's own bins, a plane each; channel `c` has bins from ``c * levels``."""
     height, width, channels = pixels.shape
@@ -44,7 +43,7 @@ def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
     return cells
 
 
-@on_demand(CELL_PLANES(GREY_IMAGE, BIN_TABLE))
+@compiled(CELL_PLANES, GREY_IMAGE, BIN_TABLE)
 def pair_cells(grey: Grey, table: Table) -> Cells:
     """Cells of the 8 x 8 grey levels of each pixel and the next one in its row, one plane."""
     height = grey.shape[0]
@@ -60,11 +59,7 @@ def pair_cells(grey: Grey, table: Table) -> Cells:
     return cells
 
 
-@on_demand(
-    types.Tuple((types.uint16[::1], types.float64[::1]))(
-        types.Array(types.float64, 1, "A", readonly=True), types.int64
-    )
-)
+@compiled("Tuple((uint16[::1], float64[::1]))", "Array(float64, 1, 'A', readonly=True)", "int64")
 def number_cells(histogram: Histogram, lanes: int) -> tuple[Table, Histogram]:
     """Give a number to each bin that is not zero: cell of each bin, and roots of the cells' values.
 

@@ -13,44 +13,43 @@ from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from numba import types
 
-RGB_IMAGE = types.Array(types.uint8, 3, "A", readonly=True)
+RGB_IMAGE = "Array(uint8, 3, 'A', readonly=True)"
 """Part of a frame, (H, W, 3)."""
-GREY_IMAGE = types.Array(types.uint8, 2, "A", readonly=True)
+GREY_IMAGE = "Array(uint8, 2, 'A', readonly=True)"
 """Grey levels of a part of a frame, (H, W)."""
 
 Cells: TypeAlias = npt.NDArray[np.uint16]
-CELL_PLANES = types.uint16[:, :, ::1]
+CELL_PLANES = "uint16[:, :, ::1]"
 """Cell of each pixel, by planes, (P, H, W)."""
 Table: TypeAlias = npt.NDArray[np.uint16]
-BIN_TABLE = types.Array(types.uint16, 1, "C", readonly=True)
+BIN_TABLE = "Array(uint16, 1, 'C', readonly=True)"
 """Cell of each bin, (bins,)."""
 Counts: TypeAlias = npt.NDArray[np.int32]
-COUNTS = types.int32[:, ::1]
+COUNTS = "int32[:, ::1]"
 """Pixels in each cell of each window, (N, K + 1 or more)."""
 Columns: TypeAlias = npt.NDArray[np.uint16]
 """Pixels in each cell of each column of a part, (W, K + 1 or more)."""
 
 Rectangles: TypeAlias = npt.NDArray[np.int64]
-RECTANGLES = types.int64[:, ::1]
+RECTANGLES = "int64[:, ::1]"
 """Integers by rows: x, y of pixels, (N, 2), or left, top, right, bottom of windows, (N, 4)."""
 Pixels: TypeAlias = npt.NDArray[np.int64]
 """x, y of pixels, (N, 2)."""
-POSITIONS = types.Array(types.float64, 2, "A", readonly=True)
+POSITIONS = "Array(float64, 2, 'A', readonly=True)"
 """x, y in continuous px, (N, 2)."""
-PAIR = types.UniTuple(types.int64, 2)
+PAIR = "UniTuple(int64, 2)"
 """Two numbers of px, along x and y."""
 Extent: TypeAlias = tuple[int, int, int, int]
-EXTENT = types.UniTuple(types.int64, 4)
+EXTENT = "UniTuple(int64, 4)"
 """Left, top, right and bottom, px."""
 Reach: TypeAlias = tuple[int, int, int]
-REACH = types.UniTuple(types.int64, 3)
+REACH = "UniTuple(int64, 3)"
 """Pixels of a window to the left of its middle, from the middle to the right, and above it."""
 
 Reals: TypeAlias = npt.NDArray[np.float64]
-REALS = types.Array(types.float64, 1, "C", readonly=True)
+REALS = "Array(float64, 1, 'C', readonly=True)"
 """Numbers, (N,)."""
 Scale: TypeAlias = tuple[Reals, Reals]
-SCALE = types.UniTuple(REALS, 2)
+SCALE = f"UniTuple({REALS}, 2)"
 """Square roots of the reference at the active bins, then zeros, and those of 0, 1, 2, …"""

@@ -14,10 +14,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import types
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.kernels.numba_jit import compiled, inlined, on_demand
+from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_types import (
     BIN_TABLE,
     CELL_PLANES,
@@ -62,7 +61,7 @@ def _extent(pixels: Pixels) -> Extent:
     return x0, y0, x1, y1
 
 
-@compiled(types.Tuple((RECTANGLES, EXTENT))(POSITIONS, PAIR, PAIR, types.int64))
+@compiled(f"Tuple(({RECTANGLES}, {EXTENT}))", POSITIONS, PAIR, PAIR, "int64")
 def place_windows(
     positions: Positions, size: tuple[int, int], half: tuple[int, int], margin: int
 ) -> tuple[Pixels, Extent]:
@@ -99,7 +98,7 @@ def place_windows(
     return pixels, (left, top, right, bottom)
 
 
-@compiled(CELL_PLANES(RGB_IMAGE, types.int64, BIN_TABLE))
+@compiled(CELL_PLANES, RGB_IMAGE, "int64", BIN_TABLE)
 def joint_cells(pixels: Frame, bits: int, table: Table) -> Cells:
     """Cells of joint RGB bins, one plane."""
     height, width, channels = pixels.shape
@@ -286,7 +285,7 @@ def _is_sliding_worthwhile(
     return sliding <= count * (_PIXEL * len(cells) * across * (2 * reach[2] + 1) + bins)
 
 
-@compiled(types.float64[::1](CELL_PLANES, RECTANGLES, REACH, SCALE))
+@compiled("float64[::1]", CELL_PLANES, RECTANGLES, REACH, SCALE)
 def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) -> Reals:
     """Compare windows with a reference, and return their Bhattacharyya coefficients (N,).
 
@@ -320,7 +319,7 @@ def compare_windows(cells: Cells, pixels: Pixels, reach: Reach, scale: Scale) ->
     return _compare_each(cells, rectangles, scale)
 
 
-@on_demand(types.float64[::1](RGB_IMAGE, POSITIONS, types.int64, PAIR, BIN_TABLE, SCALE))
+@compiled("float64[::1]", RGB_IMAGE, POSITIONS, "int64", PAIR, BIN_TABLE, SCALE)
 def compare_joint(
     frame: Frame, positions: Positions, bits: int, half: tuple[int, int], table: Table, scale: Scale
 ) -> Reals:
