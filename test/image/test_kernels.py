@@ -9,9 +9,9 @@ from feature_samples import grey
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.image import kernels
 from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.gradients import GradientDirections, direction_bins
+from vehicle_pf_tracker.image.kernels import numba_edges
 from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.image.mean_shift import kernel_histogram
 from vehicle_pf_tracker.image.similarity import Reference
@@ -174,12 +174,11 @@ def test_a_window_larger_than_the_table_of_roots_is_compared_alike(numba):
 
 @pytest.mark.parametrize("signed", [True, False])
 def test_directions_are_those_of_the_arc_tangent(signed):
-    edges = pytest.importorskip(f"{kernels.__name__}.numba_edges", reason="numba is not installed")
     values = np.array([*range(-60, 61), -1020, -1019, -723, -511, 509, 721, 1019, 1020])
     gx, gy = (one.ravel() for one in np.meshgrid(values, values))
     gx, gy = gx[(gx != 0) | (gy != 0)], gy[(gx != 0) | (gy != 0)]
     found = [
-        edges.direction_bin.py_func(x, y, edges.TANGENTS, signed)
+        numba_edges.direction_bin.function(x, y, numba_edges.TANGENTS, signed)
         for x, y in zip(gx.tolist(), gy.tolist(), strict=True)
     ]
     assert found == direction_bins(gx, gy, signed=signed).tolist()
