@@ -145,6 +145,16 @@ def test_what_stays_is_learnt_after_seconds_at_any_rate(rate):
     assert 4 < seconds_until_learnt(rate) < 4.2 + 30 / rate
 
 
+@pytest.mark.parametrize(("rate", "images"), [(60, 19), (30, 19), (25, 19), (15, 10), (3, 10)])
+def test_rare_images_are_all_taken_for_the_first_background(rate, images):
+    detector = MotionDetector()
+    blind = 0
+    for _ in range(30):
+        detector.detect(np.full((60, 80, 3), 100, np.uint8), period=1 / rate)
+        blind += detector.is_blind
+    assert blind == images
+
+
 def test_blobs_that_hold_several_vehicles_are_reported():
     both = np.array([[20.0, 40, 40, 60], [42, 40, 62, 60]])
     reader, motion = BlobReader(), np.empty((0, 2))

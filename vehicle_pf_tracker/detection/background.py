@@ -29,6 +29,9 @@ _SAMPLES = 10
 moves to and fro, like leaves, has more colours than a few."""
 _BETWEEN = 2
 """Images from one of the first samples to the next: most pixels are free in two of ten."""
+_APART = 1 / 15
+"""Interval of images, two of 30 Hz, s, from which each of the first ones is a sample: by then what
+drives has moved on."""
 _AGREEING = 2
 """Least samples of the pixel's colour for it to be background: one may be of a vehicle."""
 _LOOKED_AT = 4
@@ -88,9 +91,9 @@ class Background:
         """Tell whether there are as many samples as it takes."""
         return len(self._samples) == _SAMPLES
 
-    def begin(self, image: Colours) -> None:
-        """Take one of the first images."""
-        if self._age % _BETWEEN == 0:
+    def begin(self, image: Colours, period: float) -> None:
+        """Take one of the first images, which are `period` s apart."""
+        if period >= _APART or self._age % _BETWEEN == 0:
             self._samples.append(_planes(image))
         self._age += 1
 

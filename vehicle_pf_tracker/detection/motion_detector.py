@@ -98,7 +98,7 @@ class MotionDetector:
         self.disturbed = False
         self.is_blind = not self._background.is_known
         if self.is_blind:
-            self._background.begin(small)
+            self._background.begin(small, period)
             return Detections.none()
         changed = self._background.compare(small)
         if seen is not None:
