@@ -53,7 +53,7 @@ def ended_unconfirmed(places, *, are_shapes=False):
             one = replace(one, drives=replace(one.drives, gaussians=gaussians))
             one, proven = believed(one, candidates, ONLY, np.zeros(1), experience, STEP)
             assert not proven
-        state = end(State(changed(one, undetected=100.0), experience), STEP)
+        state = end(State(changed(one, passed=100), experience), STEP)
         assert len(state.tracks) == 0
     return float(seen(evidence, (200, 180, 40, 30)).log_odds[0])
 
@@ -163,6 +163,55 @@ def test_a_detector_that_became_worse_or_better_is_known_to_after_minutes(found)
         shares = rate.learn(asked, np.full(5, not found))
     assert abs(rate.share - found) > 0.8
     assert 0 < shares[-1] < 1
+
+
+@pytest.mark.parametrize(("rate", "images"), [(30.0, 10), (24.0, 10), (3.0, 6)])
+def test_a_shape_that_shakes_is_asked_for_a_straighter_way_where_images_are_dense(rate, images):
+    # Leaves swing straight in dense images, and are elsewhere in each of rare ones.
+    assert reported_from(are_shapes=True, rate=rate, shake=4.0) == images
+
+
+@pytest.mark.parametrize("every", [1, 3])
+def test_a_track_is_given_up_after_looks_that_miss_it_and_not_after_images(every):
+    tracker = MultiVehicleTracker()
+    frame = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    nothing = Detections.make(np.empty((0, 4)))
+    tracker.step(frame, Detections.make([(100, 100, 40, 30)], [0.9]))
+    looks = 0
+    for index in range(1, 60):
+        is_look = index % every == 0
+        looks += is_look
+        if not tracker.step(frame, nothing if is_look else None):
+            break
+    # At a rate of a half, eight misses are four detections.
+    assert looks == 9
+
+
+def test_a_track_that_no_detector_looks_for_is_forgotten_as_a_vehicle_is():
+    tracker = MultiVehicleTracker()
+    frame = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    tracker.step(frame, Detections.make([(100, 100, 40, 30)], [0.3]))
+    images = [len(tracker.step(frame)) for _ in range(160)]
+    assert sum(images) == 150
+
+
+@pytest.mark.parametrize(
+    ("rate", "every", "price"),
+    [
+        (30.0, 1, 0.3),
+        (24.0, 1, 0.3),
+        (12.0, 1, 0.6),
+        (30.0, 3, 0.72),
+        # A detector of which nothing is known finds one in two.
+        (3.0, 1, -np.log(0.5)),
+    ],
+)
+def test_a_miss_counts_by_the_time_that_it_stands_for_until_it_is_independent(rate, every, price):
+    one = track(1, 100.0, confirmed=True, log_odds=5.0, undetected=every * 2.0, passed=1)
+    step = step_of(SIZE, period=1 / rate)
+    state = doubt(State(one, Experience()), step)
+    lost = 5.0 - float(state.tracks.beliefs.log_odds[0])
+    assert lost == pytest.approx(min(price, -np.log(0.5)), rel=0.01)
 
 
 def missed(undetected, *, seen=()):

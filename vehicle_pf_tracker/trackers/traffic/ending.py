@@ -30,7 +30,8 @@ _RETURNS = 0.5
 _DRIVE_MATCHES = 4
 """Detections of a track below which its way tells no drive: fewer lie on a line by chance."""
 _PATIENCE = 4
-"""Detections that a tentative track may expect to have missed in a row before it is given up."""
+"""Detections that a tentative track may expect to have missed in a row before it is given up. By
+looks: a detector may look at every third image only."""
 
 
 def end(state: State, step: Step) -> State:
@@ -48,10 +49,9 @@ def end(state: State, step: Step) -> State:
     # 3. Tentative tracks that end were false alarms, and teach how such look. What drove may have
     # been a vehicle, and tells nothing about its detections: by the same bounds as for a number,
     # as of shapes that are less straight seven in eight are leaves or light.
-    displacement = step.parameters.birth.displacement
     are_shapes = experience.detections.are_shapes
     never_drove = tracks.beliefs.ways.matches < _DRIVE_MATCHES
-    never_drove |= ~drives(tracks, displacement, are_shapes=are_shapes)
+    never_drove |= ~drives(tracks, step, are_shapes=are_shapes)
     for row in np.flatnonzero(~goes_on & ~tracks.confirmed & never_drove).tolist():
         experience.detections.learn(tracks.beliefs.samples[row], False)
     # 4. Vehicles teach the horizon once each, when all of their growth is known.
@@ -65,12 +65,12 @@ def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) 
     absences = tracks.sights.absences
     log_odds = tracks.beliefs.log_odds
     parameters = step.parameters
-    waits = absences.undetected <= _PATIENCE / experience.rate.share
+    waits = absences.passed <= _PATIENCE / experience.rate.share
     tentative = waits & (log_odds >= -CERTAIN_LOG_ODDS) & (inside > 0)  # no memory of one that left
-    longest = parameters.lost_after + parameters.forgotten_after  # predicted, then kept in mind
     known = (inside >= _LEFT) & (log_odds >= _REFUTED)
-    known &= absences.unseen * step.period <= longest
-    return np.where(tracks.confirmed, known, tentative)
+    longest = parameters.lost_after + parameters.forgotten_after  # predicted, then kept in mind
+    remembered = absences.unseen * step.period <= longest
+    return remembered & np.where(tracks.confirmed, known, tentative)
 
 
 def _gone(tracks: Tracks, inside: Array, goes_on: Bools, experience: Experience) -> Bools:

@@ -18,8 +18,8 @@ from vehicle_pf_tracker.trackers.traffic.candidates import Candidates
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, places_of
 from vehicle_pf_tracker.trackers.traffic.parameters import IGNORE_STANDING
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
-from vehicle_pf_tracker.trackers.traffic.state import Experience, State, Step
-from vehicle_pf_tracker.trackers.traffic.tracks import IN_SIGHT, Tracks
+from vehicle_pf_tracker.trackers.traffic.state import DENSE, Experience, State, Step
+from vehicle_pf_tracker.trackers.traffic.tracks import IN_SIGHT, Absences, Tracks
 
 CERTAIN_LOG_ODDS = 7.0
 """Log odds, one in a thousand, beyond which nothing is surer: however long a vehicle was seen, some
@@ -52,8 +52,9 @@ _SURELY_DRIVES = 50.0
 _STRAIGHT_ENOUGH = 7.0
 """Evidence for a drive, one in a thousand, above which it is one."""
 _STRAIGHT_SHAPE = 18.0
-"""The same for shapes, which come by the dozen where leaves move: of 7 clips by motion, 50 vehicles
-and 4 others are as straight; at 7, 53 and 25, at 14, 50 and 9, at 22, 47 and 4."""
+"""The same for shapes in dense images, which come by the dozen where leaves move: of 7 clips by
+motion, 50 vehicles and 4 others are as straight; at 7, 53 and 25, at 14, 50 and 9, at 22, 47 and
+4."""
 _DOUBTED = 0.5
 """Further way, of that asked for, per log odd of scores against it: a choice, whose bound is the
 loss without this doubt, HOTA / IDF1 3.5 / 5.6 (YOLOX from .05)."""
@@ -113,8 +114,7 @@ def believed(
     is_ripe = tracks.confirmed | (beliefs.log_odds >= step.parameters.birth.evidence)
     now_drives = is_ripe & ~(beliefs.has_driven | tracks.names.given)
     if now_drives.any():
-        displacement = step.parameters.birth.displacement
-        now_drives &= drives(tracks, displacement, are_shapes=candidates.are_shapes)
+        now_drives &= drives(tracks, step, are_shapes=candidates.are_shapes)
     proven = beliefs.strength > _PROVEN
     if candidates.are_shapes:
         is_old = beliefs.ways.age >= _WAIT / step.period
@@ -188,23 +188,26 @@ def note_found(tracks: Tracks, experience: Experience) -> Tracks:
     return replace(tracks, drives=replace(tracks.drives, extents=extents))
 
 
-def drives(tracks: Tracks, displacement: float, *, are_shapes: bool = False) -> Bools:
+def drives(tracks: Tracks, step: Step, *, are_shapes: bool = False) -> Bools:
     """Find tracks (N,) whose ways show that they are no part of the scene.
 
     Parameters
     ----------
     tracks : Tracks
         Tracks.
-    displacement : float
-        Way that is asked for, in widths.
+    step : Step
+        The frame, and inputs that all parts of a step share.
     are_shapes : bool
         Their detections are shapes, whose scores tell nothing of their drive.
     """
     ways = tracks.beliefs.ways
     lengths = ways.lengths(tracks.edges)
     evidence = ways.evidence()
+    displacement = step.parameters.birth.displacement
     if are_shapes:
-        return np.asarray((lengths > displacement) & (evidence > _STRAIGHT_SHAPE))
+        # A swing of leaves is straight in as many images as see it: of fewer less is asked.
+        straight = max(_STRAIGHT_SHAPE / step.sparsity, _STRAIGHT_ENOUGH)
+        return np.asarray((lengths > displacement) & (evidence > straight))
     # False alarms side by side look like a short drive.
     doubt = np.where(evidence < _SURELY_DRIVES, tracks.beliefs.doubt, 0.0)
     needed = displacement * (1 + _DOUBTED * doubt)
@@ -242,8 +245,29 @@ def _taught(
     return replace(tracks, beliefs=beliefs)
 
 
+def _passed(state: State) -> State:
+    """Count this look for all that it has not detected."""
+    tracks = state.tracks
+    sights = tracks.sights
+    passed = np.where(tracks.detected, 0, sights.absences.passed + 1)
+    sights = replace(sights, absences=replace(sights.absences, passed=passed))
+    return state._replace(tracks=replace(tracks, sights=sights))
+
+
+def _sparse_price(absences: Absences, rates: Array, step: Step) -> Array:
+    """Price (N,) of a look that misses a vehicle where looks are rare; `rates` find vehicles.
+
+    Misses of dense looks have one cause, and tell the less the more there are in a second; rare
+    ones are independent, and of these each tells what a detection would have.
+    """
+    looks = np.maximum(absences.passed, 1)
+    seconds = absences.undetected * step.period / looks
+    return np.asarray(np.minimum(_MISSED * seconds / DENSE, -np.log(1 - rates)))
+
+
 def doubt(state: State, step: Step) -> State:
     """Take off evidence from tracks that a detector has missed in plain sight."""
+    state = _passed(state)
     # 1. A detector that misses all it could see has failed, and says nothing.
     tracks = state.tracks
     elapsed = step.elapsed
@@ -267,7 +291,8 @@ def doubt(state: State, step: Step) -> State:
     # Also of what pixels alone hold at the border, where most of it is outside: too little to ask
     # the detector for it, but road that stands would hold the box of one that has left for ever.
     held = ~detected & is_seen & (sights.visible > IN_SIGHT) & ~tracks.names.given
-    taken[(missed | held) & confirmed] = elapsed * _MISSED
+    lost = (missed | held) & confirmed
+    taken[lost] = np.maximum(elapsed * _MISSED, _sparse_price(absences, rates, step))[lost]
     for row in np.flatnonzero(missed & ~confirmed).tolist():
         taken[row] = elapsed * -math.log(1 - rates[row])
     count = absences.missed + missed  # 3. note where it vanished

@@ -26,6 +26,9 @@ Grey: TypeAlias = npt.NDArray[np.uint8]
 _VEHICLE_WIDTH = 1.8
 """Width of a car in m, by which speeds and accelerations become widths: without a calibrated road
 the vehicle itself is the only scale in the image."""
+DENSE = 1 / 24
+"""Longest interval of images, s, of the clips that bounds on numbers of images are from: at shorter
+ones a leaf that swings, or what hides a vehicle, is the same in many images."""
 _FOCAL = 1.2
 """Focal length, of the image's width: that of a camera with a field of view of 45 degrees, 1 / (2
 tan 22.5°). A choice; it weighs uncertainty along the road against that across."""
@@ -121,6 +124,11 @@ class Step:
         acceleration = motion.acceleration * self.period**2 / _VEHICLE_WIDTH
         top_speed = motion.top_speed * self.period / _VEHICLE_WIDTH
         return Motion(acceleration, top_speed, _FOCAL * self.size[0])
+
+    @property
+    def sparsity(self) -> float:
+        """Interval of images over the longest dense one, at least 1: how much more each tells."""
+        return max(self.period / DENSE, 1.0)
 
     @property
     def edge_noise(self) -> float:

@@ -161,8 +161,9 @@ class Absences(Rows):
     ----------
     unseen, undetected : (N,) arrays
         Nominal periods since it was last seen, and last detected.
-    missed : (N,) array
-        Number of the latest looks of the detector, in a row, that missed it in plain sight.
+    passed, missed : (N,) arrays
+        Number of looks of the detector since its latest detection, and of those, in a row, that
+        missed it in plain sight.
     vanished : (N,) array
         Place where it was missed several times in a row; `NOWHERE` if it was not.
     lost : (N,) array
@@ -171,6 +172,7 @@ class Absences(Rows):
 
     unseen: Array
     undetected: Array
+    passed: Integers
     missed: Integers
     vanished: Integers
     lost: Bools
@@ -186,7 +188,8 @@ class Absences(Rows):
         none = np.full(count, NOWHERE)
         zero = np.zeros(count)
         # `lost` stays: `ending.end` judges it anew in every frame.
-        return Absences(zero, zero, np.zeros(count, np.intp), none, self.lost)
+        number = np.zeros(count, np.intp)
+        return Absences(zero, zero, number, number, none, self.lost)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -261,7 +264,7 @@ class Tracks(Rows):
         looks = Looks(
             np.zeros((count, COLOUR_BINS)), np.ones(count), detections, np.full(count, np.nan)
         )
-        absences = Absences(zero, zero, numbers, none, no)
+        absences = Absences(zero, zero, numbers, numbers, none, no)
         return cls(
             Names(serial, numbers, no, numbers, filled(count, {})),
             Drives(gaussians, edges, edges, edges, extents, Growths.unknown(count)),
