@@ -26,18 +26,18 @@ from vehicle_pf_tracker.scenes import catalogue
 from vehicle_pf_tracker.scenes.catalogue import SceneKind
 from vehicle_pf_tracker.scenes.courses import Pace
 from vehicle_pf_tracker.scenes.drive import TARGET_LANE, Drive, DriveParameters
-from vehicle_pf_tracker.scenes.drives import (
+from vehicle_pf_tracker.scenes.drive_scenes import (
     bridge_at,
     clear,
     coach_at,
     hiding_width,
     trees_at,
 )
-from vehicle_pf_tracker.scenes.models import Model
+from vehicle_pf_tracker.scenes.obstacles import pillar, tree
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
-from vehicle_pf_tracker.scenes.scenery import pillar, tree
 from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION, Face
+from vehicle_pf_tracker.scenes.turning_vehicle import TurningVehicle
 from vehicle_pf_tracker.scenes.vehicles import coach, van
 
 Build: TypeAlias = Callable[[DriveParameters, int], Scene]
@@ -113,7 +113,7 @@ def pillar_at(drive: Drive, share: float, frames: float) -> list[Actor]:
 def van_at(drive: Drive, share: float, frames: float) -> list[Actor]:
     """Let the target overtake a van in the nearer lane, half hidden by it for about `frames`."""
     faces = van((196, 196, 190))
-    length = Model(faces, drive.scale).size[0]
+    length = TurningVehicle(faces, drive.scale).size[0]
     speed = drive.parameters.speed - (length + drive.target.size[0]) / frames
     return drive.meeting(faces, drive.along(share), speed)
 
@@ -218,7 +218,7 @@ def _past_parked_vehicles(drive: Drive) -> list[Actor]:
 
 def _parked(drive: Drive, faces: list[Face], rear: float) -> tuple[Actor, Actor]:
     """Park a vehicle in the nearer lane, its rear at a place along the way."""
-    model = Model(faces, drive.scale)
+    model = TurningVehicle(faces, drive.scale)
     return model.on(drive.course(rear + model.size[0] / 2, Pace.steady(0.0), TARGET_LANE + 1))
 
 
@@ -236,7 +236,7 @@ def _past_a_parked_lorry(drive: Drive) -> list[Actor]:
     length = drive.target.size[0]
     speed = drive.parameters.speed
     rear = drive.start + length / 2 + CLEAR * speed
-    stretch = (length + OVERLAPPED * speed) / Model(van((0, 0, 0)), drive.scale).size[0]
+    stretch = (length + OVERLAPPED * speed) / TurningVehicle(van((0, 0, 0)), drive.scale).size[0]
     faces = [
         face.moved(lambda x, y, z: (x * stretch, y, z * _LORRY_HEIGHT))
         for face in van((206, 206, 200))

@@ -11,10 +11,10 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour
 from vehicle_pf_tracker.scenes.drive import Drive
-from vehicle_pf_tracker.scenes.drives import hiding_width
+from vehicle_pf_tracker.scenes.drive_scenes import hiding_width
+from vehicle_pf_tracker.scenes.obstacles import opaque, post
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor
-from vehicle_pf_tracker.scenes.scenery import opaque, post
 
 SIGN_COLOURS: tuple[Colour, ...] = ((28, 92, 60), (30, 66, 130), (196, 160, 40))
 """Green, blue and yellow of motorways, main roads and works."""

@@ -16,11 +16,11 @@ from vehicle_pf_tracker.scenes.cameras import DISTURBANCES, SHAKE_MARGIN, Outdoo
 from vehicle_pf_tracker.scenes.compositing import Image
 from vehicle_pf_tracker.scenes.courses import Pose
 from vehicle_pf_tracker.scenes.drive import PAPER_SIZES, DriveParameters, target_faces
-from vehicle_pf_tracker.scenes.models import Model
+from vehicle_pf_tracker.scenes.grounds import asphalt, grass
 from vehicle_pf_tracker.scenes.polygons import cells_inside
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Scene
-from vehicle_pf_tracker.scenes.scenery import asphalt, grass
+from vehicle_pf_tracker.scenes.turning_vehicle import TurningVehicle
 
 FOCAL = 600.0
 """Focal length, px: a field of view of 56 degrees at 640 px. A choice."""
@@ -111,7 +111,7 @@ def scale(parameters: ScaleParameters, seed: int) -> Scene:
     # The speed of all scenes is in px per frame; here it is the mean over the way.
     frames = math.dist(depth.point(0), depth.point(1)) / parameters.speed
     rng = stream(seed, "drive")
-    model = Model(target_faces(parameters.vehicle, rng), NEAREST)
+    model = TurningVehicle(target_faces(parameters.vehicle, rng), NEAREST)
     return Scene(
         width=width,
         height=height,

@@ -17,12 +17,12 @@ from vehicle_pf_tracker.scenes.cameras import DISTURBANCES, OutdoorCamera
 from vehicle_pf_tracker.scenes.compositing import Colour, Image, Sprite
 from vehicle_pf_tracker.scenes.courses import Pace, Pose, standing, straight
 from vehicle_pf_tracker.scenes.drive import TARGET_LANE, TARGET_PAINTS, Drive, DriveParameters
+from vehicle_pf_tracker.scenes.grounds import value_noise
 from vehicle_pf_tracker.scenes.lane_traffic import convoy
-from vehicle_pf_tracker.scenes.models import Model
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
-from vehicle_pf_tracker.scenes.scenery import value_noise
 from vehicle_pf_tracker.scenes.solids import SHADOW_TINT, VIEW_ELEVATION
+from vehicle_pf_tracker.scenes.turning_vehicle import TurningVehicle
 from vehicle_pf_tracker.scenes.vehicles import car, coach, saloon, suv, van
 
 CLEAR_FRAMES = 10
@@ -195,7 +195,7 @@ def _own_lane(drive: Drive, rng: np.random.Generator) -> list[Actor]:
     for distance in (-200.0, -100.0, 100.0, 200.0):
         faces = (car, saloon)[rng.integers(2)](TARGET_PAINTS[rng.integers(len(TARGET_PAINTS))])
         place = drive.start + distance + rng.uniform(-15, 15)
-        actors += Model(faces, drive.scale).on(drive.course(place, drive.pace))
+        actors += TurningVehicle(faces, drive.scale).on(drive.course(place, drive.pace))
     return actors
 
 
@@ -219,7 +219,7 @@ def _crossing_coach(drive: Drive, frame: float) -> list[Actor]:
     x, y = _crossing(drive, frame)
     heading = CROSSING - math.pi if drive.rightward else -CROSSING
     pace = Pace(((frame, 0.9 * drive.parameters.speed),))
-    model = Model(coach((190, 60, 48), (230, 226, 216)), drive.scale)
+    model = TurningVehicle(coach((190, 60, 48), (230, 226, 216)), drive.scale)
     return list(model.on(straight(Pose(x, y, heading, drive.scale), pace)))
 
 

@@ -21,11 +21,11 @@ from vehicle_pf_tracker.road.lens import Lens
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.road.poses import Pose
 from vehicle_pf_tracker.scenes.compositing import Sprite
-from vehicle_pf_tracker.scenes.models import SHADOW_OPACITY, all_round, turned
 from vehicle_pf_tracker.scenes.polygons import cells_inside
 from vehicle_pf_tracker.scenes.scene import Actor
-from vehicle_pf_tracker.scenes.solids import SAME_PLACE, Face, lit, shadow
-from vehicle_pf_tracker.scenes.vehicles import TYRE
+from vehicle_pf_tracker.scenes.solids import SAME_PLACE, SHADOW_OPACITY, Face, lit, shadow
+from vehicle_pf_tracker.scenes.turning_vehicle import all_round, turned
+from vehicle_pf_tracker.scenes.vehicle_parts import TYRE
 
 _OVERSAMPLING = 4
 """Cells drawn per pixel and axis; a frame draws every vehicle anew, at its own distance."""

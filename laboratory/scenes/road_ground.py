@@ -16,7 +16,7 @@ import numpy.typing as npt
 from laboratory.scenes.perspective import RoadCamera
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.scenes.compositing import Image
-from vehicle_pf_tracker.scenes.scenery import asphalt, grass
+from vehicle_pf_tracker.scenes.grounds import asphalt, grass
 
 _MARK = (214, 214, 206)
 """Paint of lines, as on the roads that are seen from the side."""

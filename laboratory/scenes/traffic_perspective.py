@@ -29,7 +29,8 @@ from vehicle_pf_tracker.scenes.lane_traffic import CAR_PAINTS
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor
 from vehicle_pf_tracker.scenes.solids import Face
-from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon, tinted, van
+from vehicle_pf_tracker.scenes.vehicle_parts import tinted
+from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon, van
 
 WIDTH, HEIGHT = 640, 360
 """Size of the images, px: that of a common stream of a traffic camera."""

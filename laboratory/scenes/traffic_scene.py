@@ -16,11 +16,11 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.scenes.cameras import Camera
 from vehicle_pf_tracker.scenes.compositing import PixelWindow
-from vehicle_pf_tracker.scenes.lane_traffic import CAR_PAINTS, Lane, Vehicle, any_car
+from vehicle_pf_tracker.scenes.lane_traffic import CAR_PAINTS, Lane, LaneVehicle, any_car
+from vehicle_pf_tracker.scenes.obstacles import bridge
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.roads import Carriageway, countryside
 from vehicle_pf_tracker.scenes.scene import Actor, Path, Stage
-from vehicle_pf_tracker.scenes.scenery import bridge
 from vehicle_pf_tracker.scenes.vehicles import lorry
 
 PX_PER_METRE = 7.0
@@ -210,11 +210,11 @@ def _direction(
     ]
 
 
-def _lorry(lane: Lane, rng: np.random.Generator) -> Vehicle:
+def _lorry(lane: Lane, rng: np.random.Generator) -> LaneVehicle:
     cab, load, stripe = (
         CAR_PAINTS[number] for number in rng.choice(len(CAR_PAINTS), 3, replace=False)
     )
-    return Vehicle(lorry(cab, load, stripe), lane)
+    return LaneVehicle(lorry(cab, load, stripe), lane)
 
 
 def _way(road: Carriageway, size: tuple[float, float], front: Array, lane: Array) -> Path:

@@ -15,10 +15,11 @@ from vehicle_pf_tracker.scenes.cameras import SHAKE_MARGIN
 from vehicle_pf_tracker.scenes.compositing import Colour, Image
 from vehicle_pf_tracker.scenes.courses import Course, Pace, Pose
 from vehicle_pf_tracker.scenes.drive import FREE_PX, TARGET_LANE, Drive, DriveParameters
+from vehicle_pf_tracker.scenes.grounds import asphalt, concrete
+from vehicle_pf_tracker.scenes.obstacles import opaque
 from vehicle_pf_tracker.scenes.polygons import cells_inside
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.scene import Actor, Scene
-from vehicle_pf_tracker.scenes.scenery import asphalt, concrete, opaque
 from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION
 
 TURN_RADIUS = 60.0

@@ -15,8 +15,8 @@ from laboratory.stress.coverage import Floats, coverage
 from laboratory.stress.footage import StressFootage
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.scenes.grounds import value_noise
 from vehicle_pf_tracker.scenes.random_streams import stream
-from vehicle_pf_tracker.scenes.scenery import value_noise
 
 Image = npt.NDArray[np.float32]
 """RGB levels 0 to 255, not yet rounded, (rows, columns, 3)."""

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.courses import Pace, Pose, moving, straight, swaying, wave
-from vehicle_pf_tracker.scenes.models import Model
 from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION
+from vehicle_pf_tracker.scenes.turning_vehicle import TurningVehicle
 from vehicle_pf_tracker.scenes.vehicles import car
 
 BOX = Box(10, 20, 4, 3)
@@ -43,7 +43,7 @@ def test_swaying_adds_its_swings():
 
 @pytest.mark.parametrize("degrees", [0, 37, 90, 180, 270])
 def test_the_box_of_a_model_is_tight_at_any_heading(degrees):
-    model = Model(car((100.0, 100.0, 100.0)), 10.0)
+    model = TurningVehicle(car((100.0, 100.0, 100.0)), 10.0)
     body = model.on(lambda _: Pose(50.3, 60.7, math.radians(degrees), 10.0))[1]
     box = body.path(0)
     sprite = body.seen(0)

@@ -11,9 +11,10 @@ from typing import Any, Generic, TypeAlias, TypeVar
 
 from vehicle_pf_tracker.core.errors import InputError, suggestion
 from vehicle_pf_tracker.parameters.table import from_mapping, parse_assignments, specs
-from vehicle_pf_tracker.scenes import drives
+from vehicle_pf_tracker.scenes import drive_scenes
+from vehicle_pf_tracker.scenes.bar import BarParameters, bar
 from vehicle_pf_tracker.scenes.drive import DriveParameters
-from vehicle_pf_tracker.scenes.drives import BarParameters, BrakingParameters, HidingParameters
+from vehicle_pf_tracker.scenes.drive_scenes import BrakingParameters, HidingParameters
 from vehicle_pf_tracker.scenes.highway import HighwayParameters, highway
 from vehicle_pf_tracker.scenes.scene import Scene
 
@@ -43,23 +44,25 @@ class SceneKind(Generic[SceneT]):
 
 
 SCENES: dict[str, SceneKind[Scene]] = {
-    "bar": SceneKind(BarParameters, drives.bar, "a vehicle passes behind a dark vertical bar"),
+    "bar": SceneKind(BarParameters, bar, "a vehicle passes behind a dark vertical bar"),
     "highway": SceneKind(
         HighwayParameters, highway, "traffic; a bridge, then a lorry that overtakes hide the target"
     ),
     "bars": SceneKind(
-        DriveParameters, drives.bars, "four pillars of rising width in front of the road"
+        DriveParameters, drive_scenes.bars, "four pillars of rising width in front of the road"
     ),
-    "bridge": SceneKind(HidingParameters, drives.bridge, "a bridge hides the target"),
+    "bridge": SceneKind(HidingParameters, drive_scenes.bridge, "a bridge hides the target"),
     "trees": SceneKind(
-        DriveParameters, drives.trees, "thin crowns of trees hide parts of the target"
+        DriveParameters, drive_scenes.trees, "thin crowns of trees hide parts of the target"
     ),
-    "bus": SceneKind(HidingParameters, drives.bus, "a coach overtakes and hides the target"),
+    "bus": SceneKind(HidingParameters, drive_scenes.bus, "a coach overtakes and hides the target"),
     "twin": SceneKind(
-        DriveParameters, drives.twin, "a vehicle of the same appearance drives alongside"
+        DriveParameters, drive_scenes.twin, "a vehicle of the same appearance drives alongside"
     ),
-    "clear": SceneKind(DriveParameters, drives.clear, "nothing in the way of the target"),
-    "braking": SceneKind(BrakingParameters, drives.braking, "the speed changes under a bridge"),
+    "clear": SceneKind(DriveParameters, drive_scenes.clear, "nothing in the way of the target"),
+    "braking": SceneKind(
+        BrakingParameters, drive_scenes.braking, "the speed changes under a bridge"
+    ),
 }
 """The scenes by name."""
 

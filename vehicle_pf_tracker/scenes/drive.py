@@ -23,11 +23,11 @@ from vehicle_pf_tracker.scenes.courses import (
     wave,
 )
 from vehicle_pf_tracker.scenes.lane_traffic import convoy
-from vehicle_pf_tracker.scenes.models import Model
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.roads import Carriageway, countryside, town
 from vehicle_pf_tracker.scenes.scene import Actor, Scene, stamps_parameter
 from vehicle_pf_tracker.scenes.solids import Face
+from vehicle_pf_tracker.scenes.turning_vehicle import TurningVehicle
 from vehicle_pf_tracker.scenes.vehicles import car, suv, truck
 
 PAPER_SIZES = {"640x480": (640, 480), "768x576": (768, 576)}
@@ -102,7 +102,7 @@ class Drive:
         # Drawn in a fixed order below: another number here would change every scene.
         self.rng = stream(seed, "drive")
         self.faces = target_faces(parameters.vehicle, self.rng)
-        self.target = Model(self.faces, self.scale)
+        self.target = TurningVehicle(self.faces, self.scale)
         # At least 2 px beside the free ones: the driver sways by up to 1.5 px along the road.
         self.start = SHAKE_MARGIN + FREE_PX + self.target.size[0] / 2 + self.rng.uniform(2, 6)
         self.pace = pace or Pace.steady(parameters.speed)
@@ -162,7 +162,7 @@ class Drive:
         """Make a vehicle level with the target when that is at `s`; `speed` in px/frame."""
         # A pace has covered 0 px at its first knot and less before: level in just that frame.
         pace = Pace(((self.frame_at(s), speed),))
-        return list(Model(faces, self.scale).on(self.course(s, pace, lane)))
+        return list(TurningVehicle(faces, self.scale).on(self.course(s, pace, lane)))
 
     def far_traffic(self) -> list[Actor]:
         """Make the traffic of the far lane, behind the target."""

@@ -21,11 +21,17 @@ from vehicle_pf_tracker.scenes.courses import (
     swaying,
     wave,
 )
-from vehicle_pf_tracker.scenes.lane_traffic import FAR_LANES, NEAR_LANES, Vehicle, any_car, convoy
+from vehicle_pf_tracker.scenes.lane_traffic import (
+    FAR_LANES,
+    NEAR_LANES,
+    LaneVehicle,
+    any_car,
+    convoy,
+)
+from vehicle_pf_tracker.scenes.obstacles import bridge
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.roads import dual_carriageway
 from vehicle_pf_tracker.scenes.scene import Actor, Scene, noise_parameter, stamps_parameter
-from vehicle_pf_tracker.scenes.scenery import bridge
 from vehicle_pf_tracker.scenes.vehicles import car, lorry, saloon
 
 WIDTH = 640
@@ -85,12 +91,12 @@ def highway(parameters: HighwayParameters, seed: int) -> Scene:
 def _slow_lane(rng: np.random.Generator) -> list[Actor]:
     """Make a saloon of a similar blue, a car well behind it, and between them, last, the target."""
     lane = FAR_LANES[0]
-    hatchback = Vehicle(car((38, 92, 168)), lane)
+    hatchback = LaneVehicle(car((38, 92, 168)), lane)
     start = hatchback.box(START_PX - hatchback.size[0] / 2 + rng.uniform(-2, 2), lane)
     course = moving(start, SPEED)
     # The target alone sways: else a constant velocity would predict it too well.
     own = hatchback.on(swaying(course, _swing(2.0, 90, rng), _swing(0.7, 130, rng)))
-    ahead = Vehicle(saloon((62, 84, 132)), lane)
+    ahead = LaneVehicle(saloon((62, 84, 132)), lane)
     # Faster ahead and slower behind than `SPEED`: nobody drives through anybody in one lane.
     leader = ahead.on(moving(ahead.box(start.x + rng.uniform(105, 125), lane), 3.05))
     behind = any_car(lane, rng)
@@ -106,15 +112,15 @@ def _swing(amplitude: float, period: float, rng: np.random.Generator) -> Wave:
 def _middle_lane(rng: np.random.Generator) -> list[Actor]:
     """Make the lorry that overtakes the target, with a car well ahead and one well behind."""
     lane = FAR_LANES[1]
-    truck = Vehicle(lorry((176, 120, 40), (204, 200, 190), (122, 40, 52)), lane)
+    truck = LaneVehicle(lorry((176, 120, 40), (204, 200, 190), (122, 40, 52)), lane)
     speed = SPEED + OVERTAKING * rng.uniform(0.95, 1.05)
     meeting = START_PX + SPEED * HIDDEN_AT + rng.uniform(-6, 6)
     # Backwards from where the lorry's box has to be in that frame.
     left = meeting - LOAD_MIDDLE * truck.size[0] - speed * HIDDEN_AT
     actors = list(truck.on(moving(truck.box(left, lane), speed)))
     for model, place in (
-        (Vehicle(saloon((216, 214, 208)), lane), left + truck.size[0] + rng.uniform(390, 480)),
-        (Vehicle(car((150, 40, 38)), lane), left - rng.uniform(175, 265)),
+        (LaneVehicle(saloon((216, 214, 208)), lane), left + truck.size[0] + rng.uniform(390, 480)),
+        (LaneVehicle(car((150, 40, 38)), lane), left - rng.uniform(175, 265)),
     ):
         actors += model.on(moving(model.box(place, lane), speed))
     return actors

@@ -15,10 +15,10 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
 from vehicle_pf_tracker.scenes.courses import moving
-from vehicle_pf_tracker.scenes.models import SHADOW_OPACITY
 from vehicle_pf_tracker.scenes.scene import Actor, Path
-from vehicle_pf_tracker.scenes.solids import Face, draw, extent, mirrored, shadow
-from vehicle_pf_tracker.scenes.vehicles import car, saloon, tinted, van
+from vehicle_pf_tracker.scenes.solids import SHADOW_OPACITY, Face, draw, extent, mirrored, shadow
+from vehicle_pf_tracker.scenes.vehicle_parts import tinted
+from vehicle_pf_tracker.scenes.vehicles import car, saloon, van
 
 CAR_PAINTS: tuple[Colour, ...] = (
     (222, 222, 220),
@@ -58,7 +58,7 @@ NEAR_LANES = (Lane(256, 13.8, False), Lane(286, 13.8, False), Lane(316, 13.8, Fa
 """Fast, middle and slow lane of the near carriageway."""
 
 
-class Vehicle:
+class LaneVehicle:
     """The appearance of a vehicle in one lane, with its shadow; drawn when first seen.
 
     Parameters
@@ -114,10 +114,10 @@ Kinds: TypeAlias = tuple[Callable[[Colour], list[Face]], ...]
 
 def any_car(
     lane: Lane, rng: np.random.Generator, kinds: Kinds = (car, saloon, saloon, van)
-) -> Vehicle:
+) -> LaneVehicle:
     """Draw a vehicle of a kind and colour left to chance."""
     paint = tinted(CAR_PAINTS[rng.integers(len(CAR_PAINTS))], rng.uniform(0.9, 1.08))
-    return Vehicle(kinds[rng.integers(len(kinds))](paint), lane)
+    return LaneVehicle(kinds[rng.integers(len(kinds))](paint), lane)
 
 
 def convoy(

@@ -13,8 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from vehicle_pf_tracker.scenes.compositing import Colour, Image
-from vehicle_pf_tracker.scenes.lane_traffic import Lane
-from vehicle_pf_tracker.scenes.scenery import (
+from vehicle_pf_tracker.scenes.grounds import (
     MARKING_PAINT,
     asphalt,
     concrete,
@@ -22,6 +21,7 @@ from vehicle_pf_tracker.scenes.scenery import (
     grass,
     value_noise,
 )
+from vehicle_pf_tracker.scenes.lane_traffic import Lane
 from vehicle_pf_tracker.scenes.solids import VIEW_ELEVATION
 
 LANE_WIDTH = 3.25

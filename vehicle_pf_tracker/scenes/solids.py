@@ -25,6 +25,8 @@ VIEW_ELEVATION = math.radians(35)
 """Angle of the view above the horizon: that of a camera on a bridge or a mast near the road."""
 SHADOW_TINT: Colour = (12, 14, 20)
 """Colour that shadows are tinted with: bluish, as only the sky lights them."""
+SHADOW_OPACITY = 0.5
+"""Opacity of shadows on the road: half, as the sky lights them too."""
 OVERSAMPLING = 6
 """Cells drawn per pixel and axis: 36 levels of coverage at an edge, finer than the noise."""
 SAME_PLACE = 0.08

@@ -1,52 +1,30 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Vehicles as solids: body, glass, wheels and lamps in colours of their own."""
+"""Vehicles of ordinary sizes as solids of coloured faces: cars, vans, lorries and a coach."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from vehicle_pf_tracker.scenes.compositing import Colour
-from vehicle_pf_tracker.scenes.solids import Face, Point, disc, side_panel, strips
+from vehicle_pf_tracker.scenes.solids import Face, side_panel, strips
+from vehicle_pf_tracker.scenes.vehicle_parts import (
+    HEAD_LAMP,
+    RIM,
+    SCREEN,
+    SIDE_GLASS,
+    SILL,
+    TAIL_LAMP,
+    cabin_faces,
+    flank,
+    lamps,
+    panel,
+    side_window,
+    tinted,
+    wheels,
+)
 
-# Colours of parts that are the same on all vehicles, whatever their paint.
-TYRE: Colour = (22, 22, 24)
-"""Rubber."""
-RIM: Colour = (150, 152, 156)
-"""Aluminium of wheels."""
-SILL: Colour = (38, 38, 40)
-"""Plastic of sills and bumpers."""
-SIDE_GLASS: Colour = (40, 48, 56)
-"""Side windows, which show the dark inside."""
-SCREEN: Colour = (92, 112, 128)
-"""Windscreens, which lean and reflect the sky."""
-HEAD_LAMP: Colour = (244, 240, 214)
-"""Glass of head lamps."""
-TAIL_LAMP: Colour = (186, 24, 22)
-"""Glass of tail lamps."""
-AMBER_LAMP: Colour = (236, 140, 30)
-"""Glass of indicators."""
-
-# Contours are (x, z) in m, x from the rear and z from the ground, drawn over the top from rear to
-# front. Sizes are those of ordinary vehicles of their kind, a choice.
-Contour = Sequence[tuple[float, float]]
-
-
-_TUMBLEHOME = 0.2
-"""Inward lean of the cabin from sill to roof, m: 20 degrees on a cabin of 0.55 m, a choice."""
 ROOF_UNIT: Colour = (170, 172, 174)
 """Air conditioning of a coach."""
-
-
-def _panel(
-    x: tuple[float, float], z: tuple[float, float], colour: Colour, *, glow: bool = False
-) -> Face:
-    """Make an upright rectangle on the near side."""
-    rear, front = x
-    low, high = z
-    contour = [(rear, low), (rear, high), (front, high), (front, low)]
-    return side_panel(contour, 0, colour, glow=glow)
 
 
 def car(paint: Colour) -> list[Face]:
@@ -69,10 +47,10 @@ def car(paint: Colour) -> list[Face]:
     ]
     return [
         *strips(body, 0, 1.68, paint),
-        *_cabin(cabin, 1.68, paint),
+        *cabin_faces(cabin, 1.68, paint),
         *roof_window,
-        *(_side_window(window) for window in windows),
-        *_flank(body, paint, door=1.2),
+        *(side_window(window) for window in windows),
+        *flank(body, paint, door=1.2),
         *lamps(body, front=3.7, rear=0.0),
         *wheels((0.68, 2.95), 0.31),
     ]
@@ -96,9 +74,9 @@ def saloon(paint: Colour) -> list[Face]:
     ]
     return [
         *strips(body, 0, 1.78, paint),
-        *_cabin(cabin, 1.78, paint),
-        *(_side_window(window) for window in windows),
-        *_flank(body, paint, door=1.95),
+        *cabin_faces(cabin, 1.78, paint),
+        *(side_window(window) for window in windows),
+        *flank(body, paint, door=1.95),
         *lamps(body, front=4.6, rear=0.0),
         *wheels((0.85, 3.7), 0.32),
     ]
@@ -122,7 +100,7 @@ def van(paint: Colour) -> list[Face]:
     return [
         *strips(body, 0, width, paint),
         screen,
-        *_flank(body, paint, door=3.35),
+        *flank(body, paint, door=3.35),
         door_window,
         *lamps(body, front=5.4, rear=0.0),
         *wheels((1.0, 4.5), 0.36),
@@ -148,89 +126,16 @@ def suv(paint: Colour) -> list[Face]:
     ]
     return [
         *strips(body, 0, 1.88, paint),
-        *_cabin(cabin, 1.88, paint),
+        *cabin_faces(cabin, 1.88, paint),
         *(
             side_panel([(0.4, 1.82), (0.4, 1.88), (2.3, 1.88), (2.3, 1.82)], y, RIM)
             for y in (1.6, 0.28)
         ),
-        *(_side_window(window) for window in windows),
-        *_flank(body, paint, door=1.85),
-        _panel((0.05, 4.45), (0.4, 0.62), SILL),
+        *(side_window(window) for window in windows),
+        *flank(body, paint, door=1.85),
+        panel((0.05, 4.45), (0.4, 0.62), SILL),
         *lamps(body, front=4.5, rear=0.0),
         *wheels((0.9, 3.6), 0.38),
-    ]
-
-
-def tinted(paint: Colour, light: float) -> Colour:
-    """Return `paint` made `light` times as bright."""
-    red, green, blue = paint
-    return red * light, green * light, blue * light
-
-
-def _flank(body: Contour, paint: Colour, door: float) -> list[Face]:
-    """Near side of the body: paint, a darker lower part, the sill and the gap of a door."""
-    rear = body[0][0]
-    front = body[-1][0]
-    return [
-        # Parts of other brightness: a side of one colour has no edges within its outline.
-        side_panel(body, 0, paint),
-        _panel((rear, front), (0.3, 0.55), tinted(paint, 0.8)),
-        _panel((rear + 0.3, front - 0.3), (0.22, 0.36), SILL),
-        _panel((door, door + 0.05), (0.4, 0.95), SILL),
-    ]
-
-
-def _cabin(cabin: Contour, width: float, paint: Colour) -> list[Face]:
-    """Rear and front screens, roof and the painted near side of a cabin of four (x, z) points."""
-    (xr, zr), (x1, z1), (x2, z2), (xf, zf) = cabin
-    near = _TUMBLEHOME
-    far = width - _TUMBLEHOME
-    return [
-        Face(((xr, 0.05, zr), (x1, near, z1), (x1, far, z1), (xr, width - 0.05, zr)), SCREEN),
-        Face(((xf, 0.05, zf), (x2, near, z2), (x2, far, z2), (xf, width - 0.05, zf)), SCREEN),
-        Face(((x1, near, z1), (x2, near, z2), (x2, far, z2), (x1, far, z1)), paint),
-        Face(((xr, 0.0, zr), (x1, near, z1), (x2, near, z2), (xf, 0.0, zf)), paint),
-    ]
-
-
-def _side_window(window: Contour) -> Face:
-    """Glass in the leaning near side of a cabin from sill (0.95 m) to roof (1.5 m)."""
-    points: list[Point] = [(x, _TUMBLEHOME * (z - 0.95) / 0.55, z) for x, z in window]
-    return Face(tuple(points), SIDE_GLASS)
-
-
-def lamps(body: Contour, front: float, rear: float) -> list[Face]:
-    """Head lamp, amber side lamp and tail lamp, on the near side."""
-    # Head lamps end at the edge of the bonnet, the last corner but one.
-    top = body[-2][1]
-    return [
-        side_panel(
-            [
-                (front - 0.42, top - 0.14),
-                (front - 0.42, top),
-                (front - 0.02, top),
-                (front, top - 0.14),
-            ],
-            0,
-            HEAD_LAMP,
-            glow=True,
-        ),
-        _panel((front - 0.55, front - 0.42), (top - 0.14, top), AMBER_LAMP, glow=True),
-        _panel((rear, rear + 0.22), (0.6, 0.85), TAIL_LAMP, glow=True),
-    ]
-
-
-def wheels(axles: Sequence[float], radius: float) -> list[Face]:
-    """Wheels of `radius` (m) on the near side, in dark wheel arches."""
-    # Concentric, the largest first: of faces in one place the later is seen.
-    return [
-        face
-        for x in axles
-        for face in (
-            disc(x, radius + 0.04, radius + 0.09, SILL),
-            disc(x, radius, radius, TYRE),
-            disc(x, radius, 0.55 * radius, RIM),
-        )
     ]
 
 
@@ -254,11 +159,11 @@ def lorry(cab: Colour, box: Colour, stripe: Colour) -> list[Face]:
         # Without the end walls of the box, which the view from the side never shows.
         *strips(load[1:3], 0, width, box),
         side_panel(load, 0, box),
-        _panel((0.0, 8.3), (2.0, 2.5), stripe),
-        *(_panel((x, x + 0.06), (1.15, 3.95), SILL) for x in (0.02, 8.2)),
-        _panel((2.9, 6.0), (0.5, 1.05), (120, 122, 124)),
+        panel((0.0, 8.3), (2.0, 2.5), stripe),
+        *(panel((x, x + 0.06), (1.15, 3.95), SILL) for x in (0.02, 8.2)),
+        panel((2.9, 6.0), (0.5, 1.05), (120, 122, 124)),
         side_panel([(10.3, 0.8), (10.3, 1.1), (10.58, 1.1), (10.6, 0.8)], 0, HEAD_LAMP, glow=True),
-        _panel((0.0, 0.3), (0.8, 1.05), TAIL_LAMP, glow=True),
+        panel((0.0, 0.3), (0.8, 1.05), TAIL_LAMP, glow=True),
         *wheels((1.0, 2.2, 7.1, 9.4), 0.5),
     ]
 
@@ -276,8 +181,8 @@ def truck(cab: Colour, box: Colour) -> list[Face]:
         side_panel([(4.7, 1.4), (4.7, 2.0), (5.2, 2.0), (5.65, 1.4)], 0, SIDE_GLASS),
         *strips(load, 0, width, box),
         side_panel(load, 0, box),
-        _panel((0.0, 4.2), (0.8, 1.0), tinted(box, 0.7)),
-        _panel((0.7, 3.5), (1.5, 2.2), tinted(cab, 0.9)),
+        panel((0.0, 4.2), (0.8, 1.0), tinted(box, 0.7)),
+        panel((0.7, 3.5), (1.5, 2.2), tinted(cab, 0.9)),
         *lamps(front, front=5.98, rear=0.0),
         *wheels((1.0, 5.0), 0.42),
     ]
@@ -302,12 +207,12 @@ def coach(paint: Colour, stripe: Colour, length: float = 12.0) -> list[Face]:
         *strips(body, 0, width, paint),
         *strips([(length - 0.04, top - 0.4), (length - 0.01, 1.3)], 0.15, width - 0.15, SCREEN),
         side_panel(body, 0, paint),
-        _panel((0.0, length), (1.3, 1.7), stripe),
+        panel((0.0, length), (1.3, 1.7), stripe),
         *(
-            _panel((x, x + pane - 0.12), (2.0, 3.25), SIDE_GLASS)
+            panel((x, x + pane - 0.12), (2.0, 3.25), SIDE_GLASS)
             for x in (0.45 + pane * number for number in range(count))
         ),
-        *(_panel((x, x + 0.95), (0.5, 3.2), SCREEN) for x in (length - 1.5, length * 0.52)),
+        *(panel((x, x + 0.95), (0.5, 3.2), SCREEN) for x in (length - 1.5, length * 0.52)),
         *strips([(length * 0.3, top + 0.1), (length * 0.45, top + 0.1)], 0.6, 1.9, ROOF_UNIT),
         *lamps([*body[:-2], (length - 0.05, 1.0), (length, 0.4)], front=length, rear=0.0),
         *wheels((2.2, length - 2.7), 0.48),

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.scenes.scenery import value_noise
+from vehicle_pf_tracker.scenes.grounds import value_noise
 
 WIDTH, HEIGHT, COUNT, FPS = 256, 96, 130, 25
 RED = (230, 20, 20)

@@ -6,8 +6,8 @@
 import numpy as np
 import pytest
 
+from vehicle_pf_tracker.scenes.grounds import asphalt, concrete, foliage, grass, value_noise
 from vehicle_pf_tracker.scenes.random_streams import stream
-from vehicle_pf_tracker.scenes.scenery import asphalt, concrete, foliage, grass, value_noise
 
 SURFACES = (asphalt, concrete, foliage, grass)
 

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Vehicles that can be sent along any course: drawn for each heading that they take."""
+"""A vehicle that turns: sent along any course, and drawn for each heading that it takes."""
 
 from __future__ import annotations
 
@@ -13,13 +13,11 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.compositing import Colour, Sprite
 from vehicle_pf_tracker.scenes.courses import Course, Pose
 from vehicle_pf_tracker.scenes.scene import Actor
-from vehicle_pf_tracker.scenes.solids import Face, draw, extent, normal_of, shadow
-from vehicle_pf_tracker.scenes.vehicles import HEAD_LAMP, SILL, TAIL_LAMP
+from vehicle_pf_tracker.scenes.solids import SHADOW_OPACITY, Face, draw, extent, normal_of, shadow
+from vehicle_pf_tracker.scenes.vehicle_parts import HEAD_LAMP, SILL, TAIL_LAMP
 
 PLATE: Colour = (226, 226, 216)
 """Number plates: nearly white."""
-SHADOW_OPACITY = 0.5
-"""Opacity of shadows on the road: half, as the sky lights them too."""
 HEADING_STEP = math.radians(2)
 """Sprites are drawn for headings this far apart; their boxes are exact for every heading."""
 
@@ -77,7 +75,7 @@ def _upright(x: float, y: tuple[float, float], z: tuple[float, float], colour: C
     return Face(corners, colour, glow=True)
 
 
-class Model:
+class TurningVehicle:
     """A vehicle that can be sent along any course.
 
     Parameters
