@@ -17,7 +17,8 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from laboratory import scenes as laboratory_scenes
-from laboratory.scenes.drives import cross, dense, near_traffic, tree_shadows
+from laboratory.scenes.drives import cross, dense, near_traffic
+from laboratory.scenes.light import tree_shadows
 from laboratory.scenes.turns import TURN_RADIUS, TurningDrive
 from reproduction.signs import posts_at, sign_at
 from vehicle_pf_tracker.core.truth import TOTAL_BELOW

@@ -11,7 +11,8 @@ from pathlib import Path
 
 from laboratory.scenes import LABORATORY_SCENES, TRAFFIC_SCENES, make_scene, make_traffic_scene
 from laboratory.scenes.conditions import CONDITIONS
-from laboratory.scenes.mot_folder import SIMULATED_DETECTORS, write_mot_folder
+from laboratory.scenes.mot_folder import write_mot_folder
+from laboratory.scenes.simulated_detector import SIMULATED_DETECTORS
 from laboratory.scenes.traffic_close import BRIEF, CloseScene
 from laboratory.scenes.traffic_perspective import PerspectiveScene, road_file
 from vehicle_pf_tracker.cli.main import exit_status

@@ -17,9 +17,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from laboratory.scenes.flow import TrafficSceneParameters, drive
-from laboratory.scenes.mot_folder import SimulatedDetector, false_alarm
 from laboratory.scenes.perspective import RoadCamera, looking
 from laboratory.scenes.road_ground import RoadMarks, ground_picture
+from laboratory.scenes.simulated_detector import SimulatedDetector, false_alarm
 from laboratory.scenes.traffic_perspective import LANE_WIDTH, OnRoad, actors_of, any_car, order_of
 from laboratory.scenes.traffic_scene import TrafficScene, VehicleTruth
 from vehicle_pf_tracker.core.array import Array

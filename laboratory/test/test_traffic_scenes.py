@@ -11,12 +11,9 @@ import pytest
 import yaml
 
 from laboratory.scenes import TRAFFIC_SCENES, make_traffic_scene
-from laboratory.scenes.flow import Driver, Hold, simulate
-from laboratory.scenes.mot_folder import (
-    SIMULATED_DETECTORS,
-    SimulatedDetector,
-    write_mot_folder,
-)
+from laboratory.scenes.driver_model import Driver, Hold, simulate
+from laboratory.scenes.mot_folder import write_mot_folder
+from laboratory.scenes.simulated_detector import SIMULATED_DETECTORS, SimulatedDetector
 from laboratory.scenes.traffic_perspective import road_file
 from laboratory.scenes.traffic_scene import TrafficScene, VehicleTruth, traffic
 from vehicle_pf_tracker.core.box import Box

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from laboratory.scenes import make_scene
-from laboratory.scenes.drives import Cloud, CloudyCamera
+from laboratory.scenes.light import Cloud, CloudyCamera
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.scenes.cameras import SHAKE_MARGIN, Disturbance, OutdoorCamera
 

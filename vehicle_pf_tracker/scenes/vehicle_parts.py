@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Parts that most vehicles have: faces of flanks, cabins, windows, lamps and wheels, with colours."""
+"""Parts that most vehicles have, as faces: flanks, cabins, windows, lamps and wheels."""
 
 from __future__ import annotations
 
