@@ -84,8 +84,8 @@ TRAFFIC_SCENES: dict[str, SceneKind[TrafficScene]] = {
     ),
     "traffic-jam": _perspective(
         "a queue at a red light, in which each hides parts of the next",
-        vehicles=24, view="gantry", mixed=True, lanes=3, directions=1, lorries=0.15, lorry_speed=0.9,
-        flow="queue", gap=9.0, frames=420,
+        vehicles=24, view="gantry", mixed=True, lanes=3, directions=1, lorries=0.15,
+        lorry_speed=0.9, flow="queue", gap=9.0, frames=420,
     ),
     "traffic-close": SceneKind(
         CloseParameters,
