@@ -3,9 +3,11 @@
 
 """Checks before a release is tagged: the checkout, and its archives in fresh environments.
 
-    python -m tools.release_check results/dist [--extras video ros evaluation]
+    python -m tools.release_check results/dist [--extras video ros evaluation] [--pythons 3.10 3.13]
 
 `make release-check` builds the archives first. Every check runs; the status says whether all held.
+In each environment the README's way is gone and judged (`tools.journeys`), with no more than the
+extra that it names.
 """
 
 from __future__ import annotations
@@ -16,29 +18,19 @@ import re
 import subprocess
 import sys
 import tarfile
-import venv
 import xml.etree.ElementTree as ET
 import zipfile
 from collections.abc import Callable, Collection, Iterable, Iterator
 from functools import partial
+from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-ROOT = Path(__file__).parents[1]
+from tools import journeys
+from tools.journeys import ROOT, WRITTEN
+
 NAME = "vehicle_pf_tracker"
-WRITTEN = {
-    "video": (
-        "grid.png",
-        "seen.mp4",
-        "out/summary.png",
-        "out/estimates.csv",
-        "vehicles/tracks.csv",
-    ),
-    "ros": ("rec/metadata.yaml", "replayed/estimates.csv"),
-    "evaluation": ("recordings/bridge/metadata.yaml", "results/report.html"),
-}
-"""Files that the README's commands leave, by the extra that they need."""
 SIZES = {"video": 690, "ros": 760, "evaluation": 830}
 """Largest site-packages by extra, MB: a twentieth above docs/development.md, so that what a new
 release of a library adds is noticed."""
@@ -141,37 +133,20 @@ def archives(folder: Path, version: str) -> tuple[Path, Path]:
     return wheel, source
 
 
-def readme_commands(extra: str) -> str:
-    """Return the commands after ``pip install '.[EXTRA]'`` in the README's part on the ways in."""
-    ways = (ROOT / "README.md").read_text(encoding="utf-8").split("## Three ways in")[1]
-    blocks: list[str] = re.findall(r"```sh\n(.*?)```", ways, re.DOTALL)
-    first = f"pip install '.[{extra}]'\n"
-    (commands,) = [block.removeprefix(first) for block in blocks if block.startswith(first)]
-    return commands
+def interpreter(version: str | None) -> Path:
+    """Return the interpreter of a version, as `3.12`, on PATH; None is that of this process."""
+    if version is None:
+        return Path(sys.executable)
+    return Path(run(ROOT / ".ci" / "find-python", version, cwd=ROOT).strip())
 
 
-def installed(archive: Path, extra: str, folder: Path) -> Path:
+def installed(archive: Path, extra: str, folder: Path, version: str | None = None) -> Path:
     """Install an archive with an extra into a fresh environment, and return its Python."""
-    venv.create(folder, symlinks=True)
+    run(interpreter(version), "-m", "venv", "--symlinks", "--without-pip", folder, cwd=ROOT)
     python = folder / "bin" / "python"
     pip = (sys.executable, "-m", "pip", "--python", python, "--disable-pip-version-check")
     run(*pip, "install", "--quiet", f"{archive.absolute()}[{extra}]", cwd=folder)
     return python
-
-
-def follow_readme(python: Path, extra: str, folder: Path) -> None:
-    """Type the README's commands in an empty folder, and check what they leave."""
-    folder.mkdir(exist_ok=True)
-    script = f"trap 'kill $(jobs -p) || true' EXIT\nset -e\n{readme_commands(extra)}"
-    variables = {
-        "PATH": f"{python.parent}:{os.environ['PATH']}",
-        "ROS_DOMAIN_ID": 1 + os.getpid() % 100,  # not that of nodes beside this one
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-    }
-    run("bash", "-c", script, cwd=folder, **variables)
-    for name in WRITTEN[extra]:
-        if not (folder / name).exists() or not (folder / name).stat().st_size:
-            raise ReleaseError(f"the README's commands for [{extra}] leave no {name}")
 
 
 def licences_in(python: Path) -> list[Licence]:
@@ -203,33 +178,50 @@ def megabytes(python: Path) -> int:
     return int(run("du", "-sm", folder, cwd=folder).split()[0])
 
 
-def check_install(archive: Path, extra: str) -> str:
+def check_install(archive: Path, extra: str, version: str | None = None) -> str:
     """Check an archive in a fresh environment: README, licences; return them and its size."""
     with TemporaryDirectory(prefix="release-check-") as scratch:
-        python = installed(archive, extra, Path(scratch, "env"))
+        python = installed(archive, extra, Path(scratch, "env"), version)
         size = megabytes(python)
         stated = check_licences(licences_in(python))
-        follow_readme(python, extra, Path(scratch, "work"))
+        follow(python, extra, Path(scratch, "work"))
     if size > SIZES[extra]:
         raise ReleaseError(f"[{extra}] takes {size} MB, more than {SIZES[extra]}")
     return f"{size} MB; {stated}"
 
 
-def checks(dist: Path, extras: Collection[str]) -> Iterator[tuple[str, Callable[[], object]]]:
+def follow(python: Path, extra: str, folder: Path) -> None:
+    """Type the commands of a way in an empty folder, and judge what they leave."""
+    folder.mkdir(exist_ok=True)
+    script = f"trap 'kill $(jobs -p) || true' EXIT\nset -e\n{journeys.commands(extra)}"
+    variables = {
+        "PATH": f"{python.parent}:{os.environ['PATH']}",
+        "ROS_DOMAIN_ID": 1 + os.getpid() % 100,  # not that of nodes beside this one
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+    run("bash", "-c", script, cwd=folder, **variables)
+    if problem := journeys.problem(extra, folder):
+        raise ReleaseError(f"the README's commands for [{extra}]: {problem}")
+
+
+def checks(
+    dist: Path, extras: Collection[str], versions: Collection[str | None] = (None,)
+) -> Iterator[tuple[str, Callable[[], object]]]:
     """Give the checks by name, in their order."""
     yield "clean tree", lambda: check_clean(ROOT)
     yield "version", lambda: check_version(ROOT)
     yield "pages", lambda: check_pages(ROOT)
     version = ET.parse(ROOT / "package.xml").getroot().findtext("version", "")  # noqa: S314
     yield "archives", lambda: ", ".join(path.name for path in archives(dist, version))
-    for extra in extras:
-        yield f"wheel [{extra}]", partial(_check_archive, 0, dist, version, extra)
+    for python, extra in product(versions, extras):
+        name = f"wheel [{extra}]" + (f" with Python {python}" if python else "")
+        yield name, partial(_check_archive, 0, dist, version, extra, python)
     if "video" in extras:
-        yield "source [video]", partial(_check_archive, 1, dist, version, "video")
+        yield "source [video]", partial(_check_archive, 1, dist, version, "video", None)
 
 
-def _check_archive(which: int, dist: Path, version: str, extra: str) -> str:
-    return check_install(archives(dist, version)[which], extra)
+def _check_archive(which: int, dist: Path, version: str, extra: str, python: str | None) -> str:
+    return check_install(archives(dist, version)[which], extra, python)
 
 
 def main(words: list[str] | None = None) -> int:
@@ -237,8 +229,9 @@ def main(words: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("dist", type=Path, help="folder of the archives, as `make dist` fills it")
     parser.add_argument("--extras", nargs="*", default=list(WRITTEN), choices=WRITTEN)
+    parser.add_argument("--pythons", nargs="+", default=[None], help="versions, as 3.12, on PATH")
     args = parser.parse_args(words)
-    verdicts = [_holds(name, check) for name, check in checks(args.dist, args.extras)]
+    verdicts = [_holds(name, check) for name, check in checks(args.dist, args.extras, args.pythons)]
     return int(not all(verdicts))
 
 

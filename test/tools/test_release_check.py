@@ -80,10 +80,14 @@ def test_a_distribution_without_a_licence_is_named():
         release_check.check_licences([*good, Licence("c", "1", "", 0)])
 
 
-def test_each_extra_has_commands_in_the_readme():
-    for extra, written in release_check.WRITTEN.items():
-        commands = release_check.readme_commands(extra)
-        assert all(name.split("/")[0] in commands for name in written)
+def test_each_version_of_python_has_each_extra(tmp_path):
+    names = [name for name, _ in release_check.checks(tmp_path, ["video", "ros"], ["3.10", "3.13"])]
+    assert names[4:] == [
+        "wheel [video] with Python 3.10", "wheel [ros] with Python 3.10",
+        "wheel [video] with Python 3.13", "wheel [ros] with Python 3.13", "source [video]",
+    ]  # fmt: skip
+    with pytest.raises(ReleaseError, match=r"looked for 2\.5"):
+        release_check.interpreter("2.5")
 
 
 def test_the_status_says_whether_all_holds(monkeypatch, tmp_path, capsys):
@@ -92,12 +96,12 @@ def test_the_status_says_whether_all_holds(monkeypatch, tmp_path, capsys):
 
     asked = []
 
-    def checks(dist, extras):
-        asked.append((dist, extras))
+    def checks(*given):
+        asked.append(given)
         yield "one", fail
         yield "two", lambda: "it is"
 
     monkeypatch.setattr(release_check, "checks", checks)
     assert release_check.main([str(tmp_path), "--extras"]) == 1
     assert capsys.readouterr().out == "one: FAILED: it is not\ntwo: ok, it is\n"
-    assert asked == [(tmp_path, [])]
+    assert asked == [(tmp_path, [], [None])]
