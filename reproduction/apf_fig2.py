@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import islice
 
 from matplotlib.figure import Figure
 
@@ -39,7 +38,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
     stretch = covered(truths)
     assert stretch is not None
     scene = choice.make()
-    shown = next(islice(scene.frames(), stretch[0] - _BEFORE, None))
+    shown = next(scene.frames([stretch[0] - _BEFORE]))
     rows = tuple(
         (n, *t.box.centre, t.occlusion.name.lower(), t.visible_fraction)
         for n, t in enumerate(truths, start=1)

@@ -44,9 +44,8 @@ def test_a_plug_in_runs_and_is_evaluated(verb, tmp_path):
     with (tmp_path / "out" / "estimates.csv").open() as file:
         assert {row["mode"] for row in csv.DictReader(file)} == {"TRACKING"}
     assert json.loads((tmp_path / "out" / "metrics.json").read_text())["success_auc"] > 0.5
-    told = verb(
-        "evaluate", rec, "--variants", "steady,pf", "--seeds", 1, "-o", tmp_path / "results"
-    )
+    words = ("--variants", "steady,pf", "--seeds", 1, "--workers", 1)
+    told = verb("evaluate", rec, *words, "-o", tmp_path / "results")
     assert "steady" in told
     assert "pf" in told
 

@@ -122,10 +122,10 @@ class Stage(ABC):
     def painted(self, index: int) -> Iterable[Actor]:
         """Give the actors of frame `index` in painting order."""
 
-    def images(self) -> Iterator[Frame]:
-        """Render every frame in order."""
+    def images(self, indices: Iterable[int] | None = None) -> Iterator[Frame]:
+        """Render every frame in order, or those with the given indices."""
         backdrop = self.backdrop()
-        for index in range(self.frame_count):
+        for index in range(self.frame_count) if indices is None else indices:
             # A copy: actors and camera paint into it, and the backdrop is drawn once per pass.
             picture = backdrop.copy()
             for actor in self.painted(index):
@@ -152,9 +152,10 @@ class Scene(Stage):
         """Give all actors."""
         return self.actors
 
-    def frames(self) -> Iterator[SceneFrame]:
-        """Render every frame in order, with its truth."""
-        return map(SceneFrame, self.images(), self.truths())
+    def frames(self, indices: Iterable[int] | None = None) -> Iterator[SceneFrame]:
+        """Render every frame in order, or those with the given indices, with their truths."""
+        chosen = range(self.frame_count) if indices is None else tuple(indices)
+        return map(SceneFrame, self.images(chosen), map(self.truth, chosen))
 
     def truths(self) -> Iterator[Truth]:
         """Give the truth of every frame, as `frames` does, without rendering a pixel."""

@@ -82,12 +82,16 @@ class Sinking(Street):
         return frame
 
 
-@functools.cache
 def run(variant, settings):
     """Estimates of a vehicle that is hidden for a while; `settings` are pairs."""
-    found = find_variant(variant)
     values = {"seed": 3, "num_particles": 60, **BASIS.get(variant, {}), **dict(settings)}
-    tracker = found.tracker(from_mapping(found.parameters, values))
+    return _run_of(variant, from_mapping(find_variant(variant).parameters, values))
+
+
+@functools.cache
+def _run_of(variant, parameters):
+    """Estimates by all parameters: a setting that is the default is no other run."""
+    tracker = find_variant(variant).tracker(parameters)
     return [
         (e.position, e.regime, tuple(e.similarities.values()), e.effective_sample_size)
         for e in follow(tracker, Sinking(speed=2.0), range(60))
