@@ -89,7 +89,10 @@ class HistogramCell:
 
 
 class _Histograms:
+    """Measures along a sequence; `last` has the histograms of the last frame by feature."""
+
     def __init__(self, interpretation: str) -> None:
+        self.last: dict[str, Any] = {}
         self._features = features(interpretation)
         self._target: Target | None = None
         self._first: dict[str, Any] = {}
@@ -99,9 +102,9 @@ class _Histograms:
     def feed(self, shown: SceneFrame) -> None:
         if self._target is None:
             self._target = Target(shown.frame, shown.truth.box)
-        found = histograms(self._features, self._target, shown)
-        self._first = self._first or found
-        for name, histogram in found.items():
+        self.last = histograms(self._features, self._target, shown)
+        self._first = self._first or self.last
+        for name, histogram in self.last.items():
             rho = bhattacharyya_coefficient(histogram, self._first[name])
             self._distance[name].append(float(hellinger_distance(np.asarray(rho))))
         visible = shown.truth.visible_fraction
@@ -121,11 +124,15 @@ def features(interpretation: str) -> dict[str, WindowFeature]:
     }
 
 
-def histograms(made: dict[str, WindowFeature], target: Target, shown: SceneFrame) -> dict[str, Any]:
+def histograms(
+    by_name: dict[str, WindowFeature], target: Target, shown: SceneFrame
+) -> dict[str, Any]:
     """Describe the true window of a frame by every feature."""
     at = np.asarray([shown.truth.box.centre])
     window = target.window(WindowParameters())
-    return {name: f.histograms(shown.frame, at, window)[0] for name, f in made.items()}
+    return {
+        name: feature.histograms(shown.frame, at, window)[0] for name, feature in by_name.items()
+    }
 
 
 def cells(size: ex.Size) -> list[HistogramCell]:
@@ -304,14 +311,11 @@ def _figure(size: ex.Size) -> Figure:
 
 def _pictures(seed: int) -> dict[str, tuple[Frame, dict[str, Any]]]:
     """Cut out the true window, and describe it: the first frame's, and the worst of each kind."""
-    made = features(ex.PAPER_RULE)
-    target = None
     shown: list[tuple[Frame, dict[str, Any]]] = []
     probe = _Histograms(ex.PAPER_RULE)
     for scene_frame in SceneChoice.of(_SCENE).seeded(seed).make().frames():
-        target = target or Target(scene_frame.frame, scene_frame.truth.box)
         probe.feed(scene_frame)
-        shown.append((_cut(scene_frame), histograms(made, target, scene_frame)))
+        shown.append((_cut(scene_frame), probe.last))
     result = probe.result()
     distance: Sequence[float] = result["distance"]["color"]
     worst = {

@@ -17,7 +17,7 @@ from reproduction import mfpf_systems as mfpf
 from reproduction import mfpf_textures as textures
 from reproduction.case_figure import OCCLUSION_SHADES, error_case_figure
 from reproduction.cells import RunCell, System
-from reproduction.numbers import mean_and_spread, share
+from reproduction.numbers import mean_and_spread, seed_means, share
 from reproduction.paper_scenes import CASE_SCENES
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX
 
@@ -169,7 +169,7 @@ def _followed_table(followed: Mapping[str, Followed], size: ex.Size) -> ex.DataT
 
 def _over_cases(errors: Errors, label: str) -> list[float]:
     """Mean RMS over the cases, for each seed."""
-    return [fmean(of) for of in zip(*(found[label] for found in errors.values()), strict=True)]
+    return seed_means(by_label[label] for by_label in errors.values())
 
 
 def _best_single(found: Mapping[str, Sequence[float]]) -> str:

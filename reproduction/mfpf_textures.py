@@ -12,7 +12,7 @@ from reproduction import mfpf_systems as mfpf
 from reproduction.cells import RunCell, System
 from reproduction.experiment import PAPER_RULE, Claim, DataTable, Finding, Holds, Results, Size
 from reproduction.mfpf_systems import MFPF, TEXTURE
-from reproduction.numbers import mean_and_spread
+from reproduction.numbers import mean_and_spread, seed_means
 
 _KEPT = "glcm"
 """The texture that the paper kept."""
@@ -93,5 +93,4 @@ def _rms(results: Results, size: Size, case: str, system: System) -> list[float]
 
 def _over_cases(results: Results, size: Size, system: System) -> list[float]:
     """Mean RMS over the cases, for each seed."""
-    values = [_rms(results, size, case, system) for case in mfpf.cases(size)]
-    return [fmean(of) for of in zip(*values, strict=True)]
+    return seed_means(_rms(results, size, case, system) for case in mfpf.cases(size))

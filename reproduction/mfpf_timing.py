@@ -15,14 +15,10 @@ from reproduction import experiment as ex
 from reproduction import mfpf_systems as mfpf
 from reproduction.cells import SceneChoice, System
 from reproduction.numbers import median_and_range
-from reproduction.timing_cell import TimingCell
+from reproduction.timing_cell import TimingCell, timed_seeds
 
 _CASE = "case2"
 """A case in which nothing hides the vehicle wholly, so that all filters measure in every frame."""
-_SEEDS = 3
-"""Runs that are timed: each frame of each is a measurement."""
-_QUICK_SEEDS = 1
-"""Runs of a quick check."""
 _TRIPLE = 2.0, 4.0
 """Ratios that round to three, generously."""
 _MORE = 1.2
@@ -31,12 +27,12 @@ _MORE = 1.2
 
 def cells(size: ex.Size) -> list[TimingCell]:
     """Run the four filters in turns, once for each of a few seeds."""
-    return [_cell(seed) for seed in _timed(size)]
+    return [_cell(seed) for seed in timed_seeds(size)]
 
 
 def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Compare the times as ratios to the mean of the single-feature filters'."""
-    seeds = _timed(size)
+    seeds = timed_seeds(size)
     systems = _systems()
     times = {seed: results[_cell(seed)]["step_ms"] for seed in seeds}
     means = {
@@ -72,10 +68,6 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
         {"Mean over the frames; median and range over the seeds:": table},
         seeds,
     )
-
-
-def _timed(size: ex.Size) -> range:
-    return size.seeds[: size.of(_SEEDS, _QUICK_SEEDS)]
 
 
 def _systems() -> tuple[System, ...]:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -28,6 +28,11 @@ def mean_and_spread(values: Sequence[float], decimals: int = 1) -> str:
 def spread(values: Sequence[float]) -> float:
     """Return the sample's standard deviation; 0 for a single value."""
     return statistics.stdev(values) if len(values) > 1 else 0.0
+
+
+def seed_means(series: Iterable[Sequence[float]]) -> list[float]:
+    """Return for each seed the mean over series that have a value of every seed."""
+    return [statistics.fmean(values) for values in zip(*series, strict=True)]
 
 
 def counted(hits: Sequence[bool]) -> str:

@@ -16,23 +16,19 @@ from reproduction import experiment as ex
 from reproduction import resampling_systems as resampling
 from reproduction.numbers import median_and_range
 from reproduction.resampling_systems import INTERPRETATIONS
-from reproduction.timing_cell import TimingCell
+from reproduction.timing_cell import TimingCell, timed_seeds
 
 _SYSTEMS = tuple(dict.fromkeys(system for view in INTERPRETATIONS.values() for system in view.pair))
-_SEEDS = 3
-"""Runs that are timed: each frame of each is a measurement."""
-_QUICK_SEEDS = 1
-"""Runs of a quick check."""
 
 
 def cells(size: ex.Size) -> list[TimingCell]:
     """Run all in turns, once for each of a few seeds."""
-    return [_cell(seed) for seed in _timed(size)]
+    return [_cell(seed) for seed in timed_seeds(size)]
 
 
 def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Compare the times as ratios to the conventional filter's."""
-    seeds = _timed(size)
+    seeds = timed_seeds(size)
     times = {seed: results[_cell(seed)]["step_ms"] for seed in seeds}
     means = {
         system.label: [float(np.mean(times[seed][system.label])) for seed in seeds]
@@ -66,10 +62,6 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
         {"Mean over the frames; median and range over the seeds:": table},
         seeds,
     )
-
-
-def _timed(size: ex.Size) -> range:
-    return size.seeds[: size.of(_SEEDS, _QUICK_SEEDS)]
 
 
 def _cell(seed: int) -> TimingCell:
@@ -117,7 +109,7 @@ def _verdict(ratios: dict[str, list[float]], size: ex.Size) -> ex.ExperimentVerd
             ),
         ),
         f"{resampling.SETTING} Processor time of one thread per step, all filters in turns on each "
-        f"frame, {len(_timed(size))} seeds.",
+        f"frame, {len(timed_seeds(size))} seeds.",
     )
 
 

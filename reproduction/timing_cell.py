@@ -18,9 +18,20 @@ from reproduction.cells import (
     System,
     start_session,
 )
+from reproduction.experiment import Size
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.session import Session
+
+_SEEDS = 3
+"""Runs that are timed: each frame of each is a measurement."""
+_QUICK_SEEDS = 1
+"""Runs of a quick check."""
+
+
+def timed_seeds(size: Size) -> range:
+    """Return the first few seeds of a size, which are timed."""
+    return size.seeds[: size.of(_SEEDS, _QUICK_SEEDS)]
 
 
 @dataclass(frozen=True, slots=True)

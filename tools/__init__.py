@@ -1,4 +1,12 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Programs for those who work on the package; not installed."""
+"""Programs for those who work on the package; not installed.
+
+`generate` (``make config``) writes what follows from the code: configurations, `sros2_policy`,
+`parameters_page`, tables of pages, and the `rooms_picture` of the `rooms`. The other programs are:
+
+- `animation`: the README's animation; `website`: pages of the site (``make docs``).
+- `licence_headers`: headers of new files; `mutants`: changes that no test notices.
+- `release_check`: the checks before a tag; `detector_wheel`: a network as a package of its own.
+"""

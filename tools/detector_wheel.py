@@ -73,7 +73,7 @@ def build(network: Path, out: Path) -> tuple[Path, str]:
     subprocess.CalledProcessError
         If pip cannot build it.
     """
-    known = {one.file: name for name, one in KNOWN_NETWORKS.items()}
+    known = {network.file: name for name, network in KNOWN_NETWORKS.items()}
     if network.name not in known:
         raise ValueError(f"{network.name} is none of {', '.join(known)}")
     name = known[network.name]

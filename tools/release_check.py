@@ -101,9 +101,9 @@ def check_version(root: Path) -> str:
         **dict.fromkeys(_PAGES_WITH_VERSION, r"vehicle pf tracker ([\w.]+),"),
     }
     for name, pattern in stated.items():
-        found = re.search(pattern, (root / name).read_text(encoding="utf-8"))
-        if found is None or found[1] != version:
-            raise ReleaseError(f"{name} has {found[1] if found else 'no version'}, not {version}")
+        named = re.search(pattern, (root / name).read_text(encoding="utf-8"))
+        if named is None or named[1] != version:
+            raise ReleaseError(f"{name} has {named[1] if named else 'no version'}, not {version}")
     if run("git", "tag", "--list", version, f"v{version}", cwd=root).strip():
         raise ReleaseError(f"the version {version} is tagged already")
     return version

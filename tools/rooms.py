@@ -68,12 +68,12 @@ def _imports(path: Path) -> Iterator[str]:
 
 def _reach(graph: Graph, start: str, seen: set[str]) -> set[str]:
     """Return the rooms that can be reached from `start`, through none of those `seen`."""
-    found: set[str] = set()
+    reached: set[str] = set()
     waiting = [start]
     while waiting:
         room = waiting.pop()
         if room not in seen:
             seen = seen | {room}
-            found |= graph[room]
+            reached |= graph[room]
             waiting += graph[room]
-    return found
+    return reached

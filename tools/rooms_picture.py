@@ -98,7 +98,9 @@ def _order(rows: list[list[Entry]], neighbours: Mapping[Entry, Sequence[Entry]])
             # Shares of the row's width: rows of few entries spread like those of many.
             own = {entry: (index + 0.5) / len(row) for index, entry in enumerate(row)}
             means = {
-                entry: _mean([before[one] for one in neighbours.get(entry, ()) if one in before])
+                entry: _mean(
+                    [before[beside] for beside in neighbours.get(entry, ()) if beside in before]
+                )
                 for entry in row
             }
             # What has no neighbour there keeps its position; `sort` is stable, so ties do too.

@@ -69,7 +69,7 @@ def commands() -> str:
 def python_interface() -> str:
     """Return the public names, for mkdocstrings to describe."""
     objects = [getattr(vehicle_pf_tracker, name) for name in vehicle_pf_tracker.__all__]
-    names = (f"::: {one.__module__}.{one.__name__}\n" for one in objects)
+    names = (f"::: {public.__module__}.{public.__name__}\n" for public in objects)
     return "\n".join(["# Python\n\nWhat `import vehicle_pf_tracker` has.\n", *names])
 
 

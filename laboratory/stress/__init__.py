@@ -24,6 +24,17 @@ nothing large is stored, and the same case always gives the same frames and the 
 ...     group.reliability().calibration_error, group.reliability().diagram()
 >>> difference(results, "fusion", "fusion without turns", "mean_iou")   # paired, over cameras
 
+What lies where, from footage to report:
+
+- `footage` finds and opens sequences; `cases` describes a case, and plays it with its `changes`.
+- `kinds` are the kinds of cases, and `battery` chooses among them. `occlusion_cases` have an
+  `occluder` that `placing` puts before the vehicle, over the motion of the `background`; `painting`
+  makes its texture, and `coverage` says what it hides.
+- `systems` are under test, `running` runs them, and `scoring` judges each run, with the
+  `calibration` of its confidence.
+- `summary` means scores over cameras, `report` writes the files, and `command` is
+  ``python -m laboratory stress``.
+
 Cases are frozen and picklable: to save the minute that listing a full battery takes, pickle them.
 `docs/evaluation.md` lists the kinds of cases and the measures.
 """

@@ -120,10 +120,10 @@ def _step(
         return np.eye(3), 0.0, 0.0
     median = float(np.median(np.hypot(*(after - before).T)))
     # Four unknowns: occluders turn and grow with the background, and are never sheared.
-    found = cv2.estimateAffinePartial2D(
+    fit = cv2.estimateAffinePartial2D(
         before, after, method=cv2.RANSAC, ransacReprojThreshold=_RANSAC_PX
     )
-    matrix, agreeing = cast(tuple[Matrix | None, Grey], found)
+    matrix, agreeing = cast(tuple[Matrix | None, Grey], fit)
     if matrix is None:
         return np.eye(3), median, 0.0
     step = np.vstack([matrix, [0.0, 0.0, 1.0]])
@@ -135,8 +135,8 @@ def _step(
 def _flow(last: Grey, present: Grey, mask: Grey) -> tuple[Matrix, Matrix]:
     # Weak corners, too (1 % of the strongest), as roads have few; 7 px apart, so that they spread
     # over the image and not over the best textured vehicle in it.
-    found = cv2.goodFeaturesToTrack(last, _CORNERS, 0.01, 7, mask=mask)
-    corners = cast(npt.NDArray[np.float32] | None, found)
+    strongest = cv2.goodFeaturesToTrack(last, _CORNERS, 0.01, 7, mask=mask)
+    corners = cast(npt.NDArray[np.float32] | None, strongest)
     if corners is None:
         return np.empty((0, 2)), np.empty((0, 2))
     moved, status, _ = cv2.calcOpticalFlowPyrLK(last, present, corners, corners.copy())

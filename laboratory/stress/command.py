@@ -63,9 +63,9 @@ def run(request: Request) -> int:
             cases, systems, seeds=seeds, workers=request.workers, store=request.output / STORE,
             on_progress=on_progress,
         )  # fmt: skip
-    found = write_report(results, request.output, _options(request, results))
+    compared = write_report(results, request.output, _options(request, results))
     for by in ("(all)", "kind"):
-        groups = [group for group in found if group.by == by]
+        groups = [group for group in compared if group.by == by]
         print_rows(*table_rows(groups, intervals=False))
     print(f"the report is {request.output / MARKDOWN}")
     return 0

@@ -101,7 +101,7 @@ def find_sequences(
         sequence twice.
     """
     roots = [locations] if isinstance(locations, Path | str) else locations
-    found: dict[str, StressSource] = {}
+    sources: dict[str, StressSource] = {}
     table = _read_cameras(cameras) if cameras else {}
     for root in map(Path, roots):
         own = root / CAMERAS
@@ -111,10 +111,10 @@ def find_sequences(
             # By its path below the location: folders of data sets repeat names, as `img` and `gt`.
             name = path.relative_to(root).as_posix() if path != root else root.absolute().name
             name = name.removesuffix(".mcap")
-            if name in found:
+            if name in sources:
                 raise InputError(f"several sequences would be called {name}; rename a folder")
-            found[name] = StressSource(_describe(name, path), known.get(name, name))
-    return list(found.values())
+            sources[name] = StressSource(_describe(name, path), known.get(name, name))
+    return list(sources.values())
 
 
 @functools.lru_cache(maxsize=_IN_MEMORY)
@@ -138,8 +138,8 @@ def _open_folder(source: Source, path: Path) -> StressFootage:
     truths = [folder.truths.get(number) for number in folder.images]
     # Even stamps: a case has times of its own, by position.
     truth = tuple(
-        None if one is None else replace(one, stamp_ns=stamp_of(i, folder.fps))
-        for i, one in enumerate(truths)
+        None if known is None else replace(known, stamp_ns=stamp_of(index, folder.fps))
+        for index, known in enumerate(truths)
     )
 
     def frame(index: int) -> Frame:
@@ -214,10 +214,10 @@ def _sequences_in(root: Path) -> list[Path]:
         return [root]
     inside = sorted(path for path in root.rglob("*") if _is_sequence(path))
     # The MCAP file in a rosbag2 folder is part of the recording that was found already.
-    found = [path for path in inside if path.parent not in inside]
-    if not found:
+    sequences = [path for path in inside if path.parent not in inside]
+    if not sequences:
         raise InputError(f"{root} has no recording and no frame folder with truth in it")
-    return found
+    return sequences
 
 
 def _is_sequence(path: Path) -> bool:

@@ -121,14 +121,14 @@ def later_starts(truths: Sequence[Truth | None], count: int) -> list[int]:
     is not is taken; so there may be fewer.
     """
     known = [(index, truth) for index, truth in enumerate(truths) if truth is not None]
-    found = []
+    starts = []
     for number in range(1, count + 1):
         # Evenly by index of frames with truth: gaps in it are no places to start.
         begin = round(number * _LAST_START * (len(known) - 1) / count)
         clear = (n for n in range(begin, len(known)) if known[n][1].occlusion is Occlusion.NONE)
         # 0, the first frame, stands for "none": it is dropped below.
-        found.append(next(clear, 0))
-    return [known[n][0] for n in dict.fromkeys(found) if n]
+        starts.append(next(clear, 0))
+    return [known[n][0] for n in dict.fromkeys(starts) if n]
 
 
 def _later_start(origin: StressSource, seed: int) -> Iterator[Case]:

@@ -57,17 +57,17 @@ def write_report(
         If a file cannot be written.
     """
     make_folder(folder)
-    found = groups(results)
-    write_text(folder / MARKDOWN, _markdown(found, list(faults(results))))
-    write_text(folder / CSV, _csv(found))
-    write_json(folder / JSON, _json(results, found, options or {}))
-    return found
+    compared = groups(results)
+    write_text(folder / MARKDOWN, _markdown(compared, list(faults(results))))
+    write_text(folder / CSV, _csv(compared))
+    write_json(folder / JSON, _json(results, compared, options or {}))
+    return compared
 
 
-def _markdown(found: Sequence[Group], broken: Sequence[str]) -> str:
+def _markdown(compared: Sequence[Group], broken: Sequence[str]) -> str:
     parts = ["# Stress battery\n", _RULES]
     for by, title in _TITLES.items():
-        own = [group for group in found if group.by == by]
+        own = [group for group in compared if group.by == by]
         if own:
             parts += [f"## {title}\n", markdown(*table_rows(own))]
     if broken:
@@ -76,16 +76,16 @@ def _markdown(found: Sequence[Group], broken: Sequence[str]) -> str:
 
 
 def table_rows(
-    found: Sequence[Group], *, intervals: bool = True
+    compared: Sequence[Group], *, intervals: bool = True
 ) -> tuple[list[str], list[list[str]]]:
     """Return the headings and the rows of a table of groups, a line for each."""
-    is_named = found[0].by != ALL_CASES
-    names = [name for name in CASE_MEASURES if any(group.summary(name) for group in found)]
+    is_named = compared[0].by != ALL_CASES
+    names = [name for name in CASE_MEASURES if any(group.summary(name) for group in compared)]
     titles = [CASE_MEASURES[name].title for name in names]
-    header = [*([found[0].by] if is_named else []), "system", "cases", *titles, "ECE"]
+    header = [*([compared[0].by] if is_named else []), "system", "cases", *titles, "ECE"]
     rows = []
     # Systems below each other for every group: they are what is compared.
-    for group in sorted(found, key=lambda each: [f.name for f in found].index(each.name)):
+    for group in sorted(compared, key=lambda each: [f.name for f in compared].index(each.name)):
         cells = [_cell(group, name, intervals) for name in names]
         error = group.reliability().calibration_error
         start = [group.name] if is_named else []
@@ -112,11 +112,11 @@ def _number(value: float | None, decimals: int = 3) -> str:
     return NO_SCORE if value is None else f"{value:.{decimals}f}"
 
 
-def _csv(found: Sequence[Group]) -> str:
+def _csv(compared: Sequence[Group]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["by", "name", "system", "measure", "unit", *_SUMMARY])
-    for group in found:
+    for group in compared:
         for measure, summary in _summaries(group):
             unit = CASE_MEASURES[measure].unit
             values = [getattr(summary, name) for name in _SUMMARY]
@@ -136,12 +136,12 @@ def _summaries(group: Group) -> Iterator[tuple[str, Summary]]:
 
 
 def _json(
-    results: Sequence[Result], found: Sequence[Group], options: dict[str, Any]
+    results: Sequence[Result], compared: Sequence[Group], options: dict[str, Any]
 ) -> dict[str, Any]:
     return {
         "options": options,
         "versions": versions(),
-        "groups": [_group(group) for group in found],
+        "groups": [_group(group) for group in compared],
         "results": [
             {
                 "case": result.case.name,

@@ -117,16 +117,16 @@ class Group:
 
 def groups(results: Sequence[Result]) -> list[Group]:
     """Group results by system, and these by all, kind, occlusion and camera."""
-    found = []
+    grouped = []
     for system in dict.fromkeys(result.system for result in results):
         own = [result for result in results if result.system == system]
-        found.append(Group(system, ALL_CASES, ALL_CASES, tuple(own)))
+        grouped.append(Group(system, ALL_CASES, ALL_CASES, tuple(own)))
         for by, name in _GROUPINGS.items():
             # An empty name: the case is in no group of this property.
             for value in dict.fromkeys(filter(None, map(name, own))):
                 members = tuple(result for result in own if name(result) == value)
-                found.append(Group(system, by, value, members))
-    return found
+                grouped.append(Group(system, by, value, members))
+    return grouped
 
 
 def difference(results: Sequence[Result], one: str, other: str, measure: str) -> Summary | None:
