@@ -1,16 +1,19 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The rules of form, read from the source: where numbers stand, how large classes are."""
+"""The rules of form, read from the source: where numbers stand, how long and large things are."""
 
 import ast
 import re
-from pathlib import Path
 
 import pytest
+from source_modules import SOURCE, Module, made_up, read_modules
 
-SOURCE = Path(__file__).resolve().parents[1] / "vehicle_pf_tracker"
+from tools.licence_headers import HEADER
+
 FILES = sorted(SOURCE.rglob("*.py"))
+MAX_FILE_LINES = 350
+MAX_FUNCTION_LINES = 60
 MOST_FIELDS = 12
 """Fields of a class that a reader keeps in mind."""
 TABLES = re.compile(r"Parameters$|Request$|Options?$|^Metrics$|^Estimate$")
@@ -124,6 +127,20 @@ def skips_outside_tables(text: str) -> list[int]:
     return [at for at, line in enumerate(lines, 1) if "fmt: skip" in line and at not in kept]
 
 
+def too_long(modules: dict[str, Module]) -> list[str]:
+    rows = []
+    for module in modules.values():
+        lines = module.path.read_text(encoding="utf-8").removeprefix(HEADER).count("\n")
+        if lines > MAX_FILE_LINES:
+            rows.append(f"{module.path.name} ({module.name}): {lines} lines")
+        for node in ast.walk(module.tree):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                length = (node.end_lineno or node.lineno) - node.lineno + 1
+                if length > MAX_FUNCTION_LINES:
+                    rows.append(f"{module.at(node.lineno)} {node.name}: {length} lines")
+    return rows
+
+
 @pytest.fixture(scope="module")
 def trees():
     return {path: ast.parse(path.read_text(encoding="utf-8")) for path in FILES}
@@ -197,3 +214,22 @@ def test_what_breaks_a_rule_is_found():
     assert skips_outside_tables("POINTS = [\n    (1, 2),\n]  # fmt: skip\n") == [3]
     assert skips_outside_tables("def f():\n    a = (\n    Row(1),\n    )  # fmt: skip\n") == [4]
     assert skips_outside_tables("def f(\n    a,\n):  # fmt: skip\n    pass\n") == [3]
+
+
+def test_files_and_functions_stay_short():
+    assert too_long(read_modules(SOURCE)) == []
+
+
+def test_checker_measures_files_and_functions(tmp_path):
+    body = "    pass\n"
+    modules = made_up(
+        tmp_path,
+        ros__long="x = 1\n" * 351,
+        ros__full="x = 1\n" * 350,
+        ros__function="def f():\n" + body * 60,
+        ros__fitting="class C:\n async def f():\n" + "  pass\n" * 59,
+    )
+    assert too_long(modules) == [
+        "function.py:1 (ros.function) f: 61 lines",
+        "long.py (ros.long): 351 lines",
+    ]

@@ -1,26 +1,15 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The rules of the house, read from the source: who may import whom, and how long things may be."""
+"""The walls of the house, read from the source: who may import whom, and who may use files."""
 
 from __future__ import annotations
 
 import ast
-import inspect
 import sys
-from collections.abc import Iterator
-from pathlib import Path
-from typing import NamedTuple
 
 import pytest
-
-from tools.licence_headers import HEADER
-
-NAME = "vehicle_pf_tracker"
-SOURCE = Path(__file__).resolve().parents[1] / NAME
-
-MAX_FILE_LINES = 350
-MAX_FUNCTION_LINES = 60
+from source_modules import NAME, SOURCE, Import, Module, covers, inside, made_up, read_modules
 
 GROUND = {"core", "road", "parameters", "filtering", "image"}
 BELOW = {*GROUND, "detection", "trackers", "recordings", "scenes", "counting"}
@@ -66,8 +55,6 @@ ON_A_ROBOT = {
     "llvmlite",
 }
 """Modules that a robot has from apt, beside the standard library."""
-
-
 WITHOUT_FILES = {"filtering", "detection", "trackers"}
 """Rooms that neither read or write files nor paint."""
 FILES = {"fileinput", "glob", "io", "onnxruntime", "os", "pathlib", "shutil", "tempfile"}
@@ -80,77 +67,6 @@ CALLS = {
     "np": {"fromfile", "load", "loadtxt", "memmap", "save", "savetxt", "savez"},
 }  # fmt: skip
 """Functions for files and for painting, by the module that they are called from."""
-
-
-INTERNALS = "ros.rclpy_internals"
-"""The one module that may name private parts of rclpy."""
-
-
-class Import(NamedTuple):
-    """One module named by an import statement; ``name`` is absolute."""
-
-    name: str
-    line: int
-    at_start: bool  # runs when the module is imported, not when a function is called
-
-
-class Module(NamedTuple):
-    name: str  # dotted, below the package: "ros.node", "" for the package itself
-    path: Path
-    tree: ast.Module
-    imports: list[Import]
-
-    @property
-    def room(self) -> str:
-        return self.name.partition(".")[0]
-
-    def at(self, line: int) -> str:
-        return f"{self.path.name}:{line} ({self.name})"
-
-
-def read_modules(source: Path) -> dict[str, Module]:
-    """Parse every file of the package: {dotted name below the package: module}."""
-    modules = {}
-    for path in sorted(source.rglob("*.py")):
-        parts = path.relative_to(source).with_suffix("").parts
-        package = parts[:-1]
-        name = ".".join(package if parts[-1] == "__init__" else parts)
-        tree = ast.parse(path.read_text(encoding="utf-8"), str(path))
-        modules[name] = Module(name, path, tree, list(imports_of(tree, package)))
-    return modules
-
-
-def imports_of(tree: ast.Module, package: tuple[str, ...]) -> Iterator[Import]:
-    for node, at_start in statements(tree, at_start=True):
-        if isinstance(node, ast.Import):
-            for alias in node.names:
-                yield Import(alias.name, node.lineno, at_start)
-        elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                above = (NAME, *package)[: len(package) + 2 - node.level]
-                base = ".".join([*above, base]).rstrip(".")
-            for alias in node.names:  # the name may be a module or something inside one
-                yield Import(f"{base}.{alias.name}", node.lineno, at_start)
-
-
-def statements(node: ast.AST, *, at_start: bool) -> Iterator[tuple[ast.AST, bool]]:
-    """Walk the tree in order; what stands in a function or under TYPE_CHECKING runs later."""
-    for child in ast.iter_child_nodes(node):
-        later = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
-        later = later or (isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test))
-        yield child, at_start
-        yield from statements(child, at_start=at_start and not later)
-
-
-def inside(name: str) -> str | None:
-    """``vehicle_pf_tracker.a.b`` as ``a.b``; None for a module of somebody else."""
-    head, _, rest = name.partition(".")
-    return rest if head == NAME else None
-
-
-def covers(allowed: set[str], name: str) -> bool:
-    return any(name == entry or name.startswith(f"{entry}.") for entry in allowed)
 
 
 def broken_walls(modules: dict[str, Module]) -> list[str]:
@@ -236,63 +152,6 @@ def missing_on_a_robot(modules: dict[str, Module]) -> list[str]:
     ]
 
 
-def private_parts_of_rclpy(modules: dict[str, Module]) -> list[str]:
-    """Private names that a module with ROS in it does not define itself, and private imports."""
-    rows = []
-    for name, module in modules.items():
-        heads = {found.name.partition(".")[0] for found in module.imports}
-        if name == INTERNALS or ROS.isdisjoint(heads):
-            continue
-        own = names_defined(module.tree)
-        rows += [
-            f"{module.at(node.lineno)} uses {node.attr}"
-            for node in ast.walk(module.tree)
-            if isinstance(node, ast.Attribute)
-            and is_private(node.attr)
-            and node.attr not in own
-            and not (isinstance(node.value, ast.Name) and node.value.id in sys.stdlib_module_names)
-        ]
-        rows += [
-            f"{module.at(found.line)} imports {found.name}"
-            for found in module.imports
-            if found.name.startswith(("rclpy.impl", "rclpy._"))
-        ]
-    return rows
-
-
-def names_defined(tree: ast.Module) -> set[str]:
-    """Names of the module's functions and classes, and of what its methods assign to ``self``."""
-    names = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef | ast.ClassDef):
-            names.add(node.name)
-        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
-            if isinstance(node.value, ast.Name) and node.value.id == "self":
-                names.add(node.attr)
-        elif isinstance(node, ast.Assign | ast.AnnAssign):
-            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-            names |= {target.id for target in targets if isinstance(target, ast.Name)}
-    return names
-
-
-def is_private(name: str) -> bool:
-    return name.startswith("_") and not name.startswith("__")
-
-
-def too_long(modules: dict[str, Module]) -> list[str]:
-    rows = []
-    for module in modules.values():
-        lines = module.path.read_text(encoding="utf-8").removeprefix(HEADER).count("\n")
-        if lines > MAX_FILE_LINES:
-            rows.append(f"{module.path.name} ({module.name}): {lines} lines")
-        for node in ast.walk(module.tree):
-            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-                length = (node.end_lineno or node.lineno) - node.lineno + 1
-                if length > MAX_FUNCTION_LINES:
-                    rows.append(f"{module.at(node.lineno)} {node.name}: {length} lines")
-    return rows
-
-
 @pytest.fixture(scope="module")
 def modules() -> dict[str, Module]:
     return read_modules(SOURCE)
@@ -324,46 +183,6 @@ def test_node_and_replay_do_not_import_each_other(modules):
 
 def test_nodes_import_only_what_a_robot_has(modules):
     assert missing_on_a_robot(modules) == []
-
-
-def test_private_parts_of_rclpy_are_named_in_one_module(modules):
-    assert private_parts_of_rclpy(modules) == []
-    assert private_parts_of_rclpy({"other": Module("other", *modules[INTERNALS][1:])})
-
-
-def test_no_class_of_ours_hides_a_private_name_of_rclpys_classes(modules):
-    executors = pytest.importorskip("rclpy.executors")
-    lifecycle = pytest.importorskip("rclpy.lifecycle")
-    theirs = {
-        node.attr
-        for kind in (*lifecycle.LifecycleNode.__mro__, executors.SingleThreadedExecutor)
-        if kind.__module__.startswith("rclpy")
-        for node in ast.walk(ast.parse(Path(inspect.getfile(kind)).read_text(encoding="utf-8")))
-        if isinstance(node, ast.Attribute) and is_private(node.attr)
-    }
-    assert "_parameter_overrides" in theirs
-    heirs = (
-        "ros.node.image_node", "ros.node.tracker_node",
-        "ros.process", "ros.traffic.traffic_node",
-    )  # fmt: skip
-    for name in heirs:
-        assert not names_defined(modules[name].tree) & theirs, name
-
-
-def test_files_and_functions_stay_short(modules):
-    assert too_long(modules) == []
-
-
-# The checker itself, on made-up packages.
-
-
-def made_up(folder: Path, **files: str) -> dict[str, Module]:
-    for name, text in {"__init__": "", **files}.items():
-        path = folder.joinpath(*name.split("__", 1) if name != "__init__" else [name])
-        path = path.with_suffix(".py")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-    return read_modules(folder)
 
 
 @pytest.mark.parametrize(
@@ -448,32 +267,3 @@ def test_checker_follows_the_node_to_what_it_loads(tmp_path):
         evaluation__tables="import rich",
     )
     assert missing_on_a_robot(modules) == ["plots.py:2 (trackers.plots) imports matplotlib.pyplot"]
-
-
-@pytest.mark.parametrize(
-    ("line", "count"),
-    [
-        ("from rclpy.node import Node\ndef f(node):\n    return node._parameters", 1),
-        ("from rclpy.impl.implementation_singleton import rclpy_implementation", 1),
-        ("import rclpy\nclass N(rclpy.node.Node):\n def f(self):\n  self._state_machine.x()", 1),
-        ("import rclpy\nclass N:\n def f(self):\n  self._own = 1\n  self._own += self.f()", 0),
-        ("from .own import thing\ndef f():\n    return thing._kept", 0),
-    ],
-)
-def test_checker_sees_private_parts_of_rclpy(tmp_path, line, count):
-    assert len(private_parts_of_rclpy(made_up(tmp_path, ros__node=line))) == count
-
-
-def test_checker_measures_files_and_functions(tmp_path):
-    body = "    pass\n"
-    modules = made_up(
-        tmp_path,
-        ros__long="x = 1\n" * 351,
-        ros__full="x = 1\n" * 350,
-        ros__function="def f():\n" + body * 60,
-        ros__fitting="class C:\n async def f():\n" + "  pass\n" * 59,
-    )
-    assert too_long(modules) == [
-        "function.py:1 (ros.function) f: 61 lines",
-        "long.py (ros.long): 351 lines",
-    ]
