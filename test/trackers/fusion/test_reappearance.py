@@ -124,10 +124,24 @@ def test_a_rest_of_the_vehicle_itself_is_no_other_vehicle():
 
 
 def test_behind_the_last_sighting_by_half_a_size_is_another_vehicle():
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 30.0, LAST)
+    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0, LAST)
     # Half of the size, the root of 20 x 12, is 7.7 px.
     positions = LAST + np.array([[-8.0, 0.0], [-7.0, 20.0], [60.0, 0.0]])
     assert hidden.is_behind(positions).tolist() == [True, False, False]
+
+
+@pytest.mark.parametrize(("age", "bound"), [(4.0, -0.5 * 15.5 + 0.75 * 8), (8.0, 3.9), (90.0, 3.9)])
+def test_what_should_have_moved_by_its_size_is_not_where_it_was(age, bound):
+    """By less than a size in 4 frames; after 8, one that brakes may fall behind for long."""
+    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, age, LAST)
+    positions = LAST + np.array([[bound - 0.1, 5.0], [bound + 0.1, -5.0]])
+    assert hidden.is_behind(positions).tolist() == [True, False]
+
+
+def test_of_a_vehicle_that_stood_nothing_is_behind():
+    standing = PerspectiveMotion(LAST, np.zeros(2), 0.0)
+    hidden = Reappearance(Sighting(0.0, LAST, SIZE), standing, 30.0, LAST)
+    assert not hidden.is_behind(LAST - np.array([[30.0, 0.0]])).any()
 
 
 def test_a_large_outline_in_view_may_be_several_vehicles_the_hidden_one_among_them():

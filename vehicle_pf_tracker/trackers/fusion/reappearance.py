@@ -53,6 +53,9 @@ half is a choice; two vehicles in a lane are a whole length apart."""
 _BEHIND = 0.5
 """Distance in sizes against the heading, from the last clear sighting, beyond which nothing is the
 vehicle: it does not reverse on a road, and what comes up from behind is another one."""
+_MOVED = 0.75
+"""Distance in sizes by which that bound moves on while the vehicle is predicted to move by its
+size: an occluder that stands hides a vehicle only until it has moved by about its own length."""
 _EVERY = 2
 """Frames from one look at the outlines to the next, until one drives on: half of the cost. What is
 proven within `_PROOF` is proven a frame later at most."""
@@ -227,8 +230,11 @@ class Reappearance(NamedTuple):
         # Both sides times the speed, undivided: of a vehicle that stood nothing is behind.
         velocity = self.motion.velocity
         speed = float(np.hypot(*velocity))
-        extent = float(np.sqrt(self.last.size.prod()))
-        return np.asarray((positions - self.last.position) @ velocity < -_BEHIND * extent * speed)
+        reach = float(np.sqrt(self.last.size.prod())) * speed
+        # The bound stops at a size: one that brakes falls behind its prediction more and more.
+        predicted = (self.place[0] - self.last.position) @ velocity
+        bound = _MOVED * min(max(predicted, 0.0), reach) - _BEHIND * reach
+        return np.asarray((positions - self.last.position) @ velocity < bound)
 
     def _on_heading(self, boxes: Array) -> Mask:
         """Test which boxes are within reach of the predicted path."""
