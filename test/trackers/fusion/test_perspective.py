@@ -165,6 +165,39 @@ def test_sightings_move_with_the_camera_and_age():
     assert last.size == pytest.approx([8, 6])
 
 
+def returned_for(frames, response=1.0):
+    """Sightings of a vehicle at 3 px per frame, hidden from frame 20 to 79, then seen elsewhere."""
+    sightings = Sightings()
+    for time in range(80 + frames):
+        sightings = sightings.moved_on(1.0, CameraMotion())
+        if 20 <= time < 80:
+            continue
+        position = np.array([10.0 + 3 * time if time < 20 else 0.0, 50.0])
+        level = 1.0 if time < 20 else response
+        size = np.array([30.0, 20.0])
+        sightings = sightings.added(position, size, level, returned=time == 80)
+    return sightings.moved_on(1.0, CameraMotion())
+
+
+@pytest.mark.parametrize("response", [1.0, CLEAR_RESPONSE - 0.01])
+def test_a_return_of_less_than_eight_frames_may_have_been_to_another_vehicle(response):
+    """However long it was hidden before, it is expected where it was expected then."""
+    motion, last = returned_for(7, response).proven().fit()
+    assert last.age == 68
+    assert motion.position_at(last.age) == pytest.approx([10 + 3 * 87, 50])
+
+
+def test_a_longer_return_counts():
+    _, last = returned_for(8).proven().fit()
+    assert last.age == 1
+    assert last.position == pytest.approx([0, 50])
+
+
+def test_a_vehicle_that_was_never_hidden_is_proven_from_its_first_frame_on():
+    sightings = Sightings().added(np.zeros(2), np.ones(2), 1.0)
+    assert len(sightings.proven().rows) == 1
+
+
 def test_sightings_are_kept_for_two_seconds_before_the_last_clear_one():
     sightings = Sightings()
     for response in (1.0, 1.0, 0.5):

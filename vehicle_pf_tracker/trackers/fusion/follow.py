@@ -121,6 +121,8 @@ def _with_whole(state: State, whole: float, seen: Observation, step: Step) -> St
 
 def _enter_occlusion(state: State, step: Step) -> State:
     """Predict from the last clear sightings: the occluder has dragged later ones along."""
+    # What it was taken for since a short return may have been another vehicle.
+    state = state._replace(sightings=state.sightings.proven())
     fitted = state.sightings.fit()
     # Never seen clearly: the hypotheses are all there is.
     if fitted is None:
@@ -157,7 +159,9 @@ def _follow_peak(state: State, seen: Observation, step: Step) -> State:
     state = _centred(state, seen, step)
     if seen.tasks.follows_size and seen.response > SIZE_RESPONSE and _is_sure(state):
         state = _sized(state, seen, step)
-    sightings = state.sightings.added(state.position, state.size, seen.response)
+    sightings = state.sightings.added(
+        state.position, state.size, seen.response, returned=seen.was_hidden
+    )
     return state._replace(sightings=sightings)
 
 

@@ -122,27 +122,42 @@ class Sightings(NamedTuple):
         Age in frames, position and size in px, and response of each.
     camera_stood : float
         Frames since the camera moved last.
+    in_view : int
+        Number of the last of them in a row, between which the vehicle was never hidden.
     """
 
     rows: Array = np.empty((0, 6))
     camera_stood: float = math.inf
+    in_view: int = 0
 
-    def added(self, position: Array, size: Array, response: float) -> Sightings:
-        """Add a sighting of the present frame."""
-        return self._replace(rows=np.vstack([self.rows, [0.0, *position, *size, response]]))
+    def added(
+        self, position: Array, size: Array, response: float, *, returned: bool = False
+    ) -> Sightings:
+        """Add a sighting of the present frame; before one that has `returned` it was hidden."""
+        rows = np.vstack([self.rows, [0.0, *position, *size, response]])
+        return self._replace(rows=rows, in_view=1 if returned else self.in_view + 1)
+
+    def proven(self) -> Sightings:
+        """Leave out those since a return that was short: it may have been to another vehicle."""
+        before = max(len(self.rows) - self.in_view, 0)
+        if self.in_view >= PROOF_FRAMES or not (self.rows[:before, 5] >= CLEAR_RESPONSE).any():
+            return self
+        # What is left was in view for long enough, or is all there is.
+        return self._replace(rows=self.rows[:before], in_view=PROOF_FRAMES)
 
     def moved_on(self, elapsed: float, camera: CameraMotion) -> Sightings:
         """Let `elapsed` frames pass and the camera move."""
         # They are kept from the last clear one on: a vehicle may be hidden for as long again.
-        clear = self.rows[:, 5] >= CLEAR_RESPONSE
-        oldest = KEPT_FRAMES + (self.rows[clear, 0].min() if clear.any() else 0.0)
+        proven = self.proven().rows
+        clear = proven[:, 5] >= CLEAR_RESPONSE
+        oldest = KEPT_FRAMES + (proven[clear, 0].min() if clear.any() else 0.0)
         # A mask copies: the rows of the state before stay as they were.
         rows = self.rows[self.rows[:, 0] < oldest]
         rows[:, 0] += elapsed
         if camera.still:
-            return Sightings(rows, self.camera_stood + elapsed)
+            return self._replace(rows=rows, camera_stood=self.camera_stood + elapsed)
         rows[:, 1:3] = camera.apply(rows[:, 1:3])
-        return Sightings(rows, 0.0)
+        return self._replace(rows=rows, camera_stood=0.0)
 
     @property
     def are_steady(self) -> bool:
