@@ -188,11 +188,11 @@ def _judge(written: Report, limit: float | None) -> int:
         console.print_rows(*restarts.texts(), title)
     if failed:
         console.tell_error("not every run succeeded; the report says why")
-    means = {label: found["rmse_px"] for label, found in aggregates.overall.items()}
+    errors = {label: metrics["rmse_px"] for label, metrics in aggregates.overall.items()}
     beyond = [
-        f"{label} {found.mean:.1f} px"
-        for label, found in means.items()
-        if limit is not None and found is not None and found.mean > limit
+        f"{label} {rmse.mean:.1f} px"
+        for label, rmse in errors.items()
+        if limit is not None and rmse is not None and rmse.mean > limit
     ]
     if beyond:
         console.tell_error(f"the RMSE is larger than --max-rmse {limit:g} px: {', '.join(beyond)}")

@@ -29,7 +29,7 @@ _VIDEO = "--video"
 """Option of the video, which is there already, too."""
 
 
-def network_advice(command: Sequence[str], folder: Path, found: DetectionTotals) -> list[str]:
+def network_advice(command: Sequence[str], folder: Path, detected: DetectionTotals) -> list[str]:
     """Return a sentence where a network would have counted better; else none.
 
     Parameters
@@ -38,12 +38,14 @@ def network_advice(command: Sequence[str], folder: Path, found: DetectionTotals)
         Command line of a run by motion.
     folder : Path
         Folder of its results.
-    found : DetectionTotals
+    detected : DetectionTotals
         What motion has detected in it.
     """
-    if not _is_ambiguous(found):
+    if not _is_ambiguous(detected):
         return []
-    return [f"in {found.ambiguous / found.images:.0%} of the images {_advice(command, folder)}"]
+    return [
+        f"in {detected.ambiguous / detected.images:.0%} of the images {_advice(command, folder)}"
+    ]
 
 
 def advice_over_sources(command: Sequence[str], folder: Path, folders: Sequence[Path]) -> list[str]:
@@ -58,7 +60,7 @@ def advice_over_sources(command: Sequence[str], folder: Path, folders: Sequence[
     folders : sequence of Path
         Folders of the sources; those without results, or without motion, say nothing.
     """
-    names = [one.name for one in folders if _is_ambiguous(_found_in(one))]
+    names = [source.name for source in folders if _is_ambiguous(_found_in(source))]
     if not names:
         return []
     where = f"{len(names)} of {len(folders)} sources ({', '.join(names[:_MOST_NAMED])}"
@@ -66,8 +68,8 @@ def advice_over_sources(command: Sequence[str], folder: Path, folders: Sequence[
     return [f"in {where} {_advice(command, folder)}"]
 
 
-def _is_ambiguous(found: DetectionTotals) -> bool:
-    return found.ambiguous > _AMBIGUOUS * found.images
+def _is_ambiguous(detected: DetectionTotals) -> bool:
+    return detected.ambiguous > _AMBIGUOUS * detected.images
 
 
 def _found_in(folder: Path) -> DetectionTotals:
@@ -95,27 +97,27 @@ def _advice(command: Sequence[str], folder: Path) -> str:
 
 def _without(words: Sequence[str], names: Sequence[str]) -> list[str]:
     """Return the words without options of these names and their values."""
-    found: list[str] = []
+    kept: list[str] = []
     before = ""
     for word in words:
         if before not in names and word not in names and word.partition("=")[0] not in names:
-            found.append(word)
+            kept.append(word)
         before = word
-    return found
+    return kept
 
 
 def _other_video(words: Sequence[str], network: str) -> list[str]:
     """Return the words with another name of the video, which would not be replaced."""
-    found: list[str] = []
+    renamed: list[str] = []
     for word in words:
         option, equals, name = word.partition("=")
-        if found and found[-1] == _VIDEO:
-            found.append(_named(word, network))
+        if renamed and renamed[-1] == _VIDEO:
+            renamed.append(_named(word, network))
         elif option == _VIDEO and equals:
-            found.append(f"{option}={_named(name, network)}")
+            renamed.append(f"{option}={_named(name, network)}")
         else:
-            found.append(word)
-    return found
+            renamed.append(word)
+    return renamed
 
 
 def _named(video: str, network: str) -> str:

@@ -51,11 +51,11 @@ class FrameStore:
         """Return frame `number`, from 1, as a JPEG file; None if there is none that can be read."""
         with self._lock:
             while len(self._ends) <= number and not self._is_closed:
-                found = next(self._frames, None)
-                if found is None:
+                stamped = next(self._frames, None)
+                if stamped is None:
                     self.count = len(self._ends) - 1
                     return None
-                coded = b"" if found.frame is None else jpeg(found.frame)
+                coded = b"" if stamped.frame is None else jpeg(stamped.frame)
                 self._file.seek(self._ends[-1])
                 self._file.write(coded)
                 self._ends.append(self._ends[-1] + len(coded))

@@ -50,27 +50,31 @@ def checked(document: Any, where: str) -> Document:
     """
     if not isinstance(document, dict) or not set(document) <= set(SECTION_USES):
         raise InputError(f"{where} has other sections than {', '.join(SECTION_USES)}")
-    found = {key: body for key, body in document.items() if body}
+    sections = {key: body for key, body in document.items() if body}
     for key, form, read in (
         (TARGETS_SECTION, TARGET_FORM, target_of),
         (PAIRS_SECTION, PAIR_FORM, pair_of),
     ):
-        if key in found:
-            list_in(found, where, key, form, read)
-    plan = {key: body for key, body in found.items() if key not in {TARGETS_SECTION, PAIRS_SECTION}}
+        if key in sections:
+            list_in(sections, where, key, form, read)
+    plan = {
+        key: body for key, body in sections.items() if key not in {TARGETS_SECTION, PAIRS_SECTION}
+    }
     if plan:
         try:
             parse_counting_plan(plan)
         except InputError as error:
             raise InputError(f"{where}: {error}") from None
-    return found
+    return sections
 
 
 def words_of(document: Document) -> str:
     """Write targets and pairs as words of a command."""
     words = [
-        f"--target {one.name}@{one.frame}:{one.box}"
-        for one in map(target_of, document.get(TARGETS_SECTION, ()))
+        f"--target {target.name}@{target.frame}:{target.box}"
+        for target in map(target_of, document.get(TARGETS_SECTION, ()))
     ]
-    pairs = [f"--pair {format_pairs((pair_of(one),))}" for one in document.get(PAIRS_SECTION, ())]
+    pairs = [
+        f"--pair {format_pairs((pair,))}" for pair in map(pair_of, document.get(PAIRS_SECTION, ()))
+    ]
     return " ".join([*words, *pairs])

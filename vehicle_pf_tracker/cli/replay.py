@@ -150,7 +150,7 @@ def options_of(request: Request) -> ReplayOptions:
     """Return the options of the player, most of which are fields of the request."""
     from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
-    names = {one.name for one in fields(ReplayOptions)} & {one.name for one in fields(request)}
+    names = {each.name for each in fields(ReplayOptions)} & {each.name for each in fields(request)}
     shared = {name: getattr(request, name) for name in names}
     return ReplayOptions(**{**shared, "remap": dict(request.remap)})
 

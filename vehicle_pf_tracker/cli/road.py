@@ -130,9 +130,9 @@ def _table(plane: RoadPlane, pairs: Sequence[Pair]) -> str:
     in_image, on_road = residuals(plane, pairs)
     lines = [f"{'pixel':>18}  {'road, m':>18}  {'off, px':>8}  {'off, m':>8}"]
     for pair, px, metres in zip(pairs, in_image, on_road, strict=True):
-        pixel, road = (f"{one[0]:.1f},{one[1]:.1f}" for one in (pair.pixel, pair.road))
+        pixel, road = (f"{point[0]:.1f},{point[1]:.1f}" for point in (pair.pixel, pair.road))
         lines.append(f"{pixel:>18}  {road:>18}  {px:8.2f}  {metres:8.3f}")
-    rms = [float(np.sqrt(np.mean(one**2))) for one in (in_image, on_road)]
+    rms = [float(np.sqrt(np.mean(errors**2))) for errors in (in_image, on_road)]
     lines.append(f"{'root mean square':>38}  {rms[0]:8.2f}  {rms[1]:8.3f}")
     if len(pairs) == 4:
         lines.append("four pairs always fit exactly: give more to see how well they were read")

@@ -58,7 +58,9 @@ class SeveralSources(TrackingRequest, SchedulerOption):
     @property
     def is_of_several(self) -> bool:
         """True where the results are those of several sources, each in a folder of its own."""
-        has_list = any(_is_pattern(one) or one.endswith(LIST) for one in (self.source, *self.more))
+        has_list = any(
+            _is_pattern(word) or word.endswith(LIST) for word in (self.source, *self.more)
+        )
         return bool(self.more) or has_list or self.scheduler is not None
 
 
@@ -75,14 +77,14 @@ def requests_by_name(request: RequestT) -> dict[str, RequestT]:
     UsageError
         If a source is a camera, which has no end.
     """
-    found: list[RequestT] = []
+    requests: list[RequestT] = []
     for word in (request.source, *request.more):
-        one = replace(request, source=word, more=())
+        own = replace(request, source=word, more=())
         if word.endswith(LIST):
-            found += [replace(one, **changed) for changed in _read_list(Path(word), one)]
+            requests += [replace(own, **changed) for changed in _read_list(Path(word), own)]
         else:
-            found += [replace(one, source=path) for path in _spread(word)]
-    return _named([_absolute(one) for one in found])
+            requests += [replace(own, source=path) for path in _spread(word)]
+    return _named([_absolute(own) for own in requests])
 
 
 def _is_pattern(source: str) -> bool:
@@ -103,7 +105,9 @@ def _absolute(request: RequestT) -> RequestT:
     if request.source.isdecimal() and not Path(request.source).exists():
         raise UsageError(f"the camera {request.source} has no end; give it a command of its own")
     names = [
-        one.name for one in fields(request) if one.name not in {*NOT_DECISIVE, *OUTPUT_OPTIONS}
+        declared.name
+        for declared in fields(request)
+        if declared.name not in {*NOT_DECISIVE, *OUTPUT_OPTIONS}
     ]
     values = {"source": request.source, **{name: getattr(request, name) for name in names}}
     files = {name: value for name, value in values.items() if _is_file_name(name, value)}
@@ -120,10 +124,10 @@ def _is_file_name(name: str, value: Any) -> bool:
 def _named(requests: Sequence[RequestT]) -> dict[str, RequestT]:
     """Name sources by their last part, or with the folder before where those are not distinct."""
     for name_of in (short_name, _longer_name):
-        named = {name_of(one.source): one for one in requests}
+        named = {name_of(request.source): request for request in requests}
         if len(named) == len(requests):
             return named
-    names = [_longer_name(one.source) for one in requests]
+    names = [_longer_name(request.source) for request in requests]
     twice = next(name for name in names if names.count(name) > 1)
     raise InputError(f"several sources would be called {twice}; rename one, or give it once")
 
@@ -157,14 +161,14 @@ def _read_list(path: Path, request: VerbRequest) -> list[dict[str, Any]]:
     for number, line in enumerate(read_text(path, "the list of sources").splitlines(), start=1):
         try:
             words = shlex.split(line, comments=True)
-            found = vars(parser.parse_args(words)) if words else None
+            values = vars(parser.parse_args(words)) if words else None
         except (InputError, ValueError) as error:
             raise InputError(f"line {number} of {path}: {error}") from None
-        if found is None:
+        if values is None:
             continue
-        if found.pop("more"):
+        if values.pop("more"):
             raise InputError(f"line {number} of {path} has more than one source")
-        entries.append({name: _at(path.parent, name, value) for name, value in found.items()})
+        entries.append({name: _at(path.parent, name, value) for name, value in values.items()})
     if not entries:
         raise InputError(f"the list {path} names no source")
     return entries

@@ -47,12 +47,12 @@ class Moment:
         InputError
             If it is neither.
         """
-        found = re.fullmatch(r"0*([1-9]\d{0,8})|(\d{1,9}\.?\d*|\.\d+)s", text, re.ASCII)
-        if found is None:
+        match = re.fullmatch(r"0*([1-9]\d{0,8})|(\d{1,9}\.?\d*|\.\d+)s", text, re.ASCII)
+        if match is None:
             raise InputError(
                 f"{text!r} is neither a frame (an integer >= 1) nor a time in seconds, as 4.3s"
             )
-        return cls(float(found[1] or found[2]), found[1] is None)
+        return cls(float(match[1] or match[2]), match[1] is None)
 
     def after(self, number: int, elapsed: float) -> float:
         """Return by how much the moment is later than frame `number`, `elapsed` s from the first.
@@ -92,16 +92,16 @@ def _numbered(
     if source.frame_count is None:  # it may stall
         frames = _leavable(frames, stop)
     frames = itertools.takewhile(lambda _: not stop.came, frames)
-    for number, found in enumerate(frames, start=1):
-        first_ns = found.stamp_ns if first_ns is None else first_ns
-        elapsed = (found.stamp_ns - first_ns) * 1e-9
+    for number, stamped in enumerate(frames, start=1):
+        first_ns = stamped.stamp_ns if first_ns is None else first_ns
+        elapsed = (stamped.stamp_ns - first_ns) * 1e-9
         if start is not None and start.after(number, elapsed) > 0:
             continue
         if end is not None and end.after(number, elapsed) < 0:
             break
         is_empty = False
         progress(number, source.frame_count)
-        yield number, found
+        yield number, stamped
     if is_empty and (start is not None or end is not None):
         raise InputError(
             f"no frame lies between --start and --end; {number} frames were read from the source"
@@ -111,8 +111,8 @@ def _numbered(
 def _leavable(frames: Iterator[StampedFrame], stop: Stop) -> Iterator[StampedFrame]:
     """Yield frames until one does not come after a signal."""
     with suppress(StillAtWork):
-        while (found := stop.leaving(partial(next, frames, None))) is not None:
-            yield found
+        while (stamped := stop.leaving(partial(next, frames, None))) is not None:
+            yield stamped
 
 
 def cut_short(stop: Stop, source: ImageSource, done: int) -> list[str]:

@@ -162,7 +162,7 @@ def asked_systems(request: EvaluationRequest) -> tuple[list[System], list[str]]:
 def _words(text: str) -> list[str]:
     baselines = [f"{BASELINE_PREFIX}{name}" for name in _BASELINES_WITHOUT_MODELS]
     several = {ALL: list(VARIANTS), ALL_BASELINES: baselines, "": []}
-    words = [one for word in text.split(",") for one in several.get(word, [word])]
+    words = [name for word in text.split(",") for name in several.get(word, [word])]
     if not words:
         raise UsageError(f"--variants names none; choose of {', '.join([*VARIANTS, ALL])}")
     return list(dict.fromkeys(words))
@@ -172,20 +172,20 @@ def _with_sets(
     variants: Sequence[Variant], everywhere: Sequence[str], sets: Mapping[str, Set]
 ) -> tuple[list[System], list[str]]:
     """Return each variant with its defaults and the sets that fit it, and notes on the others."""
-    found = [
+    outcomes = [
         (label, _variant_system(variant, everywhere, label.rpartition("@")[2], own))
         for variant in variants
         for label, own in {"": ([], []), **sets}.items()
         if label.rpartition("@")[0] in {"", variant.name}
     ]
-    notes = [(label, one) for label, one in found if isinstance(one, str)]
-    fitting = {label for label, one in found if isinstance(one, System)}
+    notes = [(label, outcome) for label, outcome in outcomes if isinstance(outcome, str)]
+    fitting = {label for label, outcome in outcomes if isinstance(outcome, System)}
     for label in sets:
         if label not in fitting:
             why = (note for of, note in notes if of == label)
             missing = f"the parameter set {label} is for no variant among --variants"
             raise InputError(next(why, missing))
-    systems = [one for _, one in found if isinstance(one, System)]
+    systems = [outcome for _, outcome in outcomes if isinstance(outcome, System)]
     return systems, [note for _, note in notes]
 
 

@@ -57,15 +57,15 @@ class TargetOption:
 
 def parse_target(text: str) -> TargetOption:
     """Read ``[NAME][@FRAME:]x,y,w,h`` of a command line."""
-    found = _WORDS.fullmatch(text)
-    if found is None:
+    match = _WORDS.fullmatch(text)
+    if match is None:
         raise InputError(
             f"{text!r} is not [NAME][@FRAME:]x,y,w,h, as 310,202,40,30 or van@130:310,202,40,30"
         )
-    frame = int(found["frame"]) if found["frame"] else None
+    frame = int(match["frame"]) if match["frame"] else None
     if frame == 0:
         raise InputError(f"{text!r} has frame 0; frames are counted from 1")
-    return TargetOption(parse_box(found["box"]), found["name"] or "", frame)
+    return TargetOption(parse_box(match["box"]), match["name"] or "", frame)
 
 
 def target_of(entry: Mapping[str, Any]) -> TargetOption:

@@ -140,9 +140,12 @@ def _tune(
     with counting("tuned", "runs") as on_progress:
         trials = tuning.search(what, request.trials, study, runner_of(request), on_progress)
     header = ["trial", what.objective, *what.space]
-    rows = ([one.number, one.value, *(one.params[name] for name in what.space)] for one in trials)
+    rows = (
+        [trial.number, trial.value, *(trial.params[name] for name in what.space)]
+        for trial in trials
+    )
     write_csv(folder / "trials.csv", header, rows)
-    if all(one.value is None for one in trials):
+    if all(trial.value is None for trial in trials):
         raise InputError(
             "no trial could be scored on all recordings; run `evaluate` on them to see why"
         )

@@ -196,7 +196,7 @@ def track(
     import trackers  # noqa: PLC0415
 
     # Made anew for each request: numbers of tracks must not go on from another scene.
-    one = getattr(trackers, TRAFFIC[tracker])(**options)
+    follower = getattr(trackers, TRAFFIC[tracker])(**options)
     rows = table(detections)
     tracks: list[list[float]] = []
     seconds = 0.0
@@ -205,9 +205,9 @@ def track(
         corners = np.hstack([now[:, 1:3], now[:, 1:3] + now[:, 3:5]])
         given = supervision.Detections(xyxy=corners, confidence=now[:, 5])
         before = time.thread_time()
-        found = one.update(given)
+        followed = follower.update(given)
         seconds += time.thread_time() - before
-        tracks += confirmed(frame, found)
+        tracks += confirmed(frame, followed)
     return {"tracks": tracks, "seconds": seconds}
 
 

@@ -148,11 +148,11 @@ class Metrics:
 
     def to_json(self) -> dict[str, Any]:
         """Return plain values for JSON, with `recovered` and the number not judged."""
-        found = asdict(self)
+        values = asdict(self)
         if self.restarts is None:
-            del found["restarts"]
+            del values["restarts"]
         return {
-            **found,
+            **values,
             "recovered": list(self.recovered),
             "occlusions_not_judged": self.recovered.count(None),
         }
@@ -162,12 +162,12 @@ def measure(scores: Scores) -> Metrics:
     """Take the metrics of a run."""
     # 1. Groups of frames: a metric differs from the next by its group more than by its formula.
     counted = scores.counted
-    found = curves(scores.counted)
+    by_name = curves(scores.counted)
     visible = [frame for frame in counted if not frame.hidden]
     hidden = [frame for frame in counted if frame.hidden]
     occluded = [frame for frame in counted if frame.row.mode == Mode.OCCLUDED]
     errors = errors_of(counted)
-    precision, success, normalised = map(found.get, ("precision", "success", "normalised"))
+    precision, success, normalised = map(by_name.get, ("precision", "success", "normalised"))
     times = [frame.row.step_ms for frame in scores.frames if frame.row.step_ms is not None]
     modes = Counter(frame.row.mode for frame in scores.frames)
     # 2. Each metric of its group.

@@ -142,7 +142,7 @@ def search(
             warnings.simplefilter("ignore")  # the first trial may lie outside of a given range
             asked = [study.ask(dict(what.space)) for _ in range(min(BATCH, count - done))]
         # All runs of a batch at once, so that workers do not wait at the end of each trial.
-        grids = [what.cells(one.params) for one in asked]
+        grids = [what.cells(trial.params) for trial in asked]
         found: dict[GridCell, Any] = {}
         on_progress(done * runs, count * runs)
         for number, (cell, outcome) in enumerate(

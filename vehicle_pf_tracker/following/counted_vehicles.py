@@ -107,7 +107,9 @@ class CountedVehicles:
 
     def drawn(self, frame: Frame, head: str = "") -> Frame:
         """Return a copy of the last image with vehicles, counts, `head` and their number."""
-        modes = Tally(one.mode for one in self.estimates if self.counter.is_vehicle(one.label))
+        modes = Tally(
+            vehicle.mode for vehicle in self.estimates if self.counter.is_vehicle(vehicle.label)
+        )
         hidden = f", {modes[TrackMode.OCCLUDED]} hidden" if modes[TrackMode.OCCLUDED] else ""
         count = f"{sum(modes[mode] for mode in COUNTED_MODES)} vehicles{hidden}"
         words = f"{head}{_LEARNING if self.is_learning else count}"
@@ -122,8 +124,8 @@ class CountedVehicles:
         counter = self.counter
         return {
             "vehicles": sum(
-                one.mode in COUNTED_MODES and counter.is_vehicle(one.label)
-                for one in self.estimates
+                vehicle.mode in COUNTED_MODES and counter.is_vehicle(vehicle.label)
+                for vehicle in self.estimates
             ),
             **{f"{zone}: inside": there for zone, there in counter.occupancy.items()},
             **{

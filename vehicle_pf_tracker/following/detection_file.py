@@ -68,8 +68,8 @@ class DetectionFile:
 
     def misfit(self, size: tuple[int, int]) -> str:
         """Return why the boxes do not fit images of a size (px); empty where they do."""
-        found = misfit(self._rows[:, :4], size)
-        return f"the detections {self._path}: {found.sentence}" if found else ""
+        doubt = misfit(self._rows[:, :4], size)
+        return f"the detections {self._path}: {doubt.sentence}" if doubt else ""
 
     def of(self, frame: int) -> Detections:
         """Return the detections of a frame; one without rows is one without vehicles."""

@@ -153,7 +153,7 @@ def track(
         If the source cannot be read, there is no such variant or parameter, a value does not fit,
         or there is no target.
     """
-    found = find_variant(variant)
+    chosen = find_variant(variant)
     opened = open_source(source, beside=Beside.NOTED)
     truth = next(iter(opened.truth()), None)
     if target is None and truth is None:
@@ -163,18 +163,18 @@ def track(
         if len(target) != len(fields(Box)):
             raise InputError(f"the target {target} is not left, top, width and height in px")
         target = Box(*target)
-    given = from_mapping(found.parameters, parameters)
+    given = from_mapping(chosen.parameters, parameters)
     targets = {1: target} if target else {}
     # A target given by hand goes before the truth.
     first_truth = None if target else truth
-    tracker = OfflineTracker(found, given, first_truth=first_truth, targets=targets)
+    tracker = OfflineTracker(chosen, given, first_truth=first_truth, targets=targets)
     rows = []
     estimates = []
-    for row in tracker.rows((one.stamp_ns, one.frame) for one in opened.frames()):
+    for row in tracker.rows((image.stamp_ns, image.frame) for image in opened.frames()):
         rows.append(row)
-        one = tracker.estimate
+        estimate = tracker.estimate
         # Without its particles: only the path is drawn later.
-        light = one and replace(one, particles=_NO_PARTICLES, weights=_NO_PARTICLES[:, 0])
+        light = estimate and replace(estimate, particles=_NO_PARTICLES, weights=_NO_PARTICLES[:, 0])
         estimates.append(light)
     notices = (*opened.notices, *tracker.notices)
     return Estimates(source, tuple(rows), notices, tuple(estimates))

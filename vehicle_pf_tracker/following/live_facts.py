@@ -27,14 +27,18 @@ class RecentCrossings:
 
     def add(self, crossings: Iterable[Crossing], stamp_ns: int) -> None:
         """Take the plausible crossings of the next image."""
-        self._of.extend(one for one in crossings if not one.doubt)
+        self._of.extend(crossing for crossing in crossings if not crossing.doubt)
         # Also below 0: after time has gone back they are of another minute.
         while self._of and not 0 <= stamp_ns - self._of[0].stamp_ns < _MINUTE_NS:
             self._of.popleft()
 
     def at(self, place: str, direction: str) -> list[Crossing]:
         """Return the recent crossings at a place in a direction."""
-        return [one for one in self._of if (one.place, one.direction) == (place, direction)]
+        return [
+            crossing
+            for crossing in self._of
+            if (crossing.place, crossing.direction) == (place, direction)
+        ]
 
 
 def traffic_facts(
@@ -54,26 +58,19 @@ def traffic_facts(
         Time of the image, and words about it.
     """
     # 1. Vehicles in view, and a table of their classes.
-    confirmed = [one for one in estimates if one.mode in COUNTED_MODES]
+    confirmed = [vehicle for vehicle in estimates if vehicle.mode in COUNTED_MODES]
     # What is counted apart, as bicycles are, is in none of the summary's numbers.
-    vehicles = [one for one in confirmed if counter.is_vehicle(one.label)]
-    hidden = sum(one.mode is TrackMode.OCCLUDED for one in vehicles)
-    speeds = [kmh for one in vehicles if (kmh := counter.speed_kmh(one.serial)) is not None]
+    vehicles = [vehicle for vehicle in confirmed if counter.is_vehicle(vehicle.label)]
+    hidden = sum(vehicle.mode is TrackMode.OCCLUDED for vehicle in vehicles)
+    speeds = [kmh for vehicle in vehicles if (kmh := counter.speed_kmh(vehicle.serial)) is not None]
     tables = []
-    classes = Tally(one.label or "unknown" for one in confirmed)
+    classes = Tally(vehicle.label or "unknown" for vehicle in confirmed)
     # A detector of motion knows no classes: then the table says nothing.
     if set(classes) - {"unknown"}:
         tables.append(_table("in view", ("class", "vehicles"), classes.most_common()))
     # 2. Lines, with the interval of the true count beside what was counted.
     lines = [
-        (
-            line.name,
-            to,
-            counter.count(line.name, to),
-            len(last := [one for one in recent.at(line.name, to) if counter.is_vehicle(one.label)]),
-            _mean_kmh([one.speed_kmh for one in last]),
-            "{} to {}".format(*counter.interval(line.name, to)),
-        )
+        _line_row(counter, recent, line.name, to)
         for line in counter.plan.lines
         for to in line.directions
     ]
@@ -94,6 +91,22 @@ def traffic_facts(
     words += [f"{hidden} hidden"] if hidden else []
     words += [f"mean {fmean(speeds):.0f} km/h"] if speeds else []
     return {"vehicles": len(vehicles), "summary": ", ".join(filter(None, words)), "tables": tables}
+
+
+def _line_row(
+    counter: Counter, recent: RecentCrossings, line: str, direction: str
+) -> tuple[object, ...]:
+    """Return what a page shows of a line in a direction; its columns are in `traffic_facts`."""
+    crossings = recent.at(line, direction)
+    last = [crossing for crossing in crossings if counter.is_vehicle(crossing.label)]
+    return (
+        line,
+        direction,
+        counter.count(line, direction),
+        len(last),
+        _mean_kmh(crossing.speed_kmh for crossing in last),
+        "{} to {}".format(*counter.interval(line, direction)),
+    )
 
 
 def target_facts(rows: Mapping[str, EstimateRow], elapsed_ns: int) -> dict[str, object]:

@@ -97,12 +97,12 @@ class PacedDetector:
         passed = max(self._images - 1, 1)
         self._images = 1
         began = time.perf_counter()
-        found = self._run(partial(self._detector.detect, frame, tracks, passed * period))
-        self.found = len(found)
+        detections = self._run(partial(self._detector.detect, frame, tracks, passed * period))
+        self.found = len(detections)
         self.seconds = time.perf_counter() - began
         self.disturbed = self._detector.disturbed
         self.is_blind = self._detector.is_blind
-        return found
+        return detections
 
     def pace(self, seconds: float, period: float) -> None:
         """Take the time that the last image cost in all, and the images' period, s."""

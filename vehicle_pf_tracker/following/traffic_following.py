@@ -74,7 +74,7 @@ class TrafficRun(CountedVehicles):
     def notices(self) -> list[str]:
         """Irregularities, a sentence each; of very many only the first."""
         more = self._more_notices
-        later = [unreached(one) for boxes in self._targets.values() for one in boxes.items()]
+        later = [unreached(target) for boxes in self._targets.values() for target in boxes.items()]
         return [*self._notices, *([f"and {more} more notices"] if more else []), *later]
 
     def _note(self, sentence: str) -> None:
@@ -118,28 +118,28 @@ class TrafficRun(CountedVehicles):
         self._targets = {name: dict(boxes) for name, boxes in targets.items()}
         start_ns: int | None = None
         with pictures.drawing(frames) as (take, all_frames):
-            for number, found in all_frames:
-                start_ns = start_of_clock(start_ns, found.stamp_ns)
-                crossings = self._step(number, found)
-                if found.frame is None or crossings is None:
+            for number, stamped in all_frames:
+                start_ns = start_of_clock(start_ns, stamped.stamp_ns)
+                crossings = self._step(number, stamped)
+                if stamped.frame is None or crossings is None:
                     continue
                 # With the first image that was used: only it tells the size.
                 if not self.summary.frames:
-                    self._check_plan_and_detections(frame_size(found.frame))
+                    self._check_plan_and_detections(frame_size(stamped.frame))
                 estimates = self.estimates
                 # Rows of vehicles whose class may change wait in `files`.
                 undecided = self.classes.undecided
-                files.write(number, found.stamp_ns, estimates, crossings, undecided)
+                files.write(number, stamped.stamp_ns, estimates, crossings, undecided)
                 self.summary.add(estimates)
-                files.write_zones(self.summary.zones.add(found.stamp_ns, self.counter.occupancy))
+                files.write_zones(self.summary.zones.add(stamped.stamp_ns, self.counter.occupancy))
                 if overview is not None:
                     period = self.session.tracker.frame_period
-                    overview.add(found.frame, estimates, found.stamp_ns, period)
-                elapsed = clock_words(found.stamp_ns - start_ns)
-                draw = partial(self.drawn, found.frame, f"{elapsed}  frame {number}  ")
-                take((), draw, found.frame, found.stamp_ns)
+                    overview.add(stamped.frame, estimates, stamped.stamp_ns, period)
+                elapsed = clock_words(stamped.stamp_ns - start_ns)
+                draw = partial(self.drawn, stamped.frame, f"{elapsed}  frame {number}  ")
+                take((), draw, stamped.frame, stamped.stamp_ns)
                 facts = partial(self.page_facts, f"{elapsed}, frame {number}")
-                pictures.show(page, partial(self.shown, found.frame), facts)
+                pictures.show(page, partial(self.shown, stamped.frame), facts)
 
     def sentences(self, detector: str) -> list[str]:
         """Return the summary, a line for each fact, or why there is no vehicle.
@@ -152,18 +152,18 @@ class TrafficRun(CountedVehicles):
         if self.summary.vehicles:
             return self.summary.sentences()
         frames = self.summary.frames
-        found = self.session.found
-        inside = found.boxes - found.outside
+        detected = self.session.found
+        inside = detected.boxes - detected.outside
         # From the first cause that would explain it to the last: each further one supposes that
         # those before it hold.
-        if found.disturbed and 2 * found.images < frames:
+        if detected.disturbed and 2 * detected.images < frames:
             why = (
                 "the camera moves, and motion is detected before a standing one only; give "
                 "--detections or --model"
             )
-        elif not found.images:
+        elif not detected.images:
             why = "they are too few to learn what stands, which takes a second; give a longer clip"
-        elif not found.boxes:
+        elif not detected.boxes:
             why = {
                 MOTION_DETECTOR: "nothing moves in them",
                 MODEL_DETECTOR: "the network finds no vehicle; try --set detector.min_score=0.1",
@@ -171,7 +171,7 @@ class TrafficRun(CountedVehicles):
         elif self._misfit:
             why = self._misfit
         elif not inside:
-            why = f"all {found.boxes} detections are outside the regions of interest"
+            why = f"all {detected.boxes} detections are outside the regions of interest"
         else:
             why = (
                 f"detections ({inside}) repeat too rarely to be vehicles; give them with "
@@ -179,14 +179,14 @@ class TrafficRun(CountedVehicles):
             )
         return [f"no vehicle was found in {frames} frames: {why}"]
 
-    def _step(self, number: int, found: StampedFrame) -> tuple[Crossing, ...] | None:
+    def _step(self, number: int, stamped: StampedFrame) -> tuple[Crossing, ...] | None:
         """Take a frame; None where it is rejected, so that nothing is known of its time."""
-        if found.frame is None:
+        if stamped.frame is None:
             self._note(f"frame {number} was rejected: it cannot be read")
             return None
         detections = self._detections.of(number) if self._detections is not None else None
         try:
-            crossings = super().follow(found.frame, found.stamp_ns, detections)
+            crossings = super().follow(stamped.frame, stamped.stamp_ns, detections)
         except (InputError, TrackerError) as error:
             # One image is rejected, and the run goes on; a tracker that is broken ends it.
             if isinstance(error, TrackerError) and error.persists:
@@ -202,7 +202,7 @@ class TrafficRun(CountedVehicles):
                 self._note(f"frame {number}: {event}")
         self._last_events = list(self.session.events)
         # After the image was followed: a box is where its vehicle is in it.
-        self._add_targets(found.frame, number)
+        self._add_targets(stamped.frame, number)
         return crossings
 
     def _check_plan_and_detections(self, size: tuple[int, int]) -> None:

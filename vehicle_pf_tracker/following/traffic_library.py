@@ -91,7 +91,7 @@ class TrafficTracker(CountedVehicles):
         named = {"detector.kind": MODEL_DETECTOR, "detector.model": str(model)} if model else {}
         given = {"frame_rate": frame_rate, "lines": str(lines), **named, **parameters}
         known = (configuration := Configuration.of(TRAFFIC_VARIANT)).specs()
-        if unknown := [unknown_name(one, known) for one in given if one not in known]:
+        if unknown := [unknown_name(name, known) for name in given if name not in known]:
             raise InputError("; ".join(unknown))
         super().__init__(*session_and_counter(configuration.updated(given)))
         self.crossings: tuple[Crossing, ...] = ()
@@ -160,7 +160,7 @@ class TrafficTracker(CountedVehicles):
             detections = Detections.make(_sizes(boxes, format), scores, labels)
             self._check_form(detections.boxes, frame_size(frame))
         self.crossings = self.follow(frame, self._stamp_ns, detections)
-        return tuple(one for one in self.estimates if one.id and one.mode is not TrackMode.LOST)
+        return tuple(each for each in self.estimates if each.id and each.mode is not TrackMode.LOST)
 
     def _check_form(self, boxes: Array, size: tuple[int, int]) -> None:
         """Warn once of boxes that are two corners, taken for sizes, or no px of this image."""
@@ -168,12 +168,12 @@ class TrafficTracker(CountedVehicles):
             return
         # Gathered over images: a few boxes of one image may fit either form.
         self._boxes = np.concatenate([self._boxes, boxes])
-        found = misfit(self._boxes, size)
+        doubt = misfit(self._boxes, size)
         # A vehicle that drives in from the right reaches beyond the image, too, but not as corners.
         are_corners = (self._boxes[:, 2:] > self._boxes[:, :2]).all(axis=1)
-        if found is not None and (found.is_fatal or 2 * are_corners.sum() > len(self._boxes)):
+        if doubt is not None and (doubt.is_fatal or 2 * are_corners.sum() > len(self._boxes)):
             self._is_warned = True
-            warnings.warn(f"{found.sentence} (format=)", stacklevel=3)
+            warnings.warn(f"{doubt.sentence} (format=)", stacklevel=3)
 
     def update_with_detections(
         self, frame: Frame, detections: DetectionsT, *, stamp_ns: int | None = None
@@ -194,17 +194,17 @@ class TrafficTracker(CountedVehicles):
         form = _XYXY
         tracks = self.update(frame, given.xyxy, scores, labels, format=form, stamp_ns=stamp_ns)
         # -1: a class that no detection has had, as of a vehicle that was given by hand.
-        known = [self._class_ids.get(one.label, -1) for one in tracks]
+        known = [self._class_ids.get(track.label, -1) for track in tracks]
         followed: DetectionsT = type(given)(
-            xyxy=np.array([[*one.box.corners[0], *one.box.corners[2]] for one in tracks])
+            xyxy=np.array([[*track.box.corners[0], *track.box.corners[2]] for track in tracks])
             .reshape(-1, 4)
             .astype(np.float32),
-            confidence=np.array([one.confidence for one in tracks], np.float32),
+            confidence=np.array([track.confidence for track in tracks], np.float32),
             class_id=np.array(known, int) if self._class_ids else None,
-            tracker_id=np.array([one.id for one in tracks], int),
+            tracker_id=np.array([track.id for track in tracks], int),
             data={
-                "class_name": np.array([one.label for one in tracks], str),
-                "mode": np.array([one.mode.value for one in tracks], str),
+                "class_name": np.array([track.label for track in tracks], str),
+                "mode": np.array([track.mode.value for track in tracks], str),
             },
         )
         return followed
@@ -234,8 +234,8 @@ class TrafficTracker(CountedVehicles):
         given = np.asarray(rows, np.float64).reshape(-1, np.shape(rows)[-1] or 7)
         scores = given[:, 6] if given.shape[1] > 6 else None
         tracks = self.update(frame, given[:, 2:6], scores, stamp_ns=stamp_ns)
-        found = [mot_numbers(self._images, one) for one in tracks]
-        return np.array(found, np.float64).reshape(-1, 10)
+        numbers = [mot_numbers(self._images, track) for track in tracks]
+        return np.array(numbers, np.float64).reshape(-1, 10)
 
 
 def _chosen(value: str, name: str, known: Sequence[str]) -> str:

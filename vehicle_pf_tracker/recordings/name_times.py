@@ -140,7 +140,7 @@ def _unit_of(steps: Sequence[int], fps: float | None) -> str | None:
     if unit is None:
         raise AmbiguousNamesError(f"the usual step of the numbers, {step}, fits no unit of time")
     # A camera's steps vary by the rounding to ms, or by jitter; those of a count do not.
-    near = [one for one in steps if abs(one - step) < _NEAR * step]
+    near = [each for each in steps if abs(each - step) < _NEAR * step]
     is_varied = len(set(near)) > 1 and len(near) >= _LEAST_SHARE * len(steps)
     if unit == "ms" and not is_varied:
         raise AmbiguousNamesError(

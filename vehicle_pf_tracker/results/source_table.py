@@ -72,7 +72,7 @@ def read_table(folder: Path, names: Sequence[str]) -> SourceTable:
     InputError
         If a file cannot be read.
     """
-    found: list[dict[str, Cell]] = []
+    rows: list[dict[str, Cell]] = []
     failures = {}
     for name in names:
         facts = _document(folder / name / SOURCE_FILE)
@@ -81,13 +81,13 @@ def read_table(folder: Path, names: Sequence[str]) -> SourceTable:
         if facts["reason"]:
             failures[name] = facts["reason"]
         values = dict(_values(folder / name)) or {"": {}}
-        found += [
+        rows += [
             {NAME: f"{name}/{part}" if part else name, **of_part, _REASON: facts["reason"]}
             for part, of_part in values.items()
         ]
-    columns = dict.fromkeys(column for row in found for column in row if column != _REASON)
+    columns = dict.fromkeys(column for row in rows for column in row if column != _REASON)
     header = [*(columns or [NAME]), _REASON]
-    return SourceTable(header, [[row.get(column) for column in header] for row in found], failures)
+    return SourceTable(header, [[row.get(column) for column in header] for row in rows], failures)
 
 
 def _values(folder: Path) -> Iterator[tuple[str, dict[str, Cell]]]:
@@ -110,8 +110,8 @@ def _of_traffic(summary: Mapping[str, Any]) -> dict[str, Cell]:
     """Return the numbers of a summary, and its counts by place and direction."""
     numbers = {name: value for name, value in summary.items() if isinstance(value, int | float)}
     counts: Counter[str] = Counter()
-    for one in summary["counts"]:
-        counts[f"{one['place']} {one['direction']}"] += one["count"]
+    for entry in summary["counts"]:
+        counts[f"{entry['place']} {entry['direction']}"] += entry["count"]
     return {**numbers, **counts}
 
 

@@ -116,7 +116,7 @@ class TrackFiles:
         """Take what is known of a frame, whose number counts from 1; see `Backdating`."""
         self._write(self._backdating.add(frame, stamp_ns, estimates, undecided))
         if self._counts:
-            self._counts.writerows(_count_row(frame, one) for one in crossings)
+            self._counts.writerows(_count_row(frame, crossing) for crossing in crossings)
 
     def write_zones(self, intervals: Iterable[ZoneInterval]) -> None:
         """Write the occupancy of zones in intervals that have ended."""
@@ -129,9 +129,11 @@ class TrackFiles:
 
     def _write(self, frames: Frames) -> None:
         for frame, stamp_ns, estimates in frames:
-            self._tracks.writerows(_track_row(frame, stamp_ns, one) for one in estimates)
-            shown = (one for one in estimates if one.mode in IN_TRACKS)
-            self._mot.writelines(_MOT_ROW.format(*mot_numbers(frame, one)) for one in shown)
+            self._tracks.writerows(_track_row(frame, stamp_ns, estimate) for estimate in estimates)
+            shown = (estimate for estimate in estimates if estimate.mode in IN_TRACKS)
+            self._mot.writelines(
+                _MOT_ROW.format(*mot_numbers(frame, estimate)) for estimate in shown
+            )
 
 
 @contextmanager
@@ -162,28 +164,36 @@ def track_files(
         (folder / name).unlink(missing_ok=True)
 
 
-def _track_row(frame: int, stamp_ns: int, one: TrackEstimate) -> list[Any]:
+def _track_row(frame: int, stamp_ns: int, estimate: TrackEstimate) -> list[Any]:
     """Return the row of an estimate, in the order of `TRACK_COLUMNS`, every digit kept."""
-    numbers = *one.box.centre, one.box.width, one.box.height, *one.velocity
-    hidden_by = "" if one.hidden_by is None else str(one.hidden_by)
+    numbers = *estimate.box.centre, estimate.box.width, estimate.box.height, *estimate.velocity
+    hidden_by = "" if estimate.hidden_by is None else str(estimate.hidden_by)
     return [
         frame,
         stamp_ns,
-        one.identity,
+        estimate.identity,
         *map(_exact, numbers),
-        one.mode.value,
-        _exact(one.confidence),
-        one.label,
-        _exact(one.score),
-        _exact(one.age),
+        estimate.mode.value,
+        _exact(estimate.confidence),
+        estimate.label,
+        _exact(estimate.score),
+        _exact(estimate.age),
         hidden_by,
     ]
 
 
-def mot_numbers(frame: int, one: TrackEstimate) -> list[float]:
+def mot_numbers(frame: int, estimate: TrackEstimate) -> list[float]:
     """Return the MOTChallenge row of a tracked or occluded vehicle."""
-    share = _HIDDEN_CONFIDENCE if one.mode is TrackMode.OCCLUDED else 1.0
-    return [frame, one.identity, *astuple(one.box), share * one.confidence, -1, -1, -1]
+    share = _HIDDEN_CONFIDENCE if estimate.mode is TrackMode.OCCLUDED else 1.0
+    return [
+        frame,
+        estimate.identity,
+        *astuple(estimate.box),
+        share * estimate.confidence,
+        -1,
+        -1,
+        -1,
+    ]
 
 
 def _count_row(frame: int, crossing: Crossing) -> list[Any]:
@@ -202,11 +212,17 @@ def _count_row(frame: int, crossing: Crossing) -> list[Any]:
     ]
 
 
-def _zone_row(one: ZoneInterval) -> list[Any]:
+def _zone_row(interval: ZoneInterval) -> list[Any]:
     """Return the row of a zone in an interval, in the order of `ZONE_COLUMNS`."""
-    found = one.occupancy
-    numbers = f"{found.seconds:.3f}", f"{found.mean:.4f}", found.largest, f"{found.share:.4f}"
-    return [one.zone, one.start_ns, *numbers]
+    occupancy = interval.occupancy
+    return [
+        interval.zone,
+        interval.start_ns,
+        f"{occupancy.seconds:.3f}",
+        f"{occupancy.mean:.4f}",
+        occupancy.largest,
+        f"{occupancy.share:.4f}",
+    ]
 
 
 def _exact(value: float) -> str:

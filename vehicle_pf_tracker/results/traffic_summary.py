@@ -54,7 +54,7 @@ class TrafficSummary:
 
     def __init__(self, counter: Counter, zone_interval_s: float = USUAL_INTERVAL_S) -> None:
         self.counter = counter
-        self.zones = ZoneOccupancy((one.name for one in counter.plan.zones), zone_interval_s)
+        self.zones = ZoneOccupancy((zone.name for zone in counter.plan.zones), zone_interval_s)
         self.frames = 0
         self.most_at_once = 0
         self.vehicles: dict[int, VehicleLog] = {}
@@ -63,23 +63,27 @@ class TrafficSummary:
     def add(self, estimates: Iterable[TrackEstimate]) -> None:
         """Take the next frame."""
         self.frames += 1
-        confirmed = [one for one in estimates if one.mode in (*COUNTED_MODES, TrackMode.LOST)]
-        for one in confirmed:
-            self._follow(one)
-        followed = {one.identity for one in confirmed} & self.vehicles.keys()
+        confirmed = [
+            estimate for estimate in estimates if estimate.mode in (*COUNTED_MODES, TrackMode.LOST)
+        ]
+        for estimate in confirmed:
+            self._follow(estimate)
+        followed = {estimate.identity for estimate in confirmed} & self.vehicles.keys()
         for identity in self._followed - followed:
             self.vehicles[identity].end()
         self._followed = followed
-        vehicles = [one for one in confirmed if self.counter.is_vehicle(one.label)]
-        present = sum(one.mode is not TrackMode.LOST for one in vehicles)
+        vehicles = [estimate for estimate in confirmed if self.counter.is_vehicle(estimate.label)]
+        present = sum(estimate.mode is not TrackMode.LOST for estimate in vehicles)
         self.most_at_once = max(self.most_at_once, present)
 
-    def _follow(self, one: TrackEstimate) -> None:
-        if one.mode is TrackMode.TRACKING:
-            vehicle = self.vehicles.setdefault(one.identity, VehicleLog())
-            vehicle.see(one, is_at_edge=self._is_outside(_ahead(one)))
-        elif one.identity in self.vehicles:
-            self.vehicles[one.identity].miss(one, is_outside=self._is_outside(one.position))
+    def _follow(self, estimate: TrackEstimate) -> None:
+        if estimate.mode is TrackMode.TRACKING:
+            vehicle = self.vehicles.setdefault(estimate.identity, VehicleLog())
+            vehicle.see(estimate, is_at_edge=self._is_outside(_ahead(estimate)))
+        elif estimate.identity in self.vehicles:
+            self.vehicles[estimate.identity].miss(
+                estimate, is_outside=self._is_outside(estimate.position)
+            )
 
     def _is_outside(self, point: Position) -> bool:
         """Tell whether a point lies outside the regions."""
@@ -91,7 +95,7 @@ class TrafficSummary:
     @property
     def survived(self) -> int:
         """Occlusions after which a vehicle was visible under the same number."""
-        return sum(one.survived for one in self.vehicles.values())
+        return sum(vehicle.survived for vehicle in self.vehicles.values())
 
     @property
     def ended_hidden(self) -> int:
@@ -101,17 +105,17 @@ class TrafficSummary:
     @property
     def ends(self) -> Tally[Whereabouts]:
         """Vehicles by where they are in the end."""
-        return Tally(one.whereabouts for one in self.vehicles.values())
+        return Tally(vehicle.whereabouts for vehicle in self.vehicles.values())
 
     @property
     def least_size(self) -> float | None:
         """Longer side, px, below which vehicles are too far; None where none drove there."""
-        sizes = [size for one in self.vehicles.values() for size in one.far_sizes]
+        sizes = [size for vehicle in self.vehicles.values() for size in vehicle.far_sizes]
         return median(sizes) if sizes else None
 
     def _numbers(self) -> tuple[int, Tally[str], Tally[str]]:
         """Count vehicles, those of each class, and what is counted apart by class."""
-        labels = Tally(one.label for one in self.vehicles.values())
+        labels = Tally(vehicle.label for vehicle in self.vehicles.values())
         apart = Tally({name: n for name, n in labels.items() if not self.counter.is_vehicle(name)})
         vehicles = labels - apart
         return vehicles.total(), vehicles, apart
@@ -235,10 +239,10 @@ def _number(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def _ahead(one: TrackEstimate) -> Position:
+def _ahead(estimate: TrackEstimate) -> Position:
     """Return the point half a vehicle ahead of its centre, px: where it is detected last."""
-    x, y = one.position
-    across, down = one.velocity
+    x, y = estimate.position
+    across, down = estimate.velocity
     speed = math.hypot(across, down)
-    way = max(one.box.width, one.box.height) / 2 / speed if speed else 0.0
+    way = max(estimate.box.width, estimate.box.height) / 2 / speed if speed else 0.0
     return x + way * across, y + way * down

@@ -62,7 +62,7 @@ def write_trajectories(
     *files, true_file = trajectory_files(path, list(rows))
     for file, of_target in zip(files, rows.values(), strict=True):
         _write(file, ((row.stamp_ns, *row.position) for row in of_target if row.position))
-    true_points = [(one.stamp_ns, *one.box.centre) for one in truths]
+    true_points = [(truth.stamp_ns, *truth.box.centre) for truth in truths]
     # The truth of a run of several would not say whose it is.
     true_file.unlink(missing_ok=True)
     if true_points and len(rows) == 1:

@@ -66,26 +66,26 @@ class VehicleLog:
         ends = [self.first] if self._was_far(self.first) else []
         return ends + ([self.size] if self.whereabouts is Whereabouts.FAR else [])
 
-    def see(self, one: TrackEstimate, *, is_at_edge: bool) -> None:
+    def see(self, estimate: TrackEstimate, *, is_at_edge: bool) -> None:
         """Take a frame in which it is visible."""
         self.survived += self.whereabouts in (Whereabouts.HIDDEN, Whereabouts.FAR)
-        self.labels.update([one.label] * bool(one.label))
+        self.labels.update([estimate.label] * bool(estimate.label))
         self.whereabouts = Whereabouts.IN_VIEW
         self.is_at_edge = is_at_edge
-        self.size = max(one.box.width, one.box.height)
+        self.size = max(estimate.box.width, estimate.box.height)
         self.first = self.first or self.size
         self.largest = max(self.largest, self.size)
 
-    def miss(self, one: TrackEstimate, *, is_outside: bool) -> None:
+    def miss(self, estimate: TrackEstimate, *, is_outside: bool) -> None:
         """Take a frame in which it is predicted, or lost, in or out of the regions of interest."""
         if self.whereabouts in (Whereabouts.HIDDEN, Whereabouts.FAR):
             return  # where it is predicted to have gone since is not known
-        if one.hidden_by == BORDER_OCCLUDER:
+        if estimate.hidden_by == BORDER_OCCLUDER:
             self.whereabouts = Whereabouts.BORDER
         elif self.is_at_edge or is_outside:
             self.whereabouts = Whereabouts.ROI
         elif self.whereabouts is Whereabouts.IN_VIEW:
-            is_far = self._was_far(self.size) and not isinstance(one.hidden_by, int)
+            is_far = self._was_far(self.size) and not isinstance(estimate.hidden_by, int)
             self.whereabouts = Whereabouts.FAR if is_far else Whereabouts.HIDDEN
 
     def end(self) -> None:

@@ -143,17 +143,17 @@ def run_recording(
     waiting = list(reversed(truths))
     with RecordingWriter(folder, overwrite=True) as writer:
 
-        def keep(found: StampedFrame, rows: Mapping[str, EstimateRow]) -> None:
+        def keep(stamped: StampedFrame, rows: Mapping[str, EstimateRow]) -> None:
             nonlocal is_first
-            if found.frame is None:
+            if stamped.frame is None:
                 return
-            writer.write_compressed(found.stamp_ns, "jpeg", jpeg(found.frame))
-            while waiting and waiting[-1].stamp_ns <= found.stamp_ns:
+            writer.write_compressed(stamped.stamp_ns, "jpeg", jpeg(stamped.frame))
+            while waiting and waiting[-1].stamp_ns <= stamped.stamp_ns:
                 truth = waiting.pop()
-                if not is_first or truth.stamp_ns == found.stamp_ns:
+                if not is_first or truth.stamp_ns == stamped.stamp_ns:
                     writer.write_truth(truth)
             is_first = False
-            size = frame_size(found.frame)
+            size = frame_size(stamped.frame)
             for name, row in rows.items():
                 drawn = image_annotations("" if is_single else name, row, size)
                 _write_estimate(writer, topics[name], row, drawn)

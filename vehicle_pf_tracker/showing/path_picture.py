@@ -70,17 +70,17 @@ class PathPicture:
         if self.ground is None or len(visible) > len(self._on_ground):
             self.ground = frame.copy()
             self._on_ground = visible
-        for one in estimates:
-            if one.mode in COUNTED_MODES:
-                (end,) = drawing.pixels_at(np.array([one.box.centre]) * self._scale)
-                begin = self._ends.get(one.identity, end)
-                self._ends[one.identity] = end
-                reach = _STEP * self._scale * math.hypot(one.box.width, one.box.height)
+        for vehicle in estimates:
+            if vehicle.mode in COUNTED_MODES:
+                (end,) = drawing.pixels_at(np.array([vehicle.box.centre]) * self._scale)
+                begin = self._ends.get(vehicle.identity, end)
+                self._ends[vehicle.identity] = end
+                reach = _STEP * self._scale * math.hypot(vehicle.box.width, vehicle.box.height)
                 if math.dist(begin, end) > reach:
                     continue
                 self._lanes.add(begin, end, _LANE_WIDTH * drawing.line_width(self._layer))
-                share = _HIDDEN if one.mode is TrackMode.OCCLUDED else 1.0
-                colour = [int(share * value) for value in identity_colour(one.identity)]
+                share = _HIDDEN if vehicle.mode is TrackMode.OCCLUDED else 1.0
+                colour = [int(share * value) for value in identity_colour(vehicle.identity)]
                 cv2.line(self._layer, begin, end, colour, drawing.line_width(self._layer))
 
     def write(self, path: Path, counter: Counter) -> None:
@@ -104,8 +104,8 @@ class PathPicture:
             picture[drawn] = self._layer[drawn]
         labels: Labels = []
         draw_counts(picture, labels, counter, scale)
-        for one in self._on_ground:
-            box = Box(*(scale * value for value in astuple(one.box)))
-            draw_vehicle(picture, labels, replace(one, box=box))
+        for vehicle in self._on_ground:
+            box = Box(*(scale * value for value in astuple(vehicle.box)))
+            draw_vehicle(picture, labels, replace(vehicle, box=box))
         drawing.write_labels(picture, labels)
         write_picture(path, picture)

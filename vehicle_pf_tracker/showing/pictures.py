@@ -87,7 +87,7 @@ class Pictures:
         """
         # The video's rate is that of the first second, so this much is read ahead of it.
         ahead = list(itertools.islice(frames, _RATE_FRAMES if self.video else 0))
-        rate = _frame_rate([found.stamp_ns for _, found in ahead])
+        rate = _frame_rate([stamped.stamp_ns for _, stamped in ahead])
         film = _film(self.video, rate) if self.video else nullcontext(_nothing)
         with self.side.growing(f"the video {self.video}", film) as add:
 

@@ -92,7 +92,7 @@ def _in_pool(
     has_broken = False
     try:
         futures = {pool.submit(function, task): key for key, task in tasks.items()}
-        own = [one for one in multiprocessing.active_children() if one not in others]
+        own = [child for child in multiprocessing.active_children() if child not in others]
         for future in as_completed(futures):
             # Taken out: a result that was given is not kept until the end.
             key = futures.pop(future)

@@ -134,7 +134,7 @@ def describe_recordings(
             why = ": " + "; ".join(recording.notices) if recording.notices else hint
             raise InputError(f"the recording {location} has no truth to compare with{why}")
         stamps = _stamps(recording)
-        pairs = associate(stamps, [one.stamp_ns for one in truth], max_diff)
+        pairs = associate(stamps, [state.stamp_ns for state in truth], max_diff)
         if not pairs:
             raise InputError(
                 f"no stamp of the truth in {location} is within {max_diff:g} s of an image's; "

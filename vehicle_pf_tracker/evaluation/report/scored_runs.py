@@ -104,7 +104,7 @@ class ScoredEvaluation:
     @property
     def mixed_versions(self) -> list[str]:
         """A sentence where runs were made with different versions; baselines have their own."""
-        ours = {one.label for one in self.folder.systems if not one.is_baseline}
+        ours = {system.label for system in self.folder.systems if not system.is_baseline}
         runs = [run for run in self.runs if run.system in ours]
         found = {key: {str(run.versions.get(key)) for run in runs} for key in _DECIDING}
         mixed = [f"{key} {' and '.join(sorted(v))}" for key, v in found.items() if len(v) > 1]

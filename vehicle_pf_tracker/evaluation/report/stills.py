@@ -96,7 +96,7 @@ def worst_moments(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[
             if frame <= len(errors) and np.isfinite(errors[frame - 1]):
                 relative[frame - 1] = errors[frame - 1] / truth.box.diagonal
         found += [(relative[at], source, at + 1, float(errors[at])) for at in _peaks(relative)]
-    found.sort(key=lambda one: -one[0])
+    found.sort(key=lambda moment: -moment[0])
     return [
         Moment(
             source,
@@ -143,11 +143,13 @@ def write_stills(evaluation: ScoredEvaluation, aggregates: Aggregates) -> None:
     """
     folder = evaluation.folder.path / FOLDER
     missing = [
-        one for one in worst_moments(evaluation, aggregates) if not (folder / one.file).exists()
+        moment
+        for moment in worst_moments(evaluation, aggregates)
+        if not (folder / moment.file).exists()
     ]
     slots = styled(aggregates)
-    for source in dict.fromkeys(one.source for one in missing):
-        wanted = {one.frame: one for one in missing if one.source == source}
+    for source in dict.fromkeys(moment.source for moment in missing):
+        wanted = {moment.frame: moment for moment in missing if moment.source == source}
         for frame, picture in _frames(source, set(wanted)):
             _write(make_folder(folder) / wanted[frame].file, _drawn(picture, wanted[frame], slots))
 

@@ -82,7 +82,7 @@ class LineCounts:
             return
         self._first = self._first or number
         # In regions without truth a crossing would count as false.
-        known = [one for one in session.estimates if not self._is_ignored(one.position)]
+        known = [vehicle for vehicle in session.estimates if not self._is_ignored(vehicle.position)]
         self._counter.update(known, stamp_ns, ambiguous=session.ambiguous)
 
     def results(self) -> list[LineCount]:
@@ -123,12 +123,12 @@ def held_and_width(counts: Sequence[LineCount]) -> tuple[float, float] | None:
 
     None where nothing truly crosses a line.
     """
-    judged = [one for one in counts if one.is_judged]
-    if not any(one.true for one in judged):
+    judged = [count for count in counts if count.is_judged]
+    if not any(count.true for count in judged):
         return None
     # Each line weighs alike: a busy one does not stand for its scene.
-    held = np.mean([one.is_held for one in judged])
-    width = np.mean([one.interval[1] - one.interval[0] for one in judged])
+    held = np.mean([count.is_held for count in judged])
+    width = np.mean([count.interval[1] - count.interval[0] for count in judged])
     return 100 * float(held), float(width)
 
 

@@ -148,8 +148,8 @@ class _Download:
         """Return what an earlier fetch has left; None where there is nothing."""
         # The largest of several states of the server's file; whether it is still that one,
         # `If-Range` asks.
-        found = self._path.parent.glob(f"{self._path.name}.*.part")
-        return max(found, key=lambda one: one.stat().st_size, default=None)
+        parts = self._path.parent.glob(f"{self._path.name}.*.part")
+        return max(parts, key=lambda part: part.stat().st_size, default=None)
 
     def _fill(self, part: Path | None, output: Path) -> bool:
         """Fetch into `part`, or a new one, and move it to `output`; False if it does not fit."""

@@ -54,14 +54,14 @@ def model_file(model: str, progress: ShowShare = silent) -> tuple[Path, str]:
     path = cached(url)
     if not path.is_file():
         fetch(url, path, demanded, progress)
-    found = _sum_of(path)
+    digest = _sum_of(path)
     # Also of a file in the cache: it may have been kept when no sum was demanded.
-    if demanded and found != demanded:
+    if demanded and digest != demanded:
         raise InputError(
-            f"the network {url} has the SHA-256 {found}, not {demanded}; delete {path} to fetch it "
-            "again"
+            f"the network {url} has the SHA-256 {digest}, not {demanded}; delete {path} to fetch "
+            "it again"
         )
-    return path, found
+    return path, digest
 
 
 def is_fetched(model: str) -> bool:

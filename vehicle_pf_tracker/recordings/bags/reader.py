@@ -253,8 +253,8 @@ class Recording:
             raise InputError(f"the truth topics of {self.path} are empty")
         return bool(truth_topics)
 
-    def _assemble(self, found: Iterable[tuple[McapIndex, Message]]) -> tuple[Truth, ...]:
-        by_topic = ((index.channels[one.channel_id].topic, one.data) for index, one in found)
+    def _assemble(self, selected: Iterable[tuple[McapIndex, Message]]) -> tuple[Truth, ...]:
+        by_topic = ((index.channels[one.channel_id].topic, one.data) for index, one in selected)
         received = ((topic, deserialize(data, TRUTH_TYPES[topic])) for topic, data in by_topic)
         try:
             # Of the last file alone: in those before it a frame goes on in the next file.

@@ -112,7 +112,7 @@ def label_studio(path: Path, text: str, images: Images) -> Iterator[Label]:
 def _studio_labels(path: Path, document: Any, images: Images) -> Iterator[Label]:
     width, height = images.size()
     for task in document:
-        done = [one["result"] for one in task["annotations"] if not one.get("was_cancelled")]
+        done = [made["result"] for made in task["annotations"] if not made.get("was_cancelled")]
         # The first annotator's: the tool exports all, and a mean of two boxes is nobody's truth.
         regions = (done or [[]])[0]
         # Other shapes have no number of their own here: one fault stands for all of them.
@@ -122,7 +122,7 @@ def _studio_labels(path: Path, document: Any, images: Images) -> Iterator[Label]
             if kind is not None:
                 fault = _fault(kind, math.nan)
                 yield Label(where, math.nan, ABSENT_SIDES, identity=OTHER_SHAPES, fault=fault)
-        rectangles = [one for one in regions if "rectangle" in one["type"]]
+        rectangles = [region for region in regions if "rectangle" in region["type"]]
         for identity, region in enumerate(rectangles, start=1):
             where = f"region {identity} of the truth {path}"
             value = region["value"]
@@ -140,7 +140,7 @@ def _named(
 ) -> Iterator[tuple[int, Mapping[str, Any]]]:
     """Yield the number of the image that a task names, perhaps with a prefix, and the box."""
     # Uploaded files get a random prefix and a dash, and local ones a path or a query.
-    words = [word for one in data.values() for word in re.split(r"[/=]", str(one))]
+    words = [word for field in data.values() for word in re.split(r"[/=]", str(field))]
     names = (name for word in words for name in (word, word.partition("-")[2]))
     for name in [name for name in names if name in images.names][:1]:
         yield images.names[name], value
