@@ -14,6 +14,9 @@ of the estimates to record. `report` turns their results into data, a figure and
 them, and stores every result under its cache key, so that interrupted work continues and only what
 changed is rerun.
 
+`output` writes an experiment's folder. `page` joins the verdicts to docs/reproduction.md, in the
+words of `page_text`, and keeps them beside it as data.
+
 In most of them `_cell` names a run, `_figure` draws, `_verdict` or `_claims` lists the claims, and
 a function for each claim judges it under one interpretation, as a `Finding`.
 """

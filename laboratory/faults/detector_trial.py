@@ -188,9 +188,9 @@ class Trial:
     def _vehicles(self) -> dict[int, int]:
         """Return the number of each vehicle that is in view."""
         self._tester.spin(0.2)
-        found: dict[int, int] = {}
+        numbers: dict[int, int] = {}
         if not self._tracks:
-            return found
+            return numbers
         last = ROAD.width - ROAD.size[0]
         corners = {
             vehicle: (x + self._offset, y)
@@ -202,11 +202,11 @@ class Trial:
             vehicle = ROAD.nearest(sighting.x, sighting.y, corners)
             if sighting.is_confirmed and vehicle is not None:
                 # Of several tracks on one vehicle the oldest counts.
-                found[vehicle] = min(sighting.identity, found.get(vehicle, sighting.identity))
+                numbers[vehicle] = min(sighting.identity, numbers.get(vehicle, sighting.identity))
         del self._tracks[:-1]
-        return found
+        return numbers
 
 
-def _shortened(found: re.Match[str]) -> str:
+def _shortened(varying: re.Match[str]) -> str:
     # A log's head ends in "]: "; everything else that matched is a number.
-    return "" if "]" in found[0] else "N"
+    return "" if "]" in varying[0] else "N"

@@ -36,10 +36,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import read_yaml, read_yaml_file
 from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
-from vehicle_pf_tracker.ros.rclpy_internals import (
-    RCLError,
-    UnknownROSArgsError,
-)
+from vehicle_pf_tracker.ros.rclpy_internals import RCLError, UnknownROSArgsError
 from vehicle_pf_tracker.trackers.registry import find_variant
 
 VARIANT = find_variant("pf")
@@ -51,9 +48,9 @@ LONGEST = 30
 
 def try_parameters(path: Path, _: Path) -> str:
     """Read a parameter file as `run` does, then as a node does; return what came of it."""
-    told = _in_python(path)
-    own = _in_node(path)
-    return f"{told} by the command line, {own} by the node"
+    by_command_line = _in_python(path)
+    by_node = _in_node(path)
+    return f"{by_command_line} by the command line, {by_node} by the node"
 
 
 def _in_python(path: Path) -> str:
@@ -63,7 +60,9 @@ def _in_python(path: Path) -> str:
     except InputError:
         return "refused"
     # Names that the command line passes over on purpose are no fault; other values are.
-    wrong = {name: one for name, one in values.items() if name in given and given[name] != one}
+    wrong = {
+        name: value for name, value in values.items() if name in given and given[name] != value
+    }
     if wrong:
         raise FaultError(f"taken for other values: {wrong}")
     return "taken"
@@ -77,8 +76,13 @@ def _in_node(path: Path) -> str:
         with _quiet():
             rclpy.init(args=["--ros-args", "--params-file", str(path)], context=context)
             node = TrackerNode(VARIANT, context=context)
-        given = {name: one.value for name, one in node.get_parameters_by_prefix("").items()}
-        wrong = {n: v for n, v in node.overrides.items() if n in given and given[n] != v}
+        parameters = node.get_parameters_by_prefix("")
+        given = {name: parameter.value for name, parameter in parameters.items()}
+        wrong = {
+            name: value
+            for name, value in node.overrides.items()
+            if name in given and given[name] != value
+        }
         if wrong:
             raise FaultError(f"the node has other values than {wrong}")
     except (InputError, RCLError, UnknownROSArgsError):
@@ -99,7 +103,7 @@ def try_recording(path: Path, folder: Path) -> str:
     target = ",".join(map(str, TARGET_BOX))
     # Few particles: it is the reading that is tested.
     words = ["run", str(path), "--variant", "pf", "--set", "num_particles=20"]
-    with _captured() as (told, errors):
+    with _captured() as (printed, errors):
         status = command([*words, "--target", target, "-o", str(out)])
     complaint = errors.getvalue()
     if status == 1 and complaint.strip() and "Traceback" not in complaint:
@@ -110,16 +114,16 @@ def try_recording(path: Path, folder: Path) -> str:
         rows = list(csv.DictReader(file))
     # Fewer rows need a word; all of them need none.
     if not rows or (len(rows) != FRAMES and not complaint.strip()):
-        raise FaultError(f"{len(rows)} rows of {FRAMES} without a word: {told.getvalue()}")
+        raise FaultError(f"{len(rows)} rows of {FRAMES} without a word: {printed.getvalue()}")
     return "tracked whole" if len(rows) == FRAMES else "tracked in part, and said so"
 
 
 @contextlib.contextmanager
 def _captured() -> Iterator[tuple[io.StringIO, io.StringIO]]:
-    told = io.StringIO()
+    printed = io.StringIO()
     errors = io.StringIO()
-    with contextlib.redirect_stdout(told), contextlib.redirect_stderr(errors):
-        yield told, errors
+    with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(errors):
+        yield printed, errors
 
 
 @contextlib.contextmanager

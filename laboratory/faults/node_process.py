@@ -121,7 +121,7 @@ class NodeProcess:
             "from vehicle_pf_tracker.ros.executables import main;"
             f"raise SystemExit(main({variant!r}))"
         )
-        arguments = [word for one in words for word in ("-p", one)]
+        arguments = [word for assignment in words for word in ("-p", assignment)]
         self._process = subprocess.Popen(
             [sys.executable, "-c", code, "--ros-args", *arguments],
             stdout=self._log,
@@ -129,15 +129,15 @@ class NodeProcess:
         )
         # Also where this program ends by an exception.
         atexit.register(self._process.kill)
-        self.name = own = f"/{variant}_tracker"
-        self.modes: list[DiagnosticArray] = tester.collect(DiagnosticArray, f"{own}/mode")
+        self.name = f"/{variant}_tracker"
+        self.modes: list[DiagnosticArray] = tester.collect(DiagnosticArray, f"{self.name}/mode")
         self.changes: list[bool] = []
         self._tester = tester
         self._reports = tester.collect(DiagnosticArray, "/diagnostics")
         self._targets = {
-            kind: tester.publisher(kind, f"{own}/{name}") for kind, name in _TARGETS.items()
+            kind: tester.publisher(kind, f"{self.name}/{name}") for kind, name in _TARGETS.items()
         }
-        self._parameters = tester.parameter_client(own)
+        self._parameters = tester.parameter_client(self.name)
 
     def give_target(self, target: object) -> None:
         """Send a target."""
