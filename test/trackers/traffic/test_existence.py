@@ -19,6 +19,7 @@ from vehicle_pf_tracker.trackers.traffic.existence import (
     CERTAIN_LOG_ODDS,
     believed,
     doubt,
+    drives,
     fits_of_known,
 )
 from vehicle_pf_tracker.trackers.traffic.identity import resumed
@@ -128,6 +129,23 @@ def test_a_shape_that_shakes_as_it_drives_has_to_drive_farther():
         reported_from(are_shapes=False, shake=4.0),
     )
     assert steady < boxed < shaking < 15
+
+
+@pytest.mark.parametrize(
+    ("way", "against", "is_told"),
+    [(0.8, 0.0, True), (0.8, 5.0, False), (1.2, 5.0, True)],
+)
+def test_scores_are_ignored_only_of_what_drove_its_own_width(way, against, is_told):
+    one = track(1, 100.0, doubt=against)
+    ways = one.beliefs.ways
+    for share in np.linspace(0, way, 60):
+        edges = np.array([[100 + 40 * share, 100, 140 + 40 * share, 130]])
+        ways = ways.older(1.0).added(edges)
+    assert ways.evidence()[0] > 50
+    gaussians = one.drives.gaussians.resized(edges)
+    one = replace(one, drives=replace(one.drives, gaussians=gaussians))
+    one = replace(one, beliefs=replace(one.beliefs, ways=ways))
+    assert drives(one, STEP)[0] == is_told
 
 
 def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_alarm():
