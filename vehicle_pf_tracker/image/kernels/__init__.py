@@ -4,10 +4,13 @@
 """Fast measurement of windows: one interface, implemented in OpenCV and numpy, and in numba.
 
 `interface` has the kernels of OpenCV and numpy, and chooses. `numba_kernels` are numba's; they call
-modules of compiled functions: `numba_pixel_cells` (bin of each pixel), `numba_windows` (counts and
-similarities of windows), `numba_gradients`, `numba_edges` and `numba_counts` (edge points),
-`numba_mean_shift` and `numba_cells` (oriented gradients), for `numba_types`.
+modules of compiled functions: `numba_placing` (part of a frame that windows cover),
+`numba_pixel_cells` (bin of each pixel), `numba_windows` (similarities of windows, by
+`numba_sliding` where they share pixels, each by `numba_similarity`), `numba_gradients`,
+`numba_edges` and `numba_counts` (edge points), `numba_mean_shift` and `numba_cells` (oriented
+gradients), with types from `numba_types`.
 
-A function becomes a `kernel`: `compilation` by numba makes `object_code`, which `kernel_store`
-keeps on disk and `linking` loads without numba; `arguments` are checked at each call.
+A `kernel` is compiled when it is first called (`compilation`, the only module that imports numba).
+Its `object_code` is kept on disk (`kernel_store`), and `linking` makes a function of it in later
+processes, which checks its `arguments`.
 """

@@ -5,11 +5,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from vehicle_pf_tracker.image.kernels.kernel import compiled
+from vehicle_pf_tracker.image.kernels.numba_similarity import overlap
 from vehicle_pf_tracker.image.kernels.numba_types import COUNTS, SCALE, Counts, Pixels, Reals, Scale
 
 
@@ -27,13 +26,5 @@ def compare_counts(counts: Counts, totals: Pixels, scale: Scale) -> Reals:
             least, most = min(least, counts[i, k]), max(most, counts[i, k])
         if least < 0 or most > totals[i]:
             raise IndexError("more of a bin are counted than of all together")
-        # As `numba_windows._overlap`, which is of another file.
-        overlap = 0.0
-        if totals[i] < len(roots):
-            for k in range(len(values)):
-                overlap += values[k] * roots[counts[i, k]]
-        else:
-            for k in range(len(values)):
-                overlap += values[k] * math.sqrt(np.float64(counts[i, k]))
-        result[i] = min(overlap / math.sqrt(max(totals[i], 1)), 1.0)
+        result[i] = overlap(counts[i], values, totals[i], roots)
     return result

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.image.gradients import DIRECTION_BINS
 from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_gradients import IMAGES, Images, Strengths
+from vehicle_pf_tracker.image.kernels.numba_placing import extent_of
 from vehicle_pf_tracker.image.kernels.numba_types import (
     BIN_TABLE,
     COUNTS,
@@ -83,17 +84,6 @@ def _raise_to(numbers: Strengths, others: Strengths) -> None:
 
 
 @inlined
-def _extent(middles: Rectangles) -> tuple[int, int, int, int]:
-    """Return the least x and y, and the largest, of windows' middles, px."""
-    x0, y0 = middles[0]
-    x1, y1 = x0, y0
-    for i in range(len(middles)):
-        x, y = middles[i]
-        x0, y0, x1, y1 = min(x0, x), min(y0, y), max(x1, x), max(y1, y)
-    return x0, y0, x1, y1
-
-
-@inlined
 def _copy(numbers: Strengths, copied: Strengths) -> None:
     """Copy an array into one of the same length."""
     for x in range(len(numbers)):
@@ -109,7 +99,7 @@ def _peaks_of(strengths: Strengths, middles: Rectangles, half: tuple[int, int]) 
     """
     across, up = half
     height, width = strengths.shape
-    x0, y0, x1, y1 = _extent(middles)
+    x0, y0, x1, y1 = extent_of(middles)
     # From the first pixel of the first window; 0 beyond the image, where there are no edges.
     rows = np.zeros((y1 - y0 + 2 * up + 1, x1 - x0 + 2 * across + 1), np.int32)
     left = max(x0 - across, 0)

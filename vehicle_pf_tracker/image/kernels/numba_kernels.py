@@ -25,11 +25,13 @@ from vehicle_pf_tracker.image.kernels import (
     numba_gradients,
     numba_mean_shift,
     numba_pixel_cells,
+    numba_placing,
     numba_windows,
 )
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.kernels.numba_edges import Numbers
 from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
+    joint_cells,
     marginal_cells,
     number_cells,
     pair_cells,
@@ -50,6 +52,7 @@ from vehicle_pf_tracker.image.window import (
 _MODULES = (
     numba_windows,
     numba_pixel_cells,
+    numba_placing,
     numba_gradients,
     numba_edges,
     numba_counts,
@@ -152,12 +155,10 @@ def _placed_cells(
     """Return cells of the part that windows cover, their middles in it, and its first pixel."""
     # Only the part of the frame that windows cover is numbered: cost follows them, not the frame.
     half = window.half_width, window.half_height
-    pixels, (left, top, right, bottom) = numba_windows.place_windows(
+    pixels, (left, top, right, bottom) = numba_placing.place_windows(
         positions, frame_size(frame), half, 0
     )
-    cells = numba_windows.joint_cells(
-        frame[top:bottom, left:right], bits, table_of(reference).cells
-    )
+    cells = joint_cells(frame[top:bottom, left:right], bits, table_of(reference).cells)
     return cells, pixels, (left, top)
 
 
@@ -216,7 +217,7 @@ def _histogram_of_pixels(
     part = frame[top:bottom, left:right]
     table = _every_bin(feature.bins)
     if isinstance(feature, JointColour):
-        cells = numba_windows.joint_cells(part, feature.bits, table)
+        cells = joint_cells(part, feature.bits, table)
     elif isinstance(feature, RgbMarginals):
         cells = marginal_cells(part, CHANNEL_BINS, table)
     else:
@@ -251,7 +252,7 @@ def _compare_pixels(
         )
         return similarity
     # Cells are made once for the part that all windows share.
-    pixels, (left, top, right, bottom) = numba_windows.place_windows(
+    pixels, (left, top, right, bottom) = numba_placing.place_windows(
         positions, frame_size(frame), half, 0
     )
     part = frame[top:bottom, left:right]
@@ -294,7 +295,7 @@ def _count_edges(
     """Fill the counts (N, K + 1 or more) of the edge points' cells; their totals (N,)."""
     half = window.half_width, window.half_height
     # One pixel more makes every gradient in the windows that of the whole frame.
-    pixels, (left, top, right, bottom) = numba_windows.place_windows(
+    pixels, (left, top, right, bottom) = numba_placing.place_windows(
         positions, frame_size(frame), half, 1
     )
     grey = to_grey(frame[top:bottom, left:right])

@@ -28,6 +28,24 @@ from vehicle_pf_tracker.image.window import Grey
 
 
 @compiled(CELL_PLANES, RGB_IMAGE, "int64", BIN_TABLE)
+def joint_cells(pixels: Frame, bits: int, table: Table) -> Cells:
+    """Cells of joint RGB bins, one plane."""
+    height, width, channels = pixels.shape
+    if channels != 3 or not 1 <= bits <= 8 or len(table) < 1 << (3 * bits):
+        raise IndexError("the reference has fewer bins than the feature")
+    cells = np.empty((1, height, width), np.uint16)
+    drop = 8 - bits
+    for y in range(height):
+        for x in range(width):
+            red = pixels[y, x, 0]
+            green = pixels[y, x, 1]
+            blue = pixels[y, x, 2]
+            number = ((red >> drop) << (2 * bits)) | ((green >> drop) << bits) | (blue >> drop)
+            cells[0, y, x] = table[number]
+    return cells
+
+
+@compiled(CELL_PLANES, RGB_IMAGE, "int64", BIN_TABLE)
 def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
     """Cells of each channel's own bins, a plane each; channel `c` has bins from ``c * levels``."""
     height, width, channels = pixels.shape
