@@ -110,7 +110,7 @@ def _draw_drive(axes: Axes, paths: Mapping[str, list[Path]]) -> None:
 
 def _files_of_drive(paths: Mapping[str, list[Path]]) -> dict[str, Path]:
     """Return the first run of the drive, ``VARIANT.SCENE.SEED.npy``, of each shown variant."""
-    first = {}
+    first: dict[str, Path] = {}
     for name in _SHOWN:
         for file in paths.get(name, ()):
             if file.name.split(".")[1] == _DRIVE:

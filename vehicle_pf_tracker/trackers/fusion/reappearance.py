@@ -232,7 +232,7 @@ class Reappearance(NamedTuple):
         speed = float(np.hypot(*velocity))
         reach = float(np.sqrt(self.last.size.prod())) * speed
         # The bound stops at a size: one that brakes falls behind its prediction more and more.
-        predicted = (self.place[0] - self.last.position) @ velocity
+        predicted = float((self.place[0] - self.last.position) @ velocity)
         bound = _MOVED * min(max(predicted, 0.0), reach) - _BEHIND * reach
         return np.asarray((positions - self.last.position) @ velocity < bound)
 
