@@ -59,9 +59,10 @@ Images of 640x480 come at 30 Hz from another process. `without_step` leaves out 
 `all_heard` has subscribers to every output. Caches are cold between two images, so a step takes
 longer than above. Start-up lasts until the node is ready. Its baselines are the node above
 (`warm`), a start with the OpenCV kernels (`numba`), and a warm start (`cold`: nothing compiled).
-Of a cold start of `apf` two seconds load numba and the package, the rest compiles its kernels: a
-half the one that slides over windows, a fifth the one that compares joint colours by it in one
-call. About a third of compiling is LLVM's optimisation, the rest mostly numba's work in Python.
+Of a cold start of `apf` two seconds load numba and the package, the rest compiles its three
+kernels: nine tenths of that the one that compares windows of joint colours. About a third of
+compiling is LLVM's optimisation, the rest mostly numba's work in Python. Later starts link what was
+compiled, and load no numba.
 """
 
 
