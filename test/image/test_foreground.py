@@ -55,6 +55,16 @@ def test_a_moving_camera_leaves_no_background():
     assert foreground.outline(centre, SIZE) is None
 
 
+def test_a_slow_vehicle_is_no_part_of_the_background_once_the_camera_has_stood_for_long():
+    """It takes 48 frames for its length, most of two seconds."""
+    foreground = Foreground()
+    for time in range(200):
+        left = 20 + time // 2
+        foreground.keep(scene((left, 50, left + 24, 64)), still=True)
+    outline = foreground.outline(np.array([left + 12.0, 57.0]), SIZE)
+    assert outline.size == pytest.approx(SIZE, abs=2)
+
+
 @pytest.mark.parametrize(
     "latest", [scene((0, 30, 200, 90)), SmallGrey(ROAD[:100], 1.0)], ids=["wall", "other size"]
 )

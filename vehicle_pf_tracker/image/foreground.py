@@ -23,18 +23,25 @@ from vehicle_pf_tracker.image.small_grey import SmallGrey
 _KEPT_EVERY = 4
 """Frames between two that are kept for the background: those in a row show the same vehicles. With
 `_KEPT` two seconds at 30 Hz."""
+_LARGEST_SPACING = 16
+"""The same for the outline of the vehicle itself once the camera has stood for long: of two seconds
+a slow one takes most for its length, and becomes a part of the background; of eight it does not.
+Chosen on scene `turn`, where a lorry of 69 px at 2 px per frame takes 35 frames of 60. What else
+moves stays with two seconds: with eight 15 of 17 painted signs are recovered from, instead of 16
+(laboratory/notes/fusion_tried.md)."""
 _KEPT = 15
-"""Frames that the background is the median of: two seconds, of which a vehicle that moves by its
-length within one hides less than half."""
+"""Frames that a background is the median of: a vehicle that moves by its length within half of
+their time is no part of it."""
 _FEWEST = 6
 """Frames below which there is no background yet, a choice: the median of six is wrong only where
 three of them show vehicles."""
 _LOOKED_AT = 4
 """Step between kept frames that are searched for other vehicles when one is hidden: with
 `_KEPT_EVERY` half a second at 30 Hz."""
-_LATEST = 12
-"""Latest frames kept besides, 0.4 s at 30 Hz, a choice: outlines of just before a doubt are what
-later ones are compared with."""
+_LATEST = 24
+"""Latest frames kept besides, 0.8 s at 30 Hz: outlines of just before a doubt are what later ones
+are compared with, and where a turn is slow the last clear sighting is 15 frames old by then (scene
+`turn` at 2 px per frame, on which it was chosen)."""
 _AROUND = 1.5
 """Half side of the square that is looked at around a box, in longer sides of it, a choice: the box
 may have moved by its length, and what reaches the rim has no outline."""
@@ -87,10 +94,13 @@ class Foreground:
 
     def __init__(self) -> None:
         self._background: deque[_Kept] = deque(maxlen=_KEPT)
+        self._lasting: deque[_Kept] = deque(maxlen=_KEPT)
+        self._spacing = _KEPT_EVERY
         self._latest: deque[_Kept] = deque(maxlen=_LATEST)
         self._frames = 0
         self._time = 0.0
         self._whole = np.empty((0, 0), np.uint8)
+        self._whole_lasting = self._whole
         self._learnt_at = -1
 
     def keep(self, small: SmallGrey, *, still: bool, elapsed: float = 1.0) -> None:
@@ -102,13 +112,24 @@ class Foreground:
         # A background of another view is worse than none.
         if not still or (self._latest and self._latest[-1].small.image.shape != small.image.shape):
             self._background.clear()
+            self._lasting.clear()
             self._latest.clear()
             self._frames = 0
+            self._spacing = _KEPT_EVERY
         # Frames in a row show the same vehicles: those farther apart tell road from traffic.
         if self._frames % _KEPT_EVERY == 0:
             self._background.append(_Kept(small, self._time))
+        if self._frames % self._spacing == 0:
+            self._lasting.append(_Kept(small, self._time))
+            self._spread_out()
         self._latest.append(_Kept(small, self._time))
         self._frames += 1
+
+    def _spread_out(self) -> None:
+        """Once all places are taken, go on with every second frame, so that they last longer."""
+        if len(self._lasting) == _KEPT and self._spacing < _LARGEST_SPACING:
+            self._lasting = deque(list(self._lasting)[::2], maxlen=_KEPT)
+            self._spacing *= 2
 
     @property
     def is_known(self) -> bool:
@@ -124,6 +145,7 @@ class Foreground:
     def learn_background(self) -> None:
         """Learn the whole background from the frames that are kept now."""
         self._whole = median([each.small.image for each in self._background])
+        self._whole_lasting = median([each.small.image for each in self._lasting])
         self._learnt_at = self._frames
 
     def history(self) -> Iterator[tuple[float, Array]]:
@@ -183,9 +205,9 @@ class Foreground:
             return None
         # The whole background is known for this frame; else that of the neighbourhood is enough.
         if self._learnt_at == self._frames:
-            background = self._whole[rows, columns]
+            background = self._whole_lasting[rows, columns]
         else:
-            background = median([each.small.image[rows, columns] for each in self._background])
+            background = median([each.small.image[rows, columns] for each in self._lasting])
         moving = _moving(piece, background)
         # From here on in px of the piece; the outline goes back to px of the frame.
         inner = centre * small.zoom - corner

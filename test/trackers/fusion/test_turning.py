@@ -88,6 +88,7 @@ def test_a_vehicle_that_turns_is_followed_by_its_outline():
 
 def test_a_turn_that_the_doubt_comes_late_for_is_proven_at_once():
     assert drive(turns=0.08, late=11)[0][0] is not None
+    assert drive(turns=0.04, late=20)[0][0] is not None
 
 
 def test_a_shadow_keeps_its_extent_while_the_vehicle_turns():
@@ -131,6 +132,29 @@ def test_the_turn_is_over_when_the_filter_knows_the_vehicle_again():
     assert not any(given[given.index(True) + PROOF_FRAMES - 1 :])
 
 
+def test_the_turn_goes_on_while_the_outline_still_changes_its_shape():
+    """The filter knows each side as it comes; the vehicle becomes narrower for 24 frames."""
+    motion = PerspectiveMotion(START, np.zeros(2), 0.0)
+    margins = (np.zeros(2), np.zeros(2))
+    outline = Outline(START, START + SIZE)
+    branch = Branch(motion, SIZE, margins, outline, np.zeros(2), is_proven=True)
+    for time in range(24):
+        size = SIZE - (time / 2, 0)
+        branch = branch._replace(outline=Outline(START, START + size)).judged(view(0.9))
+        assert not branch.is_over
+    # Coming near or going away changes the size, and not the shape.
+    for time in range(PROOF_FRAMES):
+        branch = branch._replace(outline=Outline(START, START + size * 1.05**time))
+        branch = branch.judged(view(0.9))
+    assert branch.is_over
+    # An outline of a few px never keeps its shape: after 40 frames the filter alone decides.
+    branch = branch._replace(age=41.0, clear=0)
+    for time in range(PROOF_FRAMES):
+        wide = SIZE + np.array([4.0 * (time % 2), 0.0])
+        branch = branch._replace(outline=Outline(START, START + wide)).judged(view(0.9))
+    assert branch.is_over
+
+
 def test_frames_that_were_dropped_are_not_counted_back():
     """Before the doubt every second frame is missing: ten periods are five frames."""
     foreground = Foreground()
@@ -145,7 +169,7 @@ def test_frames_that_were_dropped_are_not_counted_back():
     assert branch.age == 10.0
     assert branch.box[0] == pytest.approx(centres[-1], abs=1.5)
     assert branch.velocity == pytest.approx([SPEED, 0.0], abs=0.2)
-    assert Branch.begun(foreground, motion, Sighting(40.0, centres[-6], SIZE)) is None
+    assert Branch.begun(foreground, motion, Sighting(50.0, centres[-6], SIZE)) is None
 
 
 def test_frames_of_another_size_begin_anew():

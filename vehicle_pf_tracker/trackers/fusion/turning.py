@@ -15,6 +15,7 @@ Outlines are found before a standing camera.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -48,8 +49,12 @@ _LEAST_COVERED, _MOST_COVERED = 0.6, 2.0
 road, and the outline the shadow; beyond, parts are missing or another vehicle has merged. Both are
 choices: a shadow may be as large as the vehicle."""
 _FURTHEST = 40.0
-"""Frames after the doubt began within which a turn is proven: a turn by 90 degrees takes 20 (scene
-`turn`), and leaves the path in its first half."""
+"""Frames after the last clear sighting within which a turn is proven, and its outline has to keep
+its shape: a turn by 90 degrees takes 20 (scene `turn`), and leaves the path in its first half."""
+_SETTLED = 0.1
+"""Largest change of the logarithm of width over height while a turn counts as over: an outline is
+good to a tenth of a vehicle of 20 px, while one that still turns changes by .3 in 8 frames (scene
+`turn` at 3 px per frame)."""
 _VELOCITY_GAIN = 0.3
 """Share of an outline's displacement that its velocity takes on, as `motion.gain` of the peak's."""
 
@@ -76,7 +81,9 @@ class Branch(NamedTuple):
     is_proven : bool
         True for a vehicle that turns.
     clear : int
-        Frames in a row in which the filter has recognised it since.
+        Frames in a row in which the filter has recognised it since, at a shape that stays.
+    shape : float
+        Logarithm of the outline's width over its height when these began.
     """
 
     motion: PerspectiveMotion
@@ -88,6 +95,7 @@ class Branch(NamedTuple):
     aside: int = 0
     is_proven: bool = False
     clear: int = 0
+    shape: float = 0.0
 
     @classmethod
     def begun(
@@ -133,10 +141,16 @@ class Branch(NamedTuple):
         return new._replace(aside=aside, is_proven=self.is_proven or aside >= _CONFIRMED)
 
     def judged(self, view: View) -> Branch:
-        """Judge whether the filter recognises the vehicle again."""
+        """Judge whether the filter recognises the vehicle again, and the turn is over."""
         # Before the proof the filter knows the vehicle as it was, which proves no turn to be over.
         is_clear = self.is_proven and view.at(self.box[0]) > CLEAR_RESPONSE
-        return self._replace(clear=self.clear + 1 if is_clear else 0)
+        width, height = self.outline.size.tolist()
+        shape = math.log(width / height)
+        # The filter learns each side as it comes: its box would stay as wide as it is now. But
+        # outlines of a few px never settle, and a turn does not last longer.
+        if is_clear and (abs(shape - self.shape) < _SETTLED or self.age > _FURTHEST):
+            return self._replace(clear=self.clear + 1)
+        return self._replace(clear=int(is_clear), shape=shape)
 
     @property
     def is_over(self) -> bool:
