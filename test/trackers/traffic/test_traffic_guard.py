@@ -23,7 +23,7 @@ GROUND = np.random.default_rng(6).integers(90, 120, (HEIGHT, WIDTH, 3)).astype(n
 
 EXPECTED = {
     30: [
-        (1, "TRACKING", 74.1, 117.2, 87.2),
+        (1, "TRACKING", 74.1, 120.7, 88.4),
         (2, "TRACKING", 323.9, 182.6, 51.5),
         (3, "TRACKING", 375.5, 183.1, 24.8),
     ],
