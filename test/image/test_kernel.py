@@ -84,18 +84,18 @@ numba_counts.compare_counts.prepare()
 assert ("numba" in sys.modules) == (sys.argv[1] == "first"), sys.argv
 counts = np.array([[3, 1, 0], [0, 0, 4]], np.int32)
 scale = np.sqrt([0.75, 0.25, 0.0]), np.sqrt(np.arange(9.0))
-for totals in ([4, 4], [4, 4, 4]):
-    for _ in range(300):
-        try:
-            print(*numba_counts.compare_counts(counts, np.array(totals), scale).round(9))
-        except IndexError as error:
-            print(error)
 for arguments in [(counts, np.array([4.0, 4.0]), scale), (counts.T, np.array([4, 4]), scale)]:
     try:
         numba_counts.compare_counts(*arguments)
         print("taken")
     except TypeError as error:
         pass
+for totals in ([4, 4], [4, 4, 4]):
+    for _ in range(300):
+        try:
+            print(*numba_counts.compare_counts(counts, np.array(totals), scale).round(9))
+        except IndexError as error:
+            print(error)
 # numba itself beside linked code, in one process.
 import numba
 assert numba.njit("float64(float64[::1])")(lambda values: values.sum())(np.ones(3)) == 3

@@ -12,5 +12,5 @@ gradients), with types from `numba_types`.
 
 A `kernel` is compiled when it is first called (`compilation`, the only module that imports numba).
 Its `object_code` is kept on disk (`kernel_store`), and `linking` makes a function of it in later
-processes, which checks its `arguments`.
+processes, whose first `arguments` are checked.
 """

@@ -8,11 +8,14 @@ from __future__ import annotations
 import functools
 import importlib
 import inspect
+import itertools
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from types import FunctionType, ModuleType
 from typing import Any, TypeVar, cast
+
+from vehicle_pf_tracker.image.kernels.arguments import ArrayForm, check
 
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 
@@ -21,6 +24,10 @@ NOT_KEPT = (
     "seconds: set NUMBA_CACHE_DIR to a folder that can be written"
 )
 
+_CHECKED_CALLS = 100
+"""Calls of a kernel whose arrays are checked. Types and layouts follow from the few places that
+call it, not from the images; a check of each call takes as long as the call itself. A choice: some
+images' calls."""
 _notices: list[str] = []
 _making = threading.RLock()
 """Held while a kernel is made: a node loads its kernels in a thread beside the one that asks."""
@@ -106,7 +113,21 @@ class Kernel(Part):
             linked: Callable[..., Any] = linking.linked(code, self.name)
         except linking.LinkError:
             return None
-        return linked
+        return self._checked_at_first(linked, code.arrays)
+
+    def _checked_at_first(
+        self, linked: Callable[..., Any], arrays: Sequence[ArrayForm]
+    ) -> Callable[..., Any]:
+        """Check what the first calls give; then call the linked function without it."""
+        calls = itertools.count(1)
+
+        def checked(*arguments: Any) -> Any:
+            check(arrays, arguments)
+            if next(calls) == _CHECKED_CALLS:
+                self._ready = linked
+            return linked(*arguments)
+
+        return checked
 
     def _compiled(self) -> Callable[..., Any]:
         """Compile it, and keep its object code."""

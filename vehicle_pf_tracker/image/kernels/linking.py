@@ -25,7 +25,6 @@ from typing import Any, NamedTuple
 import llvmlite.binding as llvm
 import numpy as np
 
-from vehicle_pf_tracker.image.kernels.arguments import check
 from vehicle_pf_tracker.image.kernels.object_code import ObjectCode
 
 
@@ -34,7 +33,7 @@ class LinkError(RuntimeError):
 
 
 def linked(compiled: ObjectCode, name: str) -> Callable[..., Any]:
-    """Make a Python function of a kernel's object code.
+    """Make a Python function of a kernel's object code, which trusts its arguments.
 
     Parameters
     ----------
@@ -69,13 +68,7 @@ def linked(compiled: ObjectCode, name: str) -> Callable[..., Any]:
         sys.modules[__name__], name, f"compiled {name}", wrapper, environment, (engine,)
     )
     _engines.append(engine)
-    forms = compiled.arrays
-
-    def checked(*arguments: Any) -> Any:
-        check(forms, arguments)
-        return made(*arguments)
-
-    return checked
+    return made
 
 
 class _Runtime(NamedTuple):
