@@ -142,10 +142,14 @@ def may_compile(choice: str) -> bool:
 @functools.cache
 def load_numba() -> Kernels:
     """Make numba's kernels; once in a process."""
-    if importlib.util.find_spec("numba") is None:
-        raise ModuleNotFoundError("No module named 'numba'", name="numba")
     # Imported late: what is there may be broken, and only here is it known to be needed.
-    store = importlib.import_module(f"{__package__}.kernel_store")
+    try:
+        store = importlib.import_module(f"{__package__}.kernel_store")
+    except ModuleNotFoundError:
+        if importlib.util.find_spec("numba") is None:
+            # Not of llvmlite, which comes with it and would say nothing to a user.
+            raise ModuleNotFoundError("No module named 'numba'", name="numba") from None
+        raise
     if not store.has_any():
         # Half a second, for the sentence about a broken one; where kernels are kept it worked.
         importlib.import_module("numba")
