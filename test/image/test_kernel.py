@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.image.kernels.arguments import ArrayForm, check
-from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
+from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined, notices
 from vehicle_pf_tracker.image.kernels.object_code import ObjectCode, from_bytes, to_bytes
 
 REALS = ArrayForm(0, None, np.dtype("<f8"), 1, is_packed=True, is_written=False)
 COUNTS = ArrayForm(2, 0, np.dtype("<i4"), 2, is_packed=False, is_written=True)
+CODE = ObjectCode(b"\n\0code", "w", "e", ("<f8",), (REALS, COUNTS), ("sqrt", "memset"))
 
 
 def test_arrays_of_their_forms_are_taken():
@@ -37,9 +38,8 @@ def test_an_array_that_cannot_be_written_is_refused():
 
 
 def test_object_code_is_what_it_was_when_it_is_read_and_nothing_when_torn():
-    code = ObjectCode(b"\n\0code", "w", "e", ("<f8",), (REALS, COUNTS), ("sqrt", "memset"))
-    written = to_bytes(code)
-    assert from_bytes(written) == code
+    written = to_bytes(CODE)
+    assert from_bytes(written) == CODE
     assert from_bytes(written[:-1]) is None
     assert from_bytes(b"") is None
 
@@ -74,6 +74,45 @@ def test_code_follows_from_the_texts_numbers_and_types(module, monkeypatch):
     texts[module.__name__] = "text"
     other = compiled("float64", "float64")(module.twice.function)
     assert other.source != before
+
+
+def test_a_change_of_a_part_in_another_module_counts(module, monkeypatch):
+    other = ModuleType("made_beside")
+    exec("def half(number): return number", vars(other))
+    monkeypatch.setitem(sys.modules, other.__name__, other)
+    texts = {module.__name__: "text", other.__name__: "text"}
+    name = "vehicle_pf_tracker.image.kernels.kernel.inspect.getsource"
+    monkeypatch.setattr(name, lambda module: texts[module.__name__])
+    module.half = inlined(other.half)
+    before = module.twice.source
+    texts[other.__name__] = "another text"
+    assert module.twice.source != before
+
+
+@pytest.fixture
+def without_notices(monkeypatch):
+    monkeypatch.setattr("vehicle_pf_tracker.image.kernels.kernel._notices", [])
+
+
+def test_a_numba_whose_code_cannot_be_taken_or_linked_is_told_of(
+    module, monkeypatch, without_notices
+):
+    pytest.importorskip("numba", reason="numba is not installed")
+    room = "vehicle_pf_tracker.image.kernels"
+    linking = pytest.importorskip(f"{room}.linking")
+    monkeypatch.setattr(f"{room}.kernel_store.read", lambda *key: CODE)
+
+    def cannot(*values):
+        raise linking.LinkError("nothing here is called NRT_New")
+
+    monkeypatch.setattr(f"{room}.linking.linked", cannot)
+    compilation = pytest.importorskip(f"{room}.compilation")
+    monkeypatch.setattr(compilation, "compiled_by_numba", lambda *values: module.twice.function)
+    monkeypatch.setattr(compilation, "is_disabled", lambda: True)
+    monkeypatch.setattr(f"{room}.kernel.inspect.getsource", lambda module: "text")
+    assert module.twice(4) is None  # its Python
+    (told,) = notices()
+    assert "cannot be linked in later processes (nothing here is called NRT_New)" in told
 
 
 PROGRAM = """

@@ -98,7 +98,7 @@ CODE = ObjectCode(b"code", "wrapper", "environment", ("<f8",), (), ("sqrt",))
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    return tmp_path / "vehicle_pf_tracker"
+    return tmp_path
 
 
 def test_the_folder_of_ones_choice_has_the_kernel_as_it_is_now(folder):
@@ -109,7 +109,10 @@ def test_the_folder_of_ones_choice_has_the_kernel_as_it_is_now(folder):
     kernel_store.write("a.module", "second", "its text", CODE)
     kernel_store.write("a.module", "first", "another text", CODE)
     assert kernel_store.read("a.module", "first", "its text") is None
-    assert [file.name.partition(".")[0] for file in folder.iterdir()] == ["module", "module"]
+    assert [file.name.partition(".")[0] for file in folder.rglob("*.kernel")] == [
+        "module",
+        "module",
+    ]
 
 
 def test_another_setting_of_numba_has_code_of_its_own(folder, monkeypatch):
@@ -121,4 +124,21 @@ def test_another_setting_of_numba_has_code_of_its_own(folder, monkeypatch):
     monkeypatch.delenv("NUMBA_OPT")
     kernel_store._machine.cache_clear()
     assert kernel_store.read("a.module", "first", "its text") == CODE
-    assert len(list(folder.iterdir())) == 2
+    assert len(list(folder.rglob("*.kernel"))) == 2
+
+
+def test_a_file_that_is_cut_short_is_none_and_one_that_cannot_be_written_leaves_nothing(
+    folder, monkeypatch
+):
+    kernel_store.write("a.module", "first", "its text", CODE)
+    (file,) = folder.rglob("*.kernel")
+    file.write_bytes(file.read_bytes()[:-1])
+    assert kernel_store.read("a.module", "first", "its text") is None
+
+    def full(self, target):
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(OSError, match="No space left"):
+        kernel_store.write("a.module", "first", "its text", CODE)
+    assert list(folder.rglob("*.*")) == [file]

@@ -29,9 +29,10 @@ _SAMPLES = 10
 moves to and fro, like leaves, has more colours than a few."""
 _BETWEEN = 2
 """Images from one of the first samples to the next: most pixels are free in two of ten."""
-_APART = 1 / 15
-"""Interval of images, two of 30 Hz, s, from which each of the first ones is a sample: by then what
-drives has moved on."""
+_APART = 0.06
+"""Interval of images, about two of 30 Hz, s, from which each of the first ones is a sample: by then
+what drives has moved on. A choice; between those of cameras of 15 and 20 Hz, so that the jitter of
+stamps decides nothing."""
 _AGREEING = 2
 """Least samples of the pixel's colour for it to be background: one may be of a vehicle."""
 _LOOKED_AT = 4

@@ -10,7 +10,7 @@ modules of compiled functions: `numba_placing` (part of a frame that windows cov
 `numba_edges` and `numba_counts` (edge points), `numba_mean_shift` and `numba_cells` (oriented
 gradients), with types from `numba_types`.
 
-A `kernel` is compiled when it is first called (`compilation`, the only module that imports numba).
+A `kernel` is compiled when it is first called (`compilation`, by numba).
 Its `object_code` is kept on disk (`kernel_store`), and `linking` makes a function of it in later
 processes, whose first `arguments` are checked.
 """

@@ -52,7 +52,6 @@ def check(forms: Sequence[ArrayForm], arguments: Sequence[Any]) -> None:
     TypeError
         If an array has other elements, axes or strides than the kernel was compiled for.
     """
-    # At each call of a kernel: unpacked, and of the flags only what is asked for.
     for argument, member, dtype, ndim, is_packed, is_written in forms:
         value = arguments[argument] if member is None else arguments[argument][member]
         if (

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Compilation of kernels by numba, which is imported here and nowhere else.
+"""Compilation of kernels by numba.
 
 How long it takes follows from what numba writes out for each expression. So kernels fill arrays,
 copy them and search them in loops: `a[:] = b` alone takes a second and more, as it brings the
@@ -12,7 +12,7 @@ are a function of their own for each type; and `x = a[i, 0]` is shorter than `x,
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from types import FunctionType
 from typing import Any
 
@@ -53,8 +53,23 @@ def compiled_by_numba(
     return compiled
 
 
-def object_code(compiled: Any) -> ObjectCode | None:
-    """Return the object code of a compiled function; None where it cannot be loaded by itself."""
+class OtherNumbaError(RuntimeError):
+    """A version of numba from which no object code can be taken."""
+
+
+def is_disabled() -> bool:
+    """Tell whether nothing is to be compiled (NUMBA_DISABLE_JIT), as those ask who seek a fault."""
+    return bool(numba.config.DISABLE_JIT)
+
+
+def object_code(compiled: Any) -> ObjectCode:
+    """Return the object code of a compiled function.
+
+    Raises
+    ------
+    OtherNumbaError
+        If numba does not give it as it did.
+    """
     try:
         (result,) = compiled.overloads.values()
         arrays = tuple(_arrays_of(result.signature.args))
@@ -63,9 +78,8 @@ def object_code(compiled: Any) -> ObjectCode | None:
         module = library._final_module
         names = result.fndesc
         constants = tuple(np.dtype(constant).str for constant in result.environment.consts)
-    # Of another numba, or of a function that is not compiled (NUMBA_DISABLE_JIT).
-    except (AttributeError, TypeError, ValueError):
-        return None
+    except (AttributeError, TypeError, ValueError) as error:
+        raise OtherNumbaError(f"numba {numba.__version__}: {error}") from error
     symbols = [function.name for function in module.functions if function.is_declaration]
     called = tuple(name for name in symbols if not name.startswith("llvm."))
     return ObjectCode(
@@ -100,12 +114,10 @@ def _copied(
     if module not in namespaces:
         # Entered before it is filled, as parts call parts of the same module.
         namespace = namespaces[module] = dict(vars(sys.modules[module]))
-        namespace |= {
-            name: numba.njit(fastmath=_FASTMATH, no_cpython_wrapper=True, no_cfunc_wrapper=True)(
-                _copied(part.function, is_part, namespaces)
-            )
-            for name, part in _parts(namespace, is_part).items()
-        }
+        build = numba.njit(fastmath=_FASTMATH, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+        for name, value in vars(sys.modules[module]).items():
+            if is_part(value):
+                namespace[name] = build(_copied(value.function, is_part, namespaces))
     copy = FunctionType(
         function.__code__, namespaces[module], function.__name__, function.__defaults__
     )
@@ -113,7 +125,3 @@ def _copied(
     copy.__module__ = module
     copy.__qualname__ = function.__qualname__
     return copy
-
-
-def _parts(namespace: Mapping[str, Any], is_part: Callable[[Any], bool]) -> dict[str, Any]:
-    return {name: value for name, value in namespace.items() if is_part(value)}

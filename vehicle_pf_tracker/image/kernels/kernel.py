@@ -24,6 +24,11 @@ NOT_KEPT = (
     "seconds: set NUMBA_CACHE_DIR to a folder that can be written"
 )
 
+NOT_LINKED = (
+    "compiled kernels cannot be linked in later processes ({}); each start compiles them again, "
+    "for some seconds: install another version of numba"
+)
+
 _CHECKED_CALLS = 100
 """Calls of a kernel whose arrays are checked. Types and layouts follow from the few places that
 call it, not from the images; a check of each call takes as long as the call itself. A choice: some
@@ -111,7 +116,8 @@ class Kernel(Part):
         linking = _room("linking")
         try:
             linked: Callable[..., Any] = linking.linked(code, self.name)
-        except linking.LinkError:
+        except linking.LinkError as error:
+            _note(NOT_LINKED, error)
             return None
         return self._checked_at_first(linked, code.arrays)
 
@@ -135,15 +141,18 @@ class Kernel(Part):
         compiled: Callable[..., Any] = compilation.compiled_by_numba(
             self.function, self._signature, lambda value: isinstance(value, Part)
         )
-        code = compilation.object_code(compiled)
-        if code is not None:
-            store = _room("kernel_store")
-            try:
-                store.write(self.function.__module__, self.name, self.source, code)
-            except OSError as error:
-                # Once: all kernels have the same folder, and so the same trouble.
-                if not _notices:
-                    _notices.append(NOT_KEPT.format(str(error).partition("\n")[0]))
+        # Then it is Python as before: there is nothing to keep.
+        if compilation.is_disabled():
+            return compiled
+        try:
+            code = compilation.object_code(compiled)
+        except compilation.OtherNumbaError as error:
+            _note(NOT_LINKED, error)
+            return compiled
+        try:
+            _room("kernel_store").write(self.function.__module__, self.name, self.source, code)
+        except OSError as error:
+            _note(NOT_KEPT, error)
         return compiled
 
 
@@ -171,6 +180,12 @@ def kernels_of(module: ModuleType) -> Iterator[Kernel]:
 def notices() -> Sequence[str]:
     """Return the problems met while compiling, one sentence each; later ones join them."""
     return _notices
+
+
+def _note(trouble: str, error: Exception) -> None:
+    """Note a problem once: all kernels have the same folder and numba, and so the same trouble."""
+    if not _notices:
+        _notices.append(trouble.format(str(error).partition("\n")[0]))
 
 
 def _modules_of(function: FunctionType, seen: set[str]) -> set[str]:

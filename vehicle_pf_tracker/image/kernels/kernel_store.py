@@ -8,6 +8,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import os
+import pkgutil
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -20,6 +21,8 @@ import numpy as np
 
 from vehicle_pf_tracker.image.kernels.object_code import ObjectCode, from_bytes, to_bytes
 
+_MADE_BY = ("compilation.py", "object_code.py", "arguments.py")
+"""Modules whose change makes other object code, or another file of it."""
 _DIGITS = 12
 """Digits of a sum in a file's name: some dozen files of a folder are told apart by far fewer."""
 
@@ -36,7 +39,10 @@ def read(module: str, name: str, source: str) -> ObjectCode | None:
     """
     for folder in _folders():
         with suppress(OSError):
-            return from_bytes((folder / _file_name(module, name, source)).read_bytes())
+            compiled = from_bytes((folder / _file_name(module, name, source)).read_bytes())
+            # A torn one that cannot be replaced does not hide that of another folder.
+            if compiled is not None:
+                return compiled
     return None
 
 
@@ -53,16 +59,25 @@ def write(module: str, name: str, source: str, compiled: ObjectCode) -> None:
         file = folder / _file_name(module, name, source)
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            # Under another name until it is whole: other processes read meanwhile.
-            with tempfile.NamedTemporaryFile(dir=folder, delete=False) as part:
-                part.write(to_bytes(compiled))
-            Path(part.name).replace(file)
+            _write_whole(file, to_bytes(compiled))
         except OSError as error:
             problem = error
             continue
         _remove_older(file)
         return
     raise problem
+
+
+def _write_whole(file: Path, content: bytes) -> None:
+    """Write a file under another name until it is whole: other processes read meanwhile."""
+    with tempfile.NamedTemporaryFile(dir=file.parent, delete=False) as part:
+        try:
+            part.write(content)
+            part.close()
+            Path(part.name).replace(file)
+        except OSError:
+            Path(part.name).unlink(missing_ok=True)
+            raise
 
 
 def has_any() -> bool:
@@ -77,14 +92,17 @@ def has_any() -> bool:
 
 def _folders() -> Iterator[Path]:
     """List the folders to look in and to write to, the first one first."""
+    here = Path(__file__).parent
+    # Two installations that share a folder would else remove each other's as older ones.
+    own = hashlib.sha256(os.fsencode(here)).hexdigest()[:_DIGITS]
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     if chosen:
-        yield Path(chosen) / "vehicle_pf_tracker"
+        yield Path(chosen) / "vehicle_pf_tracker" / own
         return
-    yield Path(__file__).parent / "__pycache__"
+    yield here / "__pycache__"
     # A package that root installed: each user has a cache.
     users = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    yield Path(users) / "vehicle_pf_tracker" / "kernels"
+    yield Path(users) / "vehicle_pf_tracker" / "kernels" / own
 
 
 def _file_name(module: str, name: str, source: str) -> str:
@@ -112,6 +130,8 @@ def _machine() -> str:
         llvm.get_host_cpu_name(),
         llvm.get_host_cpu_features().flatten(),
     ]
+    # How code is made and written. Read, as compilation imports numba.
+    parts += [pkgutil.get_data(__package__, name) for name in _MADE_BY]
     # They may choose another processor, or another optimisation.
     parts += [
         f"{name}={value}"

@@ -29,7 +29,7 @@ from vehicle_pf_tracker.image.kernels.object_code import ObjectCode
 
 
 class LinkError(RuntimeError):
-    """Object code that cannot be linked here; numba itself loads or compiles it then."""
+    """Object code that cannot be linked here; numba compiles the kernel anew then."""
 
 
 def linked(compiled: ObjectCode, name: str) -> Callable[..., Any]:
@@ -72,7 +72,7 @@ def linked(compiled: ObjectCode, name: str) -> Callable[..., Any]:
 
 
 class _Runtime(NamedTuple):
-    """What linked code needs in this process.
+    """Machine and functions that code is linked with in this process.
 
     Attributes
     ----------
@@ -137,8 +137,8 @@ def _extension(path: str) -> ModuleType:
 _engines: list[Any] = []
 """Owners of the code, kept for good: functions, and addresses below, stay what they are."""
 _unpickled: dict[int, Any] = {}
-"""What compiled code needs as Python's objects, by the address of its pickled bytes in the code:
-types of the arrays that it returns, and errors' texts."""
+"""Python's objects that compiled code uses, by the address of their pickled bytes in the code:
+types of the arrays that it returns, and texts of errors."""
 
 
 def _unpickled_once(data: int, length: int, _digest: int) -> Any:
