@@ -67,6 +67,21 @@ def test_one_beside_it_that_takes_no_sigterm_is_not_waited_for(tmp_path, monkeyp
     assert not any(one.is_alive() for one in left)
 
 
+class ReapedElsewhere:
+    """A process whose status another thread has taken, and notes after some looks."""
+
+    def __init__(self):
+        self._statuses = iter([None, None, -signal.SIGKILL, -signal.SIGKILL])
+
+    @property
+    def exitcode(self):
+        return next(self._statuses)
+
+
+def test_a_status_that_the_pool_took_first_is_waited_for():
+    assert processes._status_of(ReapedElsewhere()) == -signal.SIGKILL
+
+
 def test_without_a_result_for_it_the_end_of_a_process_is_an_error():
     with pytest.raises(InputError, match="a worker process was ended from outside"):
         list(run_in_processes(answer, [2], 1))

@@ -10,6 +10,7 @@ import os
 import signal
 import subprocess
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -24,6 +25,8 @@ ResultT = TypeVar("ResultT")
 
 PATIENCE = 10.0
 """Seconds that a child gets to end by itself: a node on a busy machine needs a few to clean up."""
+_LOOK = 0.01
+"""Interval of looks for the status of a child, s: short beside the time in which one ends."""
 
 
 def run_in_processes(
@@ -116,14 +119,24 @@ def _in_pool(
 
 def _how_it_ended(processes: Sequence[multiprocessing.process.BaseProcess]) -> str:
     """Say how the first of some processes ended, in words that follow "was ended"."""
-    for process in processes[:1]:
-        process.join(PATIENCE)
-    status = processes[0].exitcode if processes else None
+    status = _status_of(processes[0]) if processes else None
     if status is None or status >= 0:
         return f"with status {status}"
     if -status == signal.SIGKILL:
         return "by SIGKILL, perhaps out of memory: fewer --workers may help"
     return f"by {signal.Signals(-status).name}, perhaps by a library that its file is too much for"
+
+
+def _status_of(process: multiprocessing.process.BaseProcess) -> int | None:
+    """Wait for the status of a process; None where it goes on for longer than `PATIENCE`.
+
+    Joining it is not enough: a thread of the pool waits for it too, and where that is first, the
+    status is not known here until it has noted it.
+    """
+    end = time.monotonic() + PATIENCE
+    while process.exitcode is None and time.monotonic() < end:
+        time.sleep(_LOOK)
+    return process.exitcode
 
 
 def _prepare() -> None:

@@ -142,16 +142,16 @@ def may_compile(choice: str) -> bool:
 @functools.cache
 def load_numba() -> Kernels:
     """Make numba's kernels; once in a process."""
-    # Imported late: what is there may be broken, and only here is it known to be needed.
-    try:
-        store = importlib.import_module(f"{__package__}.kernel_store")
-    except ModuleNotFoundError:
-        if importlib.util.find_spec("numba") is None:
-            # Not of llvmlite, which comes with it and would say nothing to a user.
-            raise ModuleNotFoundError("No module named 'numba'", name="numba") from None
-        raise
-    if not store.has_any():
-        # Half a second, for the sentence about a broken one; where kernels are kept it worked.
+    # Half a second, for the sentence about one that is absent or broken; where kernels are kept, it
+    # has worked.
+    if importlib.util.find_spec("numba") is None or not _are_kept():
         importlib.import_module("numba")
     kernels: Kernels = importlib.import_module(f"{__package__}.numba_kernels").NumbaKernels()
     return kernels
+
+
+def _are_kept() -> bool:
+    """Tell whether kernels were compiled before, by this numba for this processor."""
+    # Imported late: llvmlite comes with numba.
+    kept: bool = importlib.import_module(f"{__package__}.kernel_store").has_any()
+    return kept
