@@ -48,7 +48,7 @@ EFFORT = 6
 """WebP's greatest effort, which takes a minute: 0.92 MB, where the default leaves 1.34 MB."""
 HOLD_MS = 1500
 """Time that the last picture stays, ms."""
-_GAP = 4
+GAP_PX = 4
 """Height of the line between the two, px."""
 
 
@@ -56,7 +56,7 @@ def pictures(frames: Sequence[SceneFrame]) -> Iterator[Frame]:
     """Track through `frames` with both variants; give every picture, one above the other."""
     shown = [_annotated(name, frames) for name in CONTESTANTS]
     for above, below in zip(*shown, strict=True):
-        line = np.full((_GAP, above.shape[1], 3), 255, np.uint8)
+        line = np.full((GAP_PX, above.shape[1], 3), 255, np.uint8)
         yield np.vstack([above, line, below])
 
 

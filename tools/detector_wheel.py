@@ -17,18 +17,18 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
+from tools import ROOT
 from vehicle_pf_tracker.following.networks.known_networks import (
     DETECTOR_PACKAGE,
     KNOWN_NETWORKS,
     KnownNetwork,
 )
 
-ROOT = Path(__file__).parents[1]
 VERSION = "0.1.1"
 """Version of the makers' release, which they call 0.1.1rc0: pip takes no candidates unasked."""
-# Files of the wheel.
-_PROJECT = """\
+_PYPROJECT = """\
 [build-system]
 requires = ["setuptools>=64"]
 build-backend = "setuptools.build_meta"
@@ -56,12 +56,27 @@ SHA-256 of the file in this package: {digest}
 """
 
 
-def build(network: Path, out: Path) -> tuple[Path, str]:
-    """Build the wheel, and return its path and what is known of the file.
+class Built(NamedTuple):
+    """Wheel that was built.
+
+    Attributes
+    ----------
+    wheel : Path
+        Its file.
+    verdict : str
+        Sentence on whether the network in it is known to be that of its makers.
+    """
+
+    wheel: Path
+    verdict: str
+
+
+def build(file: Path, out: Path) -> Built:
+    """Build the wheel of a network's file.
 
     Parameters
     ----------
-    network : Path
+    file : Path
         The file, under its makers' name.
     out : Path
         Folder for the wheel.
@@ -73,38 +88,25 @@ def build(network: Path, out: Path) -> tuple[Path, str]:
     subprocess.CalledProcessError
         If pip cannot build it.
     """
-    known = {network.file: name for name, network in KNOWN_NETWORKS.items()}
-    if network.name not in known:
-        raise ValueError(f"{network.name} is none of {', '.join(known)}")
-    name = known[network.name]
-    digest = hashlib.sha256(network.read_bytes()).hexdigest()
-    verdict = _verdict(KNOWN_NETWORKS[name], digest)
+    name, network = _known(file)
+    digest = hashlib.sha256(file.read_bytes()).hexdigest()
+    verdict = _verdict(network, digest)
+    notice = _NOTICE.format(
+        file=file.name, url=network.url, licence=network.licence, digest=digest, verdict=verdict
+    )
     with tempfile.TemporaryDirectory() as folder:
-        project = Path(folder)
-        package = project / DETECTOR_PACKAGE
-        package.mkdir()
-        shutil.copy(network, package)
-        shutil.copy(ROOT / "LICENSE", project)  # Apache-2.0 as well
-        (package / "__init__.py").write_text(f'"""The file {network.name}."""\n', encoding="utf-8")
-        facts = {
-            "licence": KNOWN_NETWORKS[name].licence,
-            "package": DETECTOR_PACKAGE,
-            "version": VERSION,
-        }
-        text = _PROJECT.format(name=DETECTOR_PACKAGE.replace("_", "-"), network=name, **facts)
-        (project / "pyproject.toml").write_text(text, encoding="utf-8")
-        notice = _NOTICE.format(
-            file=network.name,
-            url=KNOWN_NETWORKS[name].url,
-            licence=KNOWN_NETWORKS[name].licence,
-            digest=digest,
-            verdict=verdict,
-        )
-        (project / "NOTICE").write_text(notice, encoding="utf-8")
-        out.mkdir(parents=True, exist_ok=True)
-        words = ["--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", str(out.absolute())]
-        subprocess.run([sys.executable, "-m", "pip", "wheel", *words, str(project)], check=True)
-    return out / f"{DETECTOR_PACKAGE}-{VERSION}-py3-none-any.whl", verdict
+        _write_project(Path(folder), name, file, notice)
+        _build_wheel(Path(folder), out)
+    return Built(out / f"{DETECTOR_PACKAGE}-{VERSION}-py3-none-any.whl", verdict)
+
+
+def _known(file: Path) -> tuple[str, KnownNetwork]:
+    """Return the name by which `--model` knows a file, and what is known of it."""
+    for name, network in KNOWN_NETWORKS.items():
+        if network.file == file.name:
+            return name, network
+    names = ", ".join(network.file for network in KNOWN_NETWORKS.values())
+    raise ValueError(f"{file.name} is none of {names}")
 
 
 def _verdict(network: KnownNetwork, digest: str) -> str:
@@ -113,8 +115,37 @@ def _verdict(network: KnownNetwork, digest: str) -> str:
     return f"It is not the sum that others state of the makers' file, {network.sha256}."
 
 
+def _write_project(folder: Path, name: str, file: Path, notice: str) -> None:
+    """Write a project of Python whose only package has the file in it."""
+    package = folder / DETECTOR_PACKAGE
+    package.mkdir()
+    shutil.copy(file, package)
+    pyproject = _PYPROJECT.format(
+        name=DETECTOR_PACKAGE.replace("_", "-"),
+        version=VERSION,
+        network=name,
+        licence=KNOWN_NETWORKS[name].licence,
+        package=DETECTOR_PACKAGE,
+    )
+    texts = {
+        package / "__init__.py": f'"""The file {file.name}."""\n',
+        folder / "pyproject.toml": pyproject,
+        folder / "NOTICE": notice,
+        folder / "LICENSE": (ROOT / "LICENSE").read_text(encoding="utf-8"),  # Apache-2.0 as well
+    }
+    for path, text in texts.items():
+        path.write_text(text, encoding="utf-8")
+
+
+def _build_wheel(project: Path, out: Path) -> None:
+    """Build the wheel of a project with what is installed: no index is asked for a builder."""
+    out.mkdir(parents=True, exist_ok=True)
+    words = ["--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", str(out.absolute())]
+    subprocess.run([sys.executable, "-m", "pip", "wheel", *words, str(project)], check=True)
+
+
 def main() -> int:
-    """Build the wheel of the file on the command line."""
+    """Build the wheel of the file on the command line, and return the status."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("network", type=Path, help="the file, as yolox_nano.onnx")
     parser.add_argument("-o", "--output", type=Path, default=Path("results/dist"))

@@ -11,41 +11,16 @@ and docs/variants.md.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from tools import rooms
+from tools import ROOT, rooms
 from tools.parameters_page import parameters_page
 from tools.rooms_picture import picture
 from tools.sros2_policy import policy
+from tools.variant_tables import TABLES, markdown_table, replace_table
 from vehicle_pf_tracker.cli.params import default_yaml
 from vehicle_pf_tracker.ros.transport import LAUNCHED_SEGMENT, profile
-from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS, Variant
-
-ROOT = Path(__file__).resolve().parents[1]
-
-BEGIN = "<!-- variants: `make config` writes this table -->\n\n"
-"""Marker before the table of variants in a page, which a reader of the page does not see."""
-END = "\n<!-- variants: end -->"
-"""Marker after it."""
-
-Column = Callable[[Variant], str]
-
-_NAME: Column = lambda variant: f"`{variant.name}`"  # noqa: E731 - a column is one expression
-_SUMMARY: Column = lambda variant: variant.summary  # noqa: E731
-
-TABLES: Mapping[str, Mapping[str, Column]] = {
-    "docs/choosing.md": {"variant": _NAME, "choose it for": lambda variant: variant.suits},
-    "docs/variants.md": {
-        "variant": _NAME,
-        "method": _SUMMARY,
-        "node": lambda variant: f"`{variant.executable}`",
-        "parameters": lambda variant: (
-            f"[config/{variant.name}.yaml](../config/{variant.name}.yaml)"
-        ),
-    },
-}
-"""Columns of the table of variants in each page, by heading."""
+from vehicle_pf_tracker.trackers.registry import NODES, VARIANTS
 
 
 def generated_files(root: Path = ROOT) -> dict[Path, str]:
@@ -62,28 +37,6 @@ def generated_files(root: Path = ROOT) -> dict[Path, str]:
     graph = rooms.reduced(rooms.rooms_graph(root / rooms.PACKAGE))
     files[root / "docs" / "images" / "rooms.svg"] = picture(graph)
     return files
-
-
-def markdown_table(columns: Mapping[str, Column], variants: Iterable[Variant]) -> str:
-    """Write a table with one row per variant."""
-    rows = [[column(variant) for column in columns.values()] for variant in variants]
-    lines = [list(columns), ["---"] * len(columns), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
-
-
-def replace_table(text: str, table: str) -> str:
-    """Put `table` between the markers in `text`.
-
-    Raises
-    ------
-    ValueError
-        If the markers are not there.
-    """
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not (begin and end):
-        raise ValueError(f"the page has no pair of markers {BEGIN.strip()!r} and {END.strip()!r}")
-    return before + begin + table + end + after
 
 
 def main() -> int:

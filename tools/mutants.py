@@ -19,10 +19,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parents[1]
+from tools import ROOT
+
 WANTED = 0.95
 """Share of the changes that tests have to notice: some changes make no difference at all, such as
 of a bound that no input reaches."""
@@ -34,10 +36,20 @@ ROOMS = {
     "toy": ("filtering/weights.py", "test/filtering/test_weights.py"),
 }
 """Modules that are changed, and the tests that have to notice, by the room's name."""
-_FOLDERS = "vehicle_pf_tracker", "laboratory", "test", "docs", "config"
-_NEEDED = (*_FOLDERS, "conftest.py", "pyproject.toml")
-"""Parts of the repository that the tests need, which are copied: counting's roads are drawn in the
-laboratory."""
+COPIED = (
+    "vehicle_pf_tracker",
+    "laboratory",
+    "test",
+    "docs",
+    "config",
+    "conftest.py",
+    "pyproject.toml",
+)
+"""Parts of the repository that the tests need; counting's roads are drawn in the laboratory."""
+ALIVE = {"survived", "no tests"}
+"""Verdicts of mutmut on a change that no test noticed; a change that never ends is noticed."""
+UNTRIED = "not checked"
+"""Verdict of mutmut on a change that is not in the sample."""
 _CONFIGURATION = """[mutmut]
 source_paths=vehicle_pf_tracker
 only_mutate=vehicle_pf_tracker/{modules}
@@ -56,9 +68,28 @@ use_git_change_detection=false
 track_dependencies=false
 """
 
+Mutmut = Callable[..., str]
+"""Run mutmut in a folder with some words, and return what it prints."""
 
-def survivors(room: str, sample: str = "") -> tuple[int, list[str]]:
-    """Change the modules of `room`; return the number of changes, and the names of survivors.
+
+class Outcome(NamedTuple):
+    """Number of changes that were tried, and the names of those that no test noticed."""
+
+    tried: int
+    alive: list[str]
+
+
+def run_mutmut(folder: Path, *words: str) -> str:
+    """Run mutmut in a folder, and return what it prints; end this program where it fails."""
+    command = [sys.executable, "-m", "mutmut", *words]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode:
+        sys.exit(f"mutmut {words[0]} failed:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+    return done.stdout
+
+
+def survivors(room: str, sample: str = "", mutmut: Mutmut = run_mutmut) -> Outcome:
+    """Change the modules of `room` one place at a time, and print the changes that survive.
 
     Parameters
     ----------
@@ -66,39 +97,36 @@ def survivors(room: str, sample: str = "") -> tuple[int, list[str]]:
         One of `ROOMS`.
     sample : str
         Last digits of the changes that are tried; all changes are tried if it is empty.
+    mutmut : callable
+        How mutmut is run.
     """
-    modules, tests = ROOMS[room]
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
-        for name in _NEEDED:
-            copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
-            copy(ROOT / name, folder / name)
-        (folder / "setup.cfg").write_text(_CONFIGURATION.format(modules=modules, tests=tests))
-        _mutmut(folder, "run", "--max-children", "1", *(f"*__mutmut_*{digit}" for digit in sample))
-        listed = _mutmut(folder, "results", "--all", "true")
-        verdicts = {
-            name: verdict
-            for name, verdict in re.findall(r"^\s*(\S+): (.+)$", listed, re.M)
-            if verdict != UNTRIED
-        }
+        _copy_repository(folder, room)
+        mutmut(folder, "run", "--max-children", "1", *(f"*__mutmut_*{digit}" for digit in sample))
+        verdicts = _verdicts(mutmut(folder, "results", "--all", "true"))
         alive = [name for name, verdict in verdicts.items() if verdict in ALIVE]
         for name in alive:
-            print(_mutmut(folder, "show", name))
-    return len(verdicts), alive
+            print(mutmut(folder, "show", name))
+    return Outcome(len(verdicts), alive)
 
 
-ALIVE = {"survived", "no tests"}
-"""Verdicts of mutmut on a change that no test noticed; a change that never ends is noticed."""
-UNTRIED = "not checked"
-"""Verdict of mutmut on a change that is not in the sample."""
+def _copy_repository(folder: Path, room: str) -> None:
+    """Copy into a folder what the tests of a room need, and tell mutmut what it changes there."""
+    for name in COPIED:
+        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
+        copy(ROOT / name, folder / name)
+    modules, tests = ROOMS[room]
+    (folder / "setup.cfg").write_text(_CONFIGURATION.format(modules=modules, tests=tests))
 
 
-def _mutmut(folder: Path, *words: str) -> str:
-    command = [sys.executable, "-m", "mutmut", *words]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode:
-        sys.exit(f"mutmut {words[0]} failed:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
-    return done.stdout
+def _verdicts(listed: str) -> dict[str, str]:
+    """Read the verdict on each change that was tried from what mutmut lists."""
+    return {
+        name: verdict
+        for name, verdict in re.findall(r"^\s*(\S+): (.+)$", listed, re.M)
+        if verdict != UNTRIED
+    }
 
 
 def main(words: Sequence[str]) -> int:
@@ -113,10 +141,11 @@ def main(words: Sequence[str]) -> int:
         sys.exit(f"--sample {request.sample}: name the last digits of the changes, such as 37")
     status = 0
     for room in request.rooms:
-        count, alive = survivors(room, request.sample)
-        share = 1 - len(alive) / max(count, 1)
-        of = f"{count} sampled changes" if request.sample else f"{count} changes"
-        print(f"{room}: {count - len(alive)} of {of} are noticed ({share:.1%})")
+        outcome = survivors(room, request.sample)
+        noticed = outcome.tried - len(outcome.alive)
+        share = noticed / outcome.tried if outcome.tried else 1.0
+        of = f"{outcome.tried} sampled changes" if request.sample else f"{outcome.tried} changes"
+        print(f"{room}: {noticed} of {of} are noticed ({share:.1%})")
         status |= int(share < WANTED)
     return status
 

@@ -13,15 +13,14 @@ import contextlib
 import io
 import os
 import re
-from pathlib import Path
 from typing import Any
 from unittest import mock
 
 import vehicle_pf_tracker
+from tools import ROOT
 from vehicle_pf_tracker.cli.console import PROGRAM_NAME
 from vehicle_pf_tracker.cli.main import VERBS, main
 
-ROOT = Path(__file__).resolve().parents[1]
 OUTSIDE = re.compile(r"\[([^\]]*)\]\(\.\./([^)]*)\)")
 """A link from a page to a file of the repository that the site does not have."""
 

@@ -14,8 +14,9 @@ from pathlib import Path
 import pytest
 import setuptools
 
-from tools import release_check
-from tools.release_check import run
+from tools.release.commands import run
+from tools.release.installation import check_installation
+from tools.release.journeys import WRITTEN
 from vehicle_pf_tracker.trackers.registry import NODES
 
 pytestmark = pytest.mark.slow
@@ -157,6 +158,6 @@ def assert_ros_finds(prefix):
     assert run("sh", "-c", command, sys.executable, stated, cwd=prefix).strip() == "[]"
 
 
-@pytest.mark.parametrize("extra", release_check.WRITTEN)
+@pytest.mark.parametrize("extra", WRITTEN)
 def test_an_extra_brings_all_that_the_readme_shows_for_it(wheel, extra):
-    assert re.match(r"\d+ MB; .*numpy", release_check.check_install(wheel, extra))
+    assert re.match(r"\d+ MB; .*numpy", check_installation(wheel, extra))

@@ -54,5 +54,5 @@ def test_the_shipped_file_is_such_an_animation_and_small():
     with Image.open(SHIPPED) as image:
         scene = make_scene(animation.SCENE)
         height = animation.ROWS.stop - animation.ROWS.start
-        assert image.size == (scene.width, 2 * height + animation._GAP)
+        assert image.size == (scene.width, 2 * height + animation.GAP_PX)
         assert image.n_frames == len(range(0, scene.frame_count, animation.EVERY))

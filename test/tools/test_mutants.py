@@ -17,7 +17,8 @@ def test_every_room_has_modules_and_tests():
 @pytest.mark.parametrize(("verdicts", "status"), [((20, 1), 0), ((20, 2), 1)])
 def test_too_many_survivors_are_a_failure(verdicts, status, monkeypatch, capsys):
     count, alive = verdicts
-    monkeypatch.setattr(mutants, "survivors", lambda room, sample: (count, ["change"] * alive))
+    outcome = mutants.Outcome(count, ["change"] * alive)
+    monkeypatch.setattr(mutants, "survivors", lambda room, sample: outcome)
     assert mutants.main(["toy"]) == status
     assert f"toy: {count - alive} of {count} changes are noticed" in capsys.readouterr().out
 
@@ -35,17 +36,17 @@ def test_survivors_are_shown_and_changes_that_no_test_reaches_count(monkeypatch,
         "    a.x_g__mutmut_3: not checked\n",
         "show": "-a\n+b",
     }
-    monkeypatch.setattr(mutants, "_NEEDED", ("pyproject.toml",))
-    monkeypatch.setattr(mutants, "_mutmut", lambda folder, *words: answers[words[0]])
-    assert mutants.survivors("toy") == (4, ["a.x_f__mutmut_2", "a.x_g__mutmut_1"])
+    monkeypatch.setattr(mutants, "COPIED", ("pyproject.toml",))
+    outcome = mutants.survivors("toy", mutmut=lambda folder, *words: answers[words[0]])
+    assert outcome == (4, ["a.x_f__mutmut_2", "a.x_g__mutmut_1"])
     assert capsys.readouterr().out == "-a\n+b\n-a\n+b\n"
 
 
 def test_a_sample_is_of_the_changes_whose_numbers_end_so(monkeypatch):
     words = []
-    monkeypatch.setattr(mutants, "_NEEDED", ("pyproject.toml",))
-    monkeypatch.setattr(mutants, "_mutmut", lambda folder, *given: words.append(given) or "")
-    assert mutants.survivors("toy", "37") == (0, [])
+    monkeypatch.setattr(mutants, "COPIED", ("pyproject.toml",))
+    outcome = mutants.survivors("toy", "37", lambda folder, *given: words.append(given) or "")
+    assert outcome == (0, [])
     assert words[0][-2:] == ("*__mutmut_*3", "*__mutmut_*7")
 
 

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tools.rooms_picture import BOX_HEIGHT, BOX_WIDTH, MARGIN, ROW_STEP, picture, rows_of
+from tools.rooms_layout import BOX_HEIGHT, BOX_WIDTH, MARGIN, ROW_STEP
+from tools.rooms_picture import picture
 
 PAGES = Path(__file__).resolve().parents[2] / "docs"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -49,11 +50,6 @@ def arrows(text):
         x, y = map(float, first.partition("V")[0].strip("M").split())
         ends.append(((x, y), tuple(map(float, last.split()[-2:]))))
     return ends
-
-
-def test_rows_follow_the_longest_chain_and_long_arrows_bend_between():
-    graph = {"a": {"b", "c"}, "b": {"c"}, "c": set()}
-    assert rows_of(graph) == [["c"], [("a", "c", 1), "b"], ["a"]]
 
 
 def test_a_chain_of_two_stands_as_computed_by_hand():

@@ -3,11 +3,10 @@
 
 """The ways of the README: their commands, and judges that notice what went wrong."""
 
-from pathlib import Path
-
 import pytest
 
-from tools import journeys
+from tools import ROOT
+from tools.release import journeys
 
 MODES = ("TRACKING", "OCCLUDED", "TRACKING", "OCCLUDED", "TRACKING")
 
@@ -67,7 +66,7 @@ def test_a_worse_fusion_is_noticed(left):
 
 
 def test_the_commands_are_those_of_the_pages():
-    pages = [Path(journeys.ROOT, name).read_text() for name in ("README.md", "docs/first_steps.md")]
+    pages = [(ROOT / name).read_text() for name in ("README.md", "docs/first_steps.md")]
     for extra, written in journeys.WRITTEN.items():
         lines = journeys.commands(extra).splitlines()
         assert all(name.split("/")[0] in "\n".join(lines) for name in written)

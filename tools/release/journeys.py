@@ -11,7 +11,8 @@ from collections.abc import Callable, Mapping
 from itertools import groupby
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+from tools import ROOT
+
 WRITTEN = {
     "video": (
         "grid.png",
