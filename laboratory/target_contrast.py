@@ -16,7 +16,7 @@ import numpy as np
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.image.target_pixels import LEAST_CONTRAST, contrast
+from vehicle_pf_tracker.image.target_checks.target_pixels import LEAST_CONTRAST, contrast
 from vehicle_pf_tracker.recordings.footage import Picture
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
 

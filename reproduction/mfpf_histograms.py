@@ -25,9 +25,12 @@ from reproduction.mfpf_systems import (
 )
 from reproduction.numbers import mean_and_spread
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.colour import RgbMarginals
-from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient, hellinger_distance
-from vehicle_pf_tracker.image.window import WindowFeature
+from vehicle_pf_tracker.image.windows.colour import RgbMarginals
+from vehicle_pf_tracker.image.windows.similarity import (
+    bhattacharyya_coefficient,
+    hellinger_distance,
+)
+from vehicle_pf_tracker.image.windows.window import WindowFeature
 from vehicle_pf_tracker.scenes.scene import SceneFrame
 from vehicle_pf_tracker.trackers.base import Target
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (

@@ -19,8 +19,8 @@ from benchmarks.bench.interleaving import compare
 from benchmarks.bench.kernels import contests
 from benchmarks.bench.material import clouds, drive
 from benchmarks.bench.routes import routes
-from vehicle_pf_tracker.image.bin_counting import covered_region
-from vehicle_pf_tracker.image.window import Window, bounds
+from vehicle_pf_tracker.image.windows.bin_counting import covered_region
+from vehicle_pf_tracker.image.windows.window import Window, bounds
 
 MEASURED = (
     "joint512/41x31/vga/n200",

@@ -15,8 +15,8 @@ from benchmarks.bench.interleaving import Work, compare
 from benchmarks.bench.material import clouds, drive, enlarged
 from benchmarks.bench.routes import Route, routes, three_references
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.similarity import Reference
-from vehicle_pf_tracker.image.window import Positions, Window
+from vehicle_pf_tracker.image.windows.similarity import Reference
+from vehicle_pf_tracker.image.windows.window import Positions, Window
 
 COUNTS = (50, 200, 1000, 5000)
 """Particles: 200 are the default."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.window import Positions
+from vehicle_pf_tracker.image.windows.window import Positions
 from vehicle_pf_tracker.scenes.catalogue import make_scene
 
 FRAME_RATE = 15.0

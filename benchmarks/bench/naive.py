@@ -12,8 +12,8 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.similarity import Histogram
-from vehicle_pf_tracker.image.window import Positions, Window
+from vehicle_pf_tracker.image.windows.similarity import Histogram
+from vehicle_pf_tracker.image.windows.window import Positions, Window
 
 _EDGE_SHARE = 0.3
 """Least strength of an edge that counts, of the strongest: that of `GradientDirections`."""

@@ -12,12 +12,12 @@ import numpy as np
 from benchmarks.bench.naive import ThreeHistograms
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
-from vehicle_pf_tracker.image.gradients import GradientDirections
 from vehicle_pf_tracker.image.kernels.interface import Kernels, load_kernels
-from vehicle_pf_tracker.image.similarity import Reference
-from vehicle_pf_tracker.image.textures import Cooccurrence
-from vehicle_pf_tracker.image.window import Positions, Window
+from vehicle_pf_tracker.image.windows.colour import JointColour, RgbMarginals
+from vehicle_pf_tracker.image.windows.gradients import GradientDirections
+from vehicle_pf_tracker.image.windows.similarity import Reference
+from vehicle_pf_tracker.image.windows.textures import Cooccurrence
+from vehicle_pf_tracker.image.windows.window import Positions, Window
 
 _THREE = RgbMarginals(), GradientDirections(), Cooccurrence()
 """The three features of `mfpf`."""

@@ -10,8 +10,8 @@ from benchmarks.bench import kernels, naive
 from benchmarks.bench.material import clouds, drive, enlarged
 from benchmarks.bench.routes import routes, three_references
 from benchmarks.bench.targets import SPEED_TARGETS
-from vehicle_pf_tracker.image.similarity import Reference
-from vehicle_pf_tracker.image.window import Window
+from vehicle_pf_tracker.image.windows.similarity import Reference
+from vehicle_pf_tracker.image.windows.window import Window
 
 WINDOW = Window(9, 6)
 

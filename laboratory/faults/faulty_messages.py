@@ -13,7 +13,7 @@ from geometry_msgs.msg import Point32, PointStamped, PolygonStamped
 from sensor_msgs.msg import Image, RegionOfInterest
 
 from laboratory.faults.drive import FIRST_NS, HEIGHT, PERIOD_NS, WIDTH, header_at
-from vehicle_pf_tracker.image.encodings import ENCODINGS
+from vehicle_pf_tracker.image.formats.encodings import ENCODINGS
 from vehicle_pf_tracker.ros.messages import stamp_ns
 
 DAY_NS = 86_400_000_000_000

@@ -14,7 +14,7 @@ from laboratory.scenes.traffic_scene import TrafficScene, VehicleTruth
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import whole_folder
-from vehicle_pf_tracker.image.compressed_image import jpeg
+from vehicle_pf_tracker.image.formats.compressed_image import jpeg
 
 LEAST_SIDE = 8.0
 """Sides of a box inside the image, px, below which a vehicle has no truth but is ignored."""

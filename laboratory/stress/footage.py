@@ -19,7 +19,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.core.truth import Truth
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.image.compressed_image import decode_compressed
+from vehicle_pf_tracker.image.formats.compressed_image import decode_compressed
 from vehicle_pf_tracker.recordings.bags.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.footage import stamp_of

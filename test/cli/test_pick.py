@@ -22,7 +22,7 @@ from vehicle_pf_tracker.cli import pick, pick_page
 from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.cli.pick_page import Editor, FrameStore
 from vehicle_pf_tracker.cli.picked_shapes import SECTION_USES
-from vehicle_pf_tracker.image.compressed_image import jpeg
+from vehicle_pf_tracker.image.formats.compressed_image import jpeg
 from vehicle_pf_tracker.parameters.counting_plan import read_counting_plan
 from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import open_source

@@ -5,9 +5,13 @@
 
 import numpy as np
 
-from vehicle_pf_tracker.image.colour import JointColour, RgbMarginals
-from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
+from vehicle_pf_tracker.image.windows.colour import JointColour, RgbMarginals
+from vehicle_pf_tracker.image.windows.gradients import GradientDirections
+from vehicle_pf_tracker.image.windows.textures import (
+    BinaryPatterns,
+    Cooccurrence,
+    HaralickStatistics,
+)
 
 FEATURES = {
     "joint": JointColour(),

@@ -17,7 +17,7 @@ from importlib import resources
 
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.picked_shapes import Document, checked
-from vehicle_pf_tracker.image.compressed_image import jpeg
+from vehicle_pf_tracker.image.formats.compressed_image import jpeg
 from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
 from vehicle_pf_tracker.recordings.source import ImageSource
 from vehicle_pf_tracker.showing.page_server import Content, PageHandler, PageServer

@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.point_flow import PointFlow
-from vehicle_pf_tracker.image.shared_motion import shared_similarity
+from vehicle_pf_tracker.image.motion.point_flow import PointFlow
+from vehicle_pf_tracker.image.motion.shared_motion import shared_similarity
 
 Image: TypeAlias = npt.NDArray[np.uint8]
 

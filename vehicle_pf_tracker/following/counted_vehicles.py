@@ -21,7 +21,7 @@ from vehicle_pf_tracker.detection.detector import Detector
 from vehicle_pf_tracker.following.detectors import detector_maker
 from vehicle_pf_tracker.following.live_facts import RecentCrossings, traffic_facts
 from vehicle_pf_tracker.following.paced_detector import PacedDetector, Run, call
-from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.image.formats.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.showing.traffic_drawing import Trails, frame_with_vehicles

@@ -17,8 +17,8 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.image.stillness import Stillness
-from vehicle_pf_tracker.image.target_pixels import doubts
+from vehicle_pf_tracker.image.target_checks.stillness import Stillness
+from vehicle_pf_tracker.image.target_checks.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
 from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
 from vehicle_pf_tracker.results.estimates import REJECTED_MODE, WAITING_MODE, EstimateRow

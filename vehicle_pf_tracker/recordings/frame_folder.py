@@ -17,7 +17,7 @@ from pathlib import Path
 from vehicle_pf_tracker.core.errors import InputError, read_text
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.image.compressed_image import decode_compressed
+from vehicle_pf_tracker.image.formats.compressed_image import decode_compressed
 from vehicle_pf_tracker.recordings.footage import (
     LAST_STAMP_NS,
     START_NS,

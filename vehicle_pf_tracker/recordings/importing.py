@@ -10,7 +10,7 @@ from pathlib import Path
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
-from vehicle_pf_tracker.image.compressed_image import jpeg
+from vehicle_pf_tracker.image.formats.compressed_image import jpeg
 from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.recordings.footage import Footage, Picture
 from vehicle_pf_tracker.recordings.opened_footage import open_footage

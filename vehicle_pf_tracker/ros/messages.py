@@ -30,7 +30,7 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.encodings import fields_of_frame
+from vehicle_pf_tracker.image.formats.encodings import fields_of_frame
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
 if TYPE_CHECKING:  # a node imports the code of its own variant only

@@ -14,7 +14,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.image.compressed_image import jpeg
+from vehicle_pf_tracker.image.formats.compressed_image import jpeg
 from vehicle_pf_tracker.recordings.bags import messages
 from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
 from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter

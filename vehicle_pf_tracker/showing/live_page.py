@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from importlib import resources
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.compressed_image import jpeg
+from vehicle_pf_tracker.image.formats.compressed_image import jpeg
 from vehicle_pf_tracker.showing.page_server import LOCAL_ADDRESS, Content, PageHandler, PageServer
 
 PAGE_NAME = "the live page"

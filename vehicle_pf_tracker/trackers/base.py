@@ -23,11 +23,11 @@ from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES, Ancestors
 from vehicle_pf_tracker.filtering.weights import Weights, effective_sample_size
-from vehicle_pf_tracker.image.colour import JointColour
 from vehicle_pf_tracker.image.kernels.interface import load_kernels
-from vehicle_pf_tracker.image.mean_shift import kernel_histogram
-from vehicle_pf_tracker.image.similarity import Histogram, Reference
-from vehicle_pf_tracker.image.window import Window, is_outside, keep_inside
+from vehicle_pf_tracker.image.windows.colour import JointColour
+from vehicle_pf_tracker.image.windows.mean_shift import kernel_histogram
+from vehicle_pf_tracker.image.windows.similarity import Histogram, Reference
+from vehicle_pf_tracker.image.windows.window import Window, is_outside, keep_inside
 from vehicle_pf_tracker.parameters.table import specs, to_mapping
 from vehicle_pf_tracker.trackers.estimate import START_REGIME, Estimate, Mode, read_only
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge

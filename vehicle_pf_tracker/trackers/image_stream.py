@@ -18,7 +18,7 @@ import numpy as np
 from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD, StampClock, StampEvent, Tick
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
-from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.image.formats.compressed_image import CodedImage
 from vehicle_pf_tracker.trackers.continuity import (
     Continuation,
     Continuity,

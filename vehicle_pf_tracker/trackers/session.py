@@ -16,7 +16,7 @@ from typing import Any
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.image.formats.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.trackers.attempts import Attempts
 from vehicle_pf_tracker.trackers.base import BaseTracker

@@ -3,7 +3,7 @@
 
 """Images of several encodings, sizes and contents, through a running node.
 
-Every encoding is read in test/image/test_encodings.py.
+Every encoding is read in test/image/formats/test_encodings.py.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from sensor_msgs.msg import CompressedImage, Image
 from tracker_rig import FIRST_NS, PERIOD_NS, TARGET, Rig, header, on_target, road, values_of
 
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.image.compressed_image import decode_compressed
+from vehicle_pf_tracker.image.formats.compressed_image import decode_compressed
 from vehicle_pf_tracker.ros.messages import image_message
 from vehicle_pf_tracker.trackers.registry import find_variant
 from vehicle_pf_tracker.trackers.session import Session

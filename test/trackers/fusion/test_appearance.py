@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from fusion_samples import texture
 
-from vehicle_pf_tracker.image.canonical_patch import Patch
+from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
 from vehicle_pf_tracker.image.kernels.interface import load_kernels
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
 from vehicle_pf_tracker.trackers.fusion.parameters import FilterParameters

@@ -8,8 +8,8 @@ import pytest
 from fusion_samples import fusion
 from street import HEIGHT, SIZE, START, WIDTH, Street, error, follow, vehicle
 
-from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.image.canonical_patch import cut_patch
+from vehicle_pf_tracker.image.correlation.canonical_patch import cut_patch
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.departure import Departure, Strangers, is_too_far

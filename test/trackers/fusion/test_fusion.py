@@ -15,8 +15,8 @@ from street import Street, error, follow, vehicle
 from laboratory.scenes import make_scene
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.image.foreground import Foreground
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.motion.foreground import Foreground
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion import flow_evidence, observe, visibility

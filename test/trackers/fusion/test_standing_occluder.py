@@ -6,7 +6,7 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
 from vehicle_pf_tracker.trackers.fusion.standing_occluder import restored_sightings
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from fusion_samples import paste_turned, texture
 
-from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.image.canonical_patch import cut_patch
+from vehicle_pf_tracker.image.correlation.canonical_patch import cut_patch
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 
 SIZE = np.array([40.0, 40.0])

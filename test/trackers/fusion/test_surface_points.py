@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from fusion_samples import texture
 
-from vehicle_pf_tracker.image.box_motion import shared_turn
-from vehicle_pf_tracker.image.canonical_patch import cut_patch
+from vehicle_pf_tracker.image.correlation.canonical_patch import cut_patch
+from vehicle_pf_tracker.image.motion.box_motion import shared_turn
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 
 SIZE = np.array([40.0, 40.0])

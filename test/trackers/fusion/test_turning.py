@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from fusion_samples import grey_road
 
-from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.foreground import Foreground, Outline
-from vehicle_pf_tracker.image.small_grey import SmallGrey
+from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
+from vehicle_pf_tracker.image.motion.foreground import Foreground, Outline
+from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion, Sighting

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from street import Street, error, follow
 
-from vehicle_pf_tracker.image.gradients import GradientDirections
+from vehicle_pf_tracker.image.windows.gradients import GradientDirections
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
 from vehicle_pf_tracker.trackers.papers import mfpf

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from street import Street, error, follow
 
-from vehicle_pf_tracker.image.colour import JointColour
-from vehicle_pf_tracker.image.similarity import Reference
+from vehicle_pf_tracker.image.windows.colour import JointColour
+from vehicle_pf_tracker.image.windows.similarity import Reference
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.papers import pf
 from vehicle_pf_tracker.trackers.papers.pf import PfParameters, PfTracker

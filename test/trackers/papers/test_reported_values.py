@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from street import Street, follow
 
-from vehicle_pf_tracker.image.colour import JointColour
+from vehicle_pf_tracker.image.windows.colour import JointColour
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.registry import find_variant
 

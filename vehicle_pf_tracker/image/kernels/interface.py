@@ -14,9 +14,10 @@ import numpy as np
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image import gradient_cells, mean_shift
-from vehicle_pf_tracker.image.similarity import Histogram, Reference
-from vehicle_pf_tracker.image.window import Coefficients, Positions, Window, WindowFeature
+from vehicle_pf_tracker.image.correlation import gradient_cells
+from vehicle_pf_tracker.image.windows import mean_shift
+from vehicle_pf_tracker.image.windows.similarity import Histogram, Reference
+from vehicle_pf_tracker.image.windows.window import Coefficients, Positions, Window, WindowFeature
 
 
 class Kernels:

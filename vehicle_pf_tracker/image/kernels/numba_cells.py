@@ -1,14 +1,14 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Cells of oriented gradients, compiled; `image.gradient_cells` says what they are."""
+"""Cells of oriented gradients, compiled; `image.correlation.gradient_cells` says what they are."""
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.image.gradient_cells import (
+from vehicle_pf_tracker.image.correlation.gradient_cells import (
     DIRECTION_OF,
     DIRECTIONS,
     GRADIENT_CELL_PX,

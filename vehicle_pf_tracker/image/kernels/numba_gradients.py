@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.image.kernels.kernel import compiled
-from vehicle_pf_tracker.image.window import Grey
+from vehicle_pf_tracker.image.windows.window import Grey
 
 Slopes: TypeAlias = npt.NDArray[np.int16]
 Strengths: TypeAlias = npt.NDArray[np.int32]

@@ -14,9 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.colour import CHANNEL_BINS, JointColour, RgbMarginals
-from vehicle_pf_tracker.image.gradient_cells import CellFeatures
-from vehicle_pf_tracker.image.gradients import DIRECTION_BINS, GradientDirections
+from vehicle_pf_tracker.image.correlation.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.kernels import (
     kernel,
     numba_cells,
@@ -37,9 +35,11 @@ from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
     pair_cells,
 )
 from vehicle_pf_tracker.image.kernels.numba_types import Cells, Counts, Pixels, Reals, Table
-from vehicle_pf_tracker.image.similarity import Histogram, Reference
-from vehicle_pf_tracker.image.textures import Cooccurrence
-from vehicle_pf_tracker.image.window import (
+from vehicle_pf_tracker.image.windows.colour import CHANNEL_BINS, JointColour, RgbMarginals
+from vehicle_pf_tracker.image.windows.gradients import DIRECTION_BINS, GradientDirections
+from vehicle_pf_tracker.image.windows.similarity import Histogram, Reference
+from vehicle_pf_tracker.image.windows.textures import Cooccurrence
+from vehicle_pf_tracker.image.windows.window import (
     Coefficients,
     Grey,
     Positions,
@@ -129,7 +129,7 @@ _COUNTED_PIXELS = {JointColour, RgbMarginals, Cooccurrence}
 def kernel_similarity(
     frame: Frame, positions: Positions, window: Window, reference: Reference, bits: int
 ) -> Coefficients:
-    """Compare kernel-weighted histograms; see `image.mean_shift`."""
+    """Compare kernel-weighted histograms; see `image.windows.mean_shift`."""
     cells, pixels, _ = _placed_cells(frame, positions, window, reference, bits)
     values = table_of(reference).values
     similarity: Coefficients = numba_mean_shift.compare_kernels(
@@ -141,7 +141,7 @@ def kernel_similarity(
 def mean_shift(
     frame: Frame, positions: Positions, window: Window, reference: Reference, bits: int
 ) -> Positions:
-    """Move every position one mean-shift step; see `image.mean_shift`."""
+    """Move every position one mean-shift step; see `image.windows.mean_shift`."""
     cells, pixels, first = _placed_cells(frame, positions, window, reference, bits)
     values = table_of(reference).values
     steps = numba_mean_shift.shift_kernels(cells, pixels, *numba_mean_shift.ellipse(window), values)
@@ -163,7 +163,7 @@ def _placed_cells(
 
 
 def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
-    """Describe cells of a grey image; see `image.gradient_cells`."""
+    """Describe cells of a grey image; see `image.correlation.gradient_cells`."""
     features: CellFeatures = numba_cells.gradient_cells(grey, spare)
     return features
 

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Mean shift of many windows (`image.mean_shift`), in numba."""
+"""Mean shift of many windows (`image.windows.mean_shift`), in numba."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Pixels,
     Reals,
 )
-from vehicle_pf_tracker.image.mean_shift import epanechnikov
-from vehicle_pf_tracker.image.window import Window
+from vehicle_pf_tracker.image.windows.mean_shift import epanechnikov
+from vehicle_pf_tracker.image.windows.window import Window
 
 Offsets: TypeAlias = npt.NDArray[np.int64]
 

@@ -23,8 +23,8 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Cells,
     Table,
 )
-from vehicle_pf_tracker.image.similarity import Histogram
-from vehicle_pf_tracker.image.window import Grey
+from vehicle_pf_tracker.image.windows.similarity import Histogram
+from vehicle_pf_tracker.image.windows.window import Grey
 
 
 @compiled(CELL_PLANES, RGB_IMAGE, "int64", BIN_TABLE)

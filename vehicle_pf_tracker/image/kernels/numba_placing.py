@@ -16,7 +16,7 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Extent,
     Pixels,
 )
-from vehicle_pf_tracker.image.window import Positions
+from vehicle_pf_tracker.image.windows.window import Positions
 
 
 @inlined

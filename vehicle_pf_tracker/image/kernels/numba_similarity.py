@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Bhattacharyya coefficient of one window's counts, in numba (see `image.similarity`)."""
+"""Bhattacharyya coefficient of one window's counts, in numba (see `image.windows.similarity`)."""
 
 from __future__ import annotations
 

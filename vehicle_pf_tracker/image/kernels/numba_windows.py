@@ -33,7 +33,7 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Scale,
     Table,
 )
-from vehicle_pf_tracker.image.window import Positions
+from vehicle_pf_tracker.image.windows.window import Positions
 
 
 @inlined

@@ -24,7 +24,7 @@ from rosbags.typesys.store import Typestore
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame, check_frame
-from vehicle_pf_tracker.image.encodings import fields_of_frame
+from vehicle_pf_tracker.image.formats.encodings import fields_of_frame
 
 IMAGE_TOPIC = "/camera/image_raw"
 COMPRESSED_TOPIC = "/camera/image_raw/compressed"

@@ -12,8 +12,8 @@ from pathlib import Path
 from vehicle_pf_tracker.core.cdr import header_stamp_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Truth
-from vehicle_pf_tracker.image.compressed_image import decode_compressed
-from vehicle_pf_tracker.image.encodings import frame_of_message
+from vehicle_pf_tracker.image.formats.compressed_image import decode_compressed
+from vehicle_pf_tracker.image.formats.encodings import frame_of_message
 from vehicle_pf_tracker.recordings.bags import messages
 from vehicle_pf_tracker.recordings.bags.bag_folder import recording_files
 from vehicle_pf_tracker.recordings.bags.mcap_blocks import Message

@@ -18,8 +18,8 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.compressed_image import CodedImage, read_compressed
-from vehicle_pf_tracker.image.encodings import frame_of_message
+from vehicle_pf_tracker.image.formats.compressed_image import CodedImage, read_compressed
+from vehicle_pf_tracker.image.formats.encodings import frame_of_message
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError
 
 ImageCallback = Callable[[Any, Mapping[str, Any]], None]

@@ -17,7 +17,7 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.image.formats.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration, NodeParameters
 from vehicle_pf_tracker.ros.messages import REJECTED_MESSAGE
 from vehicle_pf_tracker.ros.node.answer import Answer

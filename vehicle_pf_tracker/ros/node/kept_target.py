@@ -10,7 +10,7 @@ import time
 
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.image.encodings import LARGEST_SIDE_PX
+from vehicle_pf_tracker.image.formats.encodings import LARGEST_SIDE_PX
 from vehicle_pf_tracker.ros.own_files import own_file, read_small, write_private
 
 _SAVE_EVERY = 1.0

@@ -15,10 +15,10 @@ from std_msgs.msg import Header
 from vehicle_pf_tracker.core.box import Box, check_target
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.compressed_image import CodedImage
-from vehicle_pf_tracker.image.encodings import LARGEST_SIDE_PX
-from vehicle_pf_tracker.image.stillness import Stillness
-from vehicle_pf_tracker.image.target_pixels import doubts
+from vehicle_pf_tracker.image.formats.compressed_image import CodedImage
+from vehicle_pf_tracker.image.formats.encodings import LARGEST_SIDE_PX
+from vehicle_pf_tracker.image.target_checks.stillness import Stillness
+from vehicle_pf_tracker.image.target_checks.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import WAITING_MESSAGE, stamp_ns
 from vehicle_pf_tracker.ros.node.answer import Answer, TrackerAnswer

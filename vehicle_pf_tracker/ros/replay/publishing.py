@@ -17,7 +17,7 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.image.compressed_image import decode_compressed
+from vehicle_pf_tracker.image.formats.compressed_image import decode_compressed
 from vehicle_pf_tracker.recordings.bags.messages import COMPRESSED_IMAGE
 from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.bags.topic_table import TopicInfo

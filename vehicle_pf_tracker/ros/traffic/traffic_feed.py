@@ -15,8 +15,8 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.detection.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.detection.parameters import TOPIC_DETECTOR
 from vehicle_pf_tracker.following.paced_detector import PacedDetector
-from vehicle_pf_tracker.image.compressed_image import CodedImage
-from vehicle_pf_tracker.image.target_pixels import doubts
+from vehicle_pf_tracker.image.formats.compressed_image import CodedImage
+from vehicle_pf_tracker.image.target_checks.target_pixels import doubts
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.ros.messages import WAITING_MESSAGE, stamp_ns
 from vehicle_pf_tracker.ros.node.journal import Journal

@@ -19,8 +19,8 @@ from vehicle_pf_tracker.counting.counter import Counter
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter
-from vehicle_pf_tracker.image.compressed_image import CodedImage
-from vehicle_pf_tracker.image.encodings import LARGEST_SIDE_PX
+from vehicle_pf_tracker.image.formats.compressed_image import CodedImage
+from vehicle_pf_tracker.image.formats.encodings import LARGEST_SIDE_PX
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession

@@ -18,16 +18,20 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.canonical_patch import Patch, cut_image, cut_patch
-from vehicle_pf_tracker.image.correlation_filter import UPSAMPLING, CorrelationFilter, Response
-from vehicle_pf_tracker.image.gradient_cells import (
+from vehicle_pf_tracker.image.correlation.canonical_patch import Patch, cut_image, cut_patch
+from vehicle_pf_tracker.image.correlation.correlation_filter import (
+    UPSAMPLING,
+    CorrelationFilter,
+    Response,
+)
+from vehicle_pf_tracker.image.correlation.gradient_cells import (
     GRADIENT_CELL_PX,
     GRADIENT_CHANNELS,
     CellFeatures,
     Grey,
 )
+from vehicle_pf_tracker.image.correlation.spectra import Spectrum, shifted
 from vehicle_pf_tracker.image.kernels.interface import Kernels
-from vehicle_pf_tracker.image.spectra import Spectrum, shifted
 from vehicle_pf_tracker.trackers.fusion.paint import Paint
 from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
 from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate

@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.canonical_patch import Patch
+from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
 from vehicle_pf_tracker.trackers.fusion.appearance import View, searched_size
 from vehicle_pf_tracker.trackers.fusion.hypotheses import PRIOR_DOUBT, hidden_hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import gathered

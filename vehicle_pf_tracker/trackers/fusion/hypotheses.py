@@ -18,7 +18,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, normalise
-from vehicle_pf_tracker.image.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion
 
 FASTEST_GROWTH = 0.04

@@ -10,11 +10,11 @@ import functools
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.map_search import climbed
-from vehicle_pf_tracker.image.small_grey import small_grey
-from vehicle_pf_tracker.image.window import is_outside
+from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
+from vehicle_pf_tracker.image.correlation.map_search import climbed
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.motion.small_grey import small_grey
+from vehicle_pf_tracker.image.windows.window import is_outside
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.departure import Departure
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (

@@ -13,7 +13,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.canonical_patch import cut_image
+from vehicle_pf_tracker.image.correlation.canonical_patch import cut_image
 
 _PAINTED = 0.6
 """Middle of a box that paint is measured in, of each side: around it are road and shadow. A choice:

@@ -13,9 +13,9 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
-from vehicle_pf_tracker.image.camera_flow import CameraFlow
-from vehicle_pf_tracker.image.foreground import Foreground
-from vehicle_pf_tracker.image.window import keep_inside
+from vehicle_pf_tracker.image.motion.camera_flow import CameraFlow
+from vehicle_pf_tracker.image.motion.foreground import Foreground
+from vehicle_pf_tracker.image.windows.window import keep_inside
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
 from vehicle_pf_tracker.trackers.fusion.departure import Departure
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters

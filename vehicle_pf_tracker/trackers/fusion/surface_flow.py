@@ -17,9 +17,15 @@ import cv2
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.box_motion import FLOW_CELL_PX, CellBlock, Flow, carried_share, solved
-from vehicle_pf_tracker.image.camera_motion import CameraMotion
-from vehicle_pf_tracker.image.canonical_patch import Patch
+from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
+from vehicle_pf_tracker.image.motion.box_motion import (
+    FLOW_CELL_PX,
+    CellBlock,
+    Flow,
+    carried_share,
+    solved,
+)
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 
 _KEPT = 8
 """Patches kept: over eight frames a vehicle gets `_APART_PX` ahead of the background by half a

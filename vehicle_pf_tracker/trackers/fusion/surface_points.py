@@ -17,9 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image import box_motion
-from vehicle_pf_tracker.image.canonical_patch import Patch
-from vehicle_pf_tracker.image.point_flow import PointFlow, PointMask, Points
+from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
+from vehicle_pf_tracker.image.motion import box_motion
+from vehicle_pf_tracker.image.motion.point_flow import PointFlow, PointMask, Points
 from vehicle_pf_tracker.trackers.fusion.surface_flow import BOX_REACH
 
 _GRID = 8

@@ -28,7 +28,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.small_grey import small_grey
+from vehicle_pf_tracker.image.motion.small_grey import small_grey
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.foreground import Foreground, Outline
+from vehicle_pf_tracker.image.motion.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES

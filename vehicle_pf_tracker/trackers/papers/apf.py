@@ -22,8 +22,8 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import RAYLEIGH_MEAN, sample_normal, sample_normal_rayleigh
 from vehicle_pf_tracker.filtering.weights import from_log
-from vehicle_pf_tracker.image.colour import JointColour
-from vehicle_pf_tracker.image.similarity import Histogram, Reference, hellinger_similarity
+from vehicle_pf_tracker.image.windows.colour import JointColour
+from vehicle_pf_tracker.image.windows.similarity import Histogram, Reference, hellinger_similarity
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.papers import shared

@@ -27,9 +27,13 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import DISC_SIGMA, sample_disc, sample_normal
 from vehicle_pf_tracker.filtering.resampling import Ancestors
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
-from vehicle_pf_tracker.image.colour import RgbMarginals
-from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance, hellinger_similarity
-from vehicle_pf_tracker.image.window import Histograms, WindowFeature, keep_inside
+from vehicle_pf_tracker.image.windows.colour import RgbMarginals
+from vehicle_pf_tracker.image.windows.similarity import (
+    Reference,
+    hellinger_distance,
+    hellinger_similarity,
+)
+from vehicle_pf_tracker.image.windows.window import Histograms, WindowFeature, keep_inside
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.papers.feature_weighting import (
     FeatureWeighting,

@@ -10,9 +10,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from vehicle_pf_tracker.image.gradients import GradientDirections
-from vehicle_pf_tracker.image.textures import BinaryPatterns, Cooccurrence, HaralickStatistics
-from vehicle_pf_tracker.image.window import WindowFeature
+from vehicle_pf_tracker.image.windows.gradients import GradientDirections
+from vehicle_pf_tracker.image.windows.textures import (
+    BinaryPatterns,
+    Cooccurrence,
+    HaralickStatistics,
+)
+from vehicle_pf_tracker.image.windows.window import WindowFeature
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,

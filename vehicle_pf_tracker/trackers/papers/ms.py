@@ -16,7 +16,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
+from vehicle_pf_tracker.image.windows.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.base import BaseTracker, Cloud, Outcome
 from vehicle_pf_tracker.trackers.papers.pf import VELOCITY_WINDOW

@@ -23,8 +23,8 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.weights import from_log
-from vehicle_pf_tracker.image.colour import JointColour
-from vehicle_pf_tracker.image.similarity import Reference, hellinger_distance
+from vehicle_pf_tracker.image.windows.colour import JointColour
+from vehicle_pf_tracker.image.windows.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.papers import shared

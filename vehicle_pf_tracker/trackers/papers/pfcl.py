@@ -17,9 +17,9 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import from_log
-from vehicle_pf_tracker.image.lines import find_lines, line_histograms
-from vehicle_pf_tracker.image.similarity import bhattacharyya_coefficient
-from vehicle_pf_tracker.image.window import bounds
+from vehicle_pf_tracker.image.windows.lines import find_lines, line_histograms
+from vehicle_pf_tracker.image.windows.similarity import bhattacharyya_coefficient
+from vehicle_pf_tracker.image.windows.window import bounds
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker

@@ -26,8 +26,8 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, from_log
-from vehicle_pf_tracker.image.similarity import hellinger_distance
-from vehicle_pf_tracker.image.window import keep_inside
+from vehicle_pf_tracker.image.windows.similarity import hellinger_distance
+from vehicle_pf_tracker.image.windows.window import keep_inside
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
 from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker

@@ -14,8 +14,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from vehicle_pf_tracker.image.colour import RgbMarginals
-from vehicle_pf_tracker.image.window import WindowFeature
+from vehicle_pf_tracker.image.windows.colour import RgbMarginals
+from vehicle_pf_tracker.image.windows.window import WindowFeature
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.papers.mfpf import FeatureFilter
 from vehicle_pf_tracker.trackers.papers.mfpf_parameters import (

@@ -17,7 +17,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES
 from vehicle_pf_tracker.filtering.weights import Weights
-from vehicle_pf_tracker.image.similarity import hellinger_distance
+from vehicle_pf_tracker.image.windows.similarity import hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
 
 Vector: TypeAlias = tuple[float, float]

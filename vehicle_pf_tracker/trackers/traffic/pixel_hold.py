@@ -16,7 +16,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import NO_BOXES, areas
-from vehicle_pf_tracker.image.point_flow import PointFlow
+from vehicle_pf_tracker.image.motion.point_flow import PointFlow
 from vehicle_pf_tracker.trackers.traffic.colours import BACKGROUND_RIM, similarities
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.state import Grey, State, Step

@@ -19,7 +19,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import Detector
-from vehicle_pf_tracker.image.compressed_image import CodedImage
+from vehicle_pf_tracker.image.formats.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.counting_plan import Region
 from vehicle_pf_tracker.trackers.attempts import Attempts
 from vehicle_pf_tracker.trackers.image_stream import ImageStream, Turn

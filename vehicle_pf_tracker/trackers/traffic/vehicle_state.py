@@ -38,7 +38,7 @@ the camera's own height, where the plane no longer describes what is seen."""
 _LEAST, _LARGEST = 1.0, 1e5
 """Least distance from the horizon and least side, px; and largest of these, of places and of
 standard deviations, which bounds velocities in their units, too. No image has a third of it
-(`image.encodings.LARGEST_SIDE_PX`), so that a vehicle there has left."""
+(`image.formats.encodings.LARGEST_SIDE_PX`), so that a vehicle there has left."""
 _SIZE_WALK = 0.004
 """Change of a vehicle's shape as the camera sees it, of its size per nominal period: a vehicle that
 drives past is seen from behind and then from the side within some 5 s. It adds up to a twentieth in

@@ -1,0 +1,11 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Motion between images, and what moves before a standing camera.
+
+- `point_flow`: motion of points, on which the others are built
+- `shared_motion`: the motion that most points share
+- `box_motion`: turn and stretch of the points in a box
+- `camera_motion`: motion of the background, measured by `camera_flow` in a `small_grey` frame
+- `foreground`: pixels that differ from the background of a standing camera
+"""
