@@ -41,31 +41,28 @@ def variant_modules(variant: Variant) -> set[str]:
 
 
 _PACKAGE = Path(__file__).parents[1]
-_SHARED = (
+_WHOLE = (
     "core",
     "road",
     "parameters",
     "filtering",
     "image",
-    "image/kernels",
-    "trackers",
+    "detection",
+    "counting",
     "recordings",
-    "recordings/bags",
-    "recordings/truth",
     "scenes",
     "following",
-    "following/networks",
     "workers",
     "results",
-    "evaluation",
-    "evaluation/grid",
 )
-"""Folders whose code counts for every result."""
+"""Rooms whose code counts for every result, with all folders inside."""
+_ALONE = ("trackers", "evaluation", "evaluation/grid")
+"""Folders whose own files count for every result: of those inside only some decide about one."""
 
 
 @functools.cache
 def source_digest(modules: frozenset[str]) -> str:
-    """Digest the code of the `_SHARED` folders and of those that `modules` are in.
+    """Digest the code of `_WHOLE` rooms, of `_ALONE` folders and of those that `modules` are in.
 
     Parameters
     ----------
@@ -73,7 +70,8 @@ def source_digest(modules: frozenset[str]) -> str:
         Full names, such as ``vehicle_pf_tracker.trackers.papers.apf``: of the trackers, only those
         beside the modules count. Of a module without a package only its own file counts.
     """
-    paths = {path for name in _SHARED for path in (_PACKAGE / name).glob("*.py")}
+    paths = {path for name in _WHOLE for path in (_PACKAGE / name).rglob("*.py")}
+    paths |= {path for name in _ALONE for path in (_PACKAGE / name).glob("*.py")}
     for name in modules:
         found = importlib.util.find_spec(name)
         if found is None or found.origin is None:
