@@ -14,9 +14,9 @@ from pathlib import Path
 from laboratory.result_store import ResultStore
 from reproduction.catalogue import ALL, EXPERIMENTS, PAPERS, find_experiments
 from reproduction.experiment import EXPERIMENT_SEEDS, QUICK_SEEDS, Size
-from reproduction.output import write_report
-from reproduction.page import write_page
-from reproduction.running import complete
+from reproduction.pages.output import write_report
+from reproduction.pages.page import write_page
+from reproduction.runs.running import complete
 from vehicle_pf_tracker.cli.console import USAGE_STATUS, UsageError, counting
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.cli.option_values import natural, positive

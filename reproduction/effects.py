@@ -14,12 +14,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
-from reproduction import apf_systems as apf
-from reproduction import mfpf_systems as mfpf
-from reproduction import resampling_systems as resampling
-from reproduction.cells import RunCell, SceneChoice, System
+from reproduction.apf import systems as apf
 from reproduction.experiment import PAPER_RULE, DataTable, Entry
-from reproduction.running import run_together
+from reproduction.mfpf import systems as mfpf
+from reproduction.resampling import systems as resampling
+from reproduction.runs.cells import RunCell, SceneChoice, System
+from reproduction.runs.running import run_together
 from vehicle_pf_tracker.parameters.table import Value
 
 SEEDS = (100,)

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from matplotlib.figure import Figure
 
-from reproduction.cells import Cell, Result
+from reproduction.runs.cells import Cell, Result
 
 Entry: TypeAlias = float | int | str | None
 

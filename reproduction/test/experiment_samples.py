@@ -5,7 +5,7 @@
 
 from dataclasses import dataclass
 
-from reproduction.cells import RunCell, SceneChoice, System
+from reproduction.runs.cells import RunCell, SceneChoice, System
 
 SCENE = SceneChoice.of("bar", {"speed": 38.0, "width": 0.0})
 PF = System.of("PF", "pf", {"num_particles": 20, "sigma": 30.0})

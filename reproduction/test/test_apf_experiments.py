@@ -8,13 +8,13 @@ import math
 import pytest
 
 from laboratory.result_store import ResultStore
-from reproduction import apf_systems
+from reproduction.apf import systems as apf_systems
 from reproduction.catalogue import EXPERIMENTS, find_experiments
-from reproduction.cells import SceneChoice
 from reproduction.experiment import Holds, Size
-from reproduction.output import write_report
-from reproduction.paper_scenes import VIDEO_SCENES
-from reproduction.running import complete
+from reproduction.pages.output import write_report
+from reproduction.runs.cells import SceneChoice
+from reproduction.runs.running import complete
+from reproduction.scenes.paper_scenes import VIDEO_SCENES
 from vehicle_pf_tracker.core.errors import InputError
 
 SIZE = Size(range(100, 101), quick=True)

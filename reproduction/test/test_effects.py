@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 from reproduction import effects
-from reproduction.cells import System
+from reproduction.runs.cells import System
 
 NOTE = Path(__file__).parents[2] / "docs" / "interpretations.md"
 

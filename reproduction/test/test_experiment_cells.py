@@ -4,8 +4,8 @@
 import pytest
 from experiment_samples import PF, SCENE, run_cells
 
-from reproduction.cells import RunCell, SceneChoice, System
-from reproduction.running import cell_key, run_together
+from reproduction.runs.cells import RunCell, SceneChoice, System
+from reproduction.runs.running import cell_key, run_together
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.metrics import measure
 from vehicle_pf_tracker.evaluation.scores import score_frames

@@ -7,7 +7,7 @@ import pytest
 from experiment_samples import SCENE, CountingCell, run_cells
 
 from laboratory.result_store import ResultStore
-from reproduction.running import complete
+from reproduction.runs.running import complete
 from vehicle_pf_tracker.core.errors import InputError
 
 
@@ -107,7 +107,7 @@ def test_cells_that_must_be_alone_are(path, monkeypatch):
         beside.extend(batches)
         return ((batch, function(batch)) for batch in batches)
 
-    monkeypatch.setattr("reproduction.running.run_in_processes", run_here)
+    monkeypatch.setattr("reproduction.runs.running.run_in_processes", run_here)
     results = complete(cells, ResultStore(path), 2, silent)
     assert {cell.name: result["frames"] for cell, result in results.items()} == {
         "a": SCENE.make().frame_count, "b": SCENE.make().frame_count,

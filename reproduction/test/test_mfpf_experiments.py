@@ -5,10 +5,12 @@
 
 import pytest
 
-from reproduction import mfpf_histograms, mfpf_systems, mfpf_table1
 from reproduction.catalogue import EXPERIMENTS
+from reproduction.drawing.strips import telling_frames
 from reproduction.experiment import Holds, Size
-from reproduction.strips import telling_frames
+from reproduction.mfpf import histograms as mfpf_histograms
+from reproduction.mfpf import systems as mfpf_systems
+from reproduction.mfpf import table1 as mfpf_table1
 from vehicle_pf_tracker.evaluation.scores import FrameScore, Scores
 
 SIZE = Size(range(100, 102), quick=True)

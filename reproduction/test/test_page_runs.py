@@ -18,9 +18,9 @@ import numpy as np
 import pytest
 
 from reproduction.catalogue import EXPERIMENTS
-from reproduction.cells import SceneChoice
 from reproduction.experiment import Size
-from reproduction.running import run_together
+from reproduction.runs.cells import SceneChoice
+from reproduction.runs.running import run_together
 
 RUNS = [
     json.loads(line)

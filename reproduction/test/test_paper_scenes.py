@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from drive_checks import check_room_to_recover, check_target, phases
 
-from reproduction.paper_scenes import FIXED_SCENES, VIDEO_SCENES, make_scene
+from reproduction.scenes.paper_scenes import FIXED_SCENES, VIDEO_SCENES, make_scene
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.truth import Occlusion
 

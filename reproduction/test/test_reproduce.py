@@ -9,8 +9,8 @@ import pytest
 from reproduction.__main__ import main
 from reproduction.catalogue import PAPERS
 from reproduction.experiment import PAPER_RULE, PRINTED_RULE
-from reproduction.page import PAGE, page_of_data
-from reproduction.page_text import page_text
+from reproduction.pages.page import PAGE, page_of_data
+from reproduction.pages.page_text import page_text
 
 DOCS = Path(__file__).parents[2] / "docs"
 

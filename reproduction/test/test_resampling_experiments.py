@@ -5,9 +5,9 @@
 
 import pytest
 
-from reproduction import resampling_systems as resampling
 from reproduction.catalogue import EXPERIMENTS
 from reproduction.experiment import Holds, Size
+from reproduction.resampling import systems as resampling
 
 SIZE = Size(range(100, 102), quick=True)
 

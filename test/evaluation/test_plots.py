@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from scoring_samples import NONE, PARTIAL, TOTAL, run_of
 
 from laboratory.figure_files import save
-from reproduction.shading import shade_occlusions
+from reproduction.drawing.shading import shade_occlusions
 from vehicle_pf_tracker.core.errors import InputError
 
 
