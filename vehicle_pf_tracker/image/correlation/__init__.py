@@ -5,7 +5,8 @@
 
 In the order of its use:
 
-- `canonical_patch`: surroundings of the target, resampled so that it has a canonical size
+- `canonical_patch`: surroundings of the target, resampled so that it has a canonical size, by
+  `affine_sampling`
 - `gradient_cells`: the patch as cells of oriented gradients
 - `spectra`: their Fourier transform
 - `correlation_filter`: learning from them, and response to the next ones

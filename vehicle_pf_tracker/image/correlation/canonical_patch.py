@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
+from vehicle_pf_tracker.image.correlation.affine_sampling import sampled
 
 _REDUCED_FROM = 1.7
 """Frame px per canonical px from which the frame is averaged first: bilinear sampling, which
@@ -110,15 +111,7 @@ def cut_image(frame: Frame, centre: Array, zoom: Array, size: tuple[int, int]) -
         y = (y - top + 0.5) / rows - 0.5
         across /= columns
         down /= rows
-    matrix = np.array([[across, 0.0, x], [0.0, down, y]])
-    image = cv2.warpAffine(
-        frame,
-        matrix,
-        size,
-        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
-        borderMode=cv2.BORDER_REPLICATE,
-    )
-    return np.asarray(image, np.uint8)
+    return sampled(frame, (across, x), (down, y), size)
 
 
 def _reduced(frame: Frame, centre: _Pair, size: _Pair, factor: int) -> tuple[Frame, _Pair, _Pair]:

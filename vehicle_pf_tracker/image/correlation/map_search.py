@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+import functools
+
 import cv2
 import numpy as np
 import numpy.typing as npt
@@ -38,16 +40,26 @@ def climbed(values: Array, places: Places, costs: Array) -> tuple[Places, Array]
     reach = side // 2
     # Repeated values make places beyond the border no better than those on it.
     padded = cv2.copyMakeBorder(values, reach, reach, reach, reach, cv2.BORDER_REPLICATE)
-    offsets = np.arange(side)
     # One `take` reads the neighbourhoods of all places.
-    moves = (offsets[:, np.newaxis] * padded.shape[1] + offsets).ravel()
-    first = places[:, 1] * padded.shape[1] + places[:, 0]
-    gains = padded.take(first[:, np.newaxis] + moves)
+    width = padded.shape[1]
+    first = places[:, 1] * width + places[:, 0]
+    gains = padded.take(first[:, np.newaxis] + _neighbours(side, width))
     gains -= costs.ravel()
     best = gains.argmax(axis=1)
-    up, along = np.divmod(best, side)
-    found = np.empty_like(places)
-    np.subtract(along, reach, out=found[:, 0])
-    np.subtract(up, reach, out=found[:, 1])
     # Picked, as a second search of all neighbourhoods would cost as much as the first.
-    return found, gains[np.arange(len(best)), best]
+    return _moves(side)[best], gains[np.arange(len(best)), best]
+
+
+# The maps of a tracker have one size, so that the tables below are made once.
+@functools.cache
+def _neighbours(side: int, width: int) -> npt.NDArray[np.intp]:
+    """Count the values of a map from the first place of a square to each other, (side * side,)."""
+    offsets = np.arange(side)
+    return (offsets[:, np.newaxis] * width + offsets).ravel()
+
+
+@functools.cache
+def _moves(side: int) -> Places:
+    """List the moves from the middle of a square to all of its places, (side * side, 2)."""
+    offsets = np.arange(side) - side // 2
+    return np.asarray(np.stack(np.meshgrid(offsets, offsets), axis=-1).reshape(-1, 2))

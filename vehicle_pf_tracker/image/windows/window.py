@@ -10,6 +10,7 @@ that exist (interpretation 24).
 
 from __future__ import annotations
 
+import functools
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
@@ -121,10 +122,15 @@ def bounds_of_one(
 
 def keep_inside(frame: Frame, positions: Positions) -> Positions:
     """Clip positions so that each lies on a pixel of `frame`, shape (..., 2)."""
-    width, height = frame_size(frame)
     # np.clip does the same, slower.
-    # The middles of the outermost pixels, as continuous px begin at a pixel's corner.
-    return np.minimum(np.maximum(positions, 0.5), (width - 0.5, height - 0.5))
+    return np.minimum(np.maximum(positions, 0.5), _last_middle(*frame_size(frame)))
+
+
+@functools.lru_cache(maxsize=8)
+def _last_middle(width: int, height: int) -> npt.NDArray[np.float64]:
+    """Middle of the last pixel of images of a size, px; made once for all images of a camera."""
+    # Continuous px begin at a pixel's corner.
+    return np.array([width - 0.5, height - 0.5])
 
 
 def is_outside(frame: Frame, x: float, y: float) -> bool:

@@ -116,10 +116,10 @@ class View:
 
     def at(self, position: Array) -> float:
         """Response at the place nearest to a position in px."""
-        column, row = self._place(position)
+        column, row = self.place(position)
         return float(self.response[row, column])
 
-    def _place(self, position: Array) -> tuple[int, int]:
+    def place(self, position: Array) -> tuple[int, int]:
         """Nearest place, as x and y, of one position (2,) in px of the frame."""
         # As `places`, in scalars, which are quicker for one.
         last = len(self.response) - 1
@@ -135,7 +135,7 @@ class View:
         """Find the peak within `reach` places of a position: its position in px, and height."""
         # One place is left free at each border: the parabola needs both neighbours of the peak.
         inner = len(self.response) - 2 - reach
-        column, row = (min(max(place, reach + 1), inner) for place in self._place(position))
+        column, row = (min(max(place, reach + 1), inner) for place in self.place(position))
         near = self.response[row - reach : row + reach + 1, column - reach : column + reach + 1]
         dy, dx = divmod(int(near.argmax()), 2 * reach + 1)
         y, x = row - reach + dy, column - reach + dx

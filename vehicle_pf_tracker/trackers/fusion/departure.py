@@ -73,7 +73,8 @@ class Strangers(NamedTuple):
         """Take a frame in which the vehicle is at `position`, px."""
         # Twice the box is left out: the vehicle's own peak has slopes beyond its sides.
         elsewhere = view.response.copy()
-        (left, top), (right, bottom) = view.places(np.stack([position - size, position + size]))
+        left, top = view.place(position - size)
+        right, bottom = view.place(position + size)
         elsewhere[top : bottom + 1, left : right + 1] = 0.0
         # A maximum, not a mean: one strong answer is enough to be taken for the vehicle.
         faded = self.response * (1 - _STRANGERS_RATE)

@@ -139,18 +139,25 @@ class Hypotheses(NamedTuple):
             Share of the velocity's noise across the heading.
         """
         # Changes of independent frames add in variance.
-        root = np.sqrt(elapsed)
+        root = math.sqrt(elapsed)
         count = len(self.positions)
-        # From p' = V / (1 - r t)^2 and the growth g = r / (1 - r t): p'' = 2 g p', and g' = g^2.
-        faster = np.exp(2 * self.growths * elapsed)[:, np.newaxis]
-        # One common heading: where the vehicle stands, those of single hypotheses would be noise.
-        noise = along_heading(sample_normal(rng, count, 1.0), self.mean_velocity, across)
-        velocities = self.velocities * faster + noise * (sigmas[1] * root)
+        growths = self.growths
+        velocities = self.velocities
+        # None grows before the first occlusion; then there is nothing to compute.
+        if growths.any():
+            # From p' = V / (1 - r t)^2 and the growth g = r / (1 - r t): p'' = 2 g p', g' = g^2.
+            velocities = velocities * np.exp(2 * growths * elapsed)[:, np.newaxis]
+            growths = growths * (1 + growths * elapsed)
+            # g' = g^2 reaches infinity in finite time: a vehicle would fill the image behind a
+            # wall.
+            growths = np.minimum(np.maximum(growths, -FASTEST_GROWTH), FASTEST_GROWTH)
+        noise = sample_normal(rng, count, 1.0)
+        if across != 1.0:
+            # One common heading: where the vehicle stands, those of single ones would be noise.
+            noise = along_heading(noise, self.mean_velocity, across)
+        velocities = velocities + noise * (sigmas[1] * root)
         positions = self.positions + velocities * elapsed
         positions += sample_normal(rng, count, sigmas[0] * root)
-        growths = self.growths * (1 + self.growths * elapsed)
-        # g' = g^2 reaches infinity in finite time: a vehicle would fill the image behind a wall.
-        growths = np.minimum(np.maximum(growths, -FASTEST_GROWTH), FASTEST_GROWTH)
         return self._replace(positions=positions, velocities=velocities, growths=growths)
 
     def passed(self, elapsed: float) -> Hypotheses:
@@ -199,7 +206,7 @@ class Hypotheses(NamedTuple):
 def along_heading(noise: Array, heading: Array, across: float) -> Array:
     """Shrink the part of `noise` (N, 2) that is across the heading (2,) to the share `across`."""
     speed = math.hypot(*heading.tolist())
-    if across == 1.0 or not speed:
+    if not speed:
         return noise
     # The part along the heading is a projection; what is left is across.
     unit = heading / speed

@@ -202,7 +202,10 @@ def _weighed(state: State, climb: tuple[int, float], step: Step) -> tuple[State,
     results = [(*_searched(state, climb, step, scale), scale) for scale in scales]
     # The size of the highest marginal likelihood, summed over positions and visibility: the highest
     # peak alone would prefer the size that clutter answers to best.
-    view, positions, ratios, scale = max(results, key=lambda it: state.particles.evidence(it[2]))
+    best = results[0]
+    if len(results) > 1:
+        best = max(results, key=lambda result: state.particles.evidence(result[2]))
+    view, positions, ratios, scale = best
     particles = state.particles._replace(positions=positions).weighed(ratios)
     # While hidden it stays the predicted one: taken over from clutter, it would drift.
     size = step.bounded(scale * state.size) if particles.probability_visible > 0.5 else state.size
@@ -308,7 +311,9 @@ def response_evidence(
     """
     # Below 0 the filter has seen nothing, which is no stronger evidence than 0.
     seen = np.minimum(np.maximum(view.response, 0), np.float32(_HIGHEST_RESPONSE))
-    ratios = parameters.response_slope * (seen.astype(np.float64) - EVEN_RESPONSE)
+    ratios = seen.astype(np.float64)
+    ratios -= EVEN_RESPONSE
+    ratios *= parameters.response_slope
     moves, log_ratios = climbed(ratios, view.places(positions), _costs(*climb))
     # Bounded last: a move is paid for out of the whole ratio, before what is too much of it is cut.
     bounded = np.minimum(np.maximum(log_ratios, -_LARGEST_LOG_RATIO), _LARGEST_LOG_RATIO)

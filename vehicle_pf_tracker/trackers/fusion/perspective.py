@@ -134,7 +134,9 @@ class Sightings(NamedTuple):
         self, position: Array, size: Array, response: float, *, returned: bool = False
     ) -> Sightings:
         """Add a sighting of the present frame; before one that has `returned` it was hidden."""
-        rows = np.vstack([self.rows, [0.0, *position, *size, response]])
+        rows = np.empty((len(self.rows) + 1, 6))
+        rows[:-1] = self.rows
+        rows[-1] = 0.0, *position.tolist(), *size.tolist(), response
         return self._replace(rows=rows, in_view=1 if returned else self.in_view + 1)
 
     def proven(self) -> Sightings:

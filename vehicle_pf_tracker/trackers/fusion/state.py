@@ -5,9 +5,8 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
-
-import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
@@ -100,7 +99,8 @@ class State(NamedTuple):
     @property
     def extent(self) -> float:
         """Geometric mean of the sides of the box, px."""
-        return float(np.sqrt(self.size.prod()))
+        width, height = self.size.tolist()
+        return math.sqrt(width * height)
 
     @property
     def is_visible(self) -> bool:
