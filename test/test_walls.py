@@ -86,6 +86,8 @@ def allowed_here(module: Module, found: Import) -> bool:
             return False
         in_core = module.room not in {"ros", "cli"}
         return not (in_core and found.name.partition(".")[0] in ROS)
+    if module.name == "__main__":
+        return covers({"cli.main"}, target)
     if not module.name:  # the public names, imported when they are first used
         return not found.at_start
     if target.partition(".")[0] == "ros" and module.room == "cli":

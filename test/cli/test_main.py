@@ -16,7 +16,7 @@ from vehicle_pf_tracker.cli import params
 from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.core.errors import InputError
 
-CALL = "import sys; from vehicle_pf_tracker.cli.main import main; sys.exit(main())"
+MODULE = (sys.executable, "-m", "vehicle_pf_tracker")
 
 
 @pytest.fixture
@@ -136,11 +136,19 @@ def test_a_reader_that_leaves_early_is_no_error():
     read, write = os.pipe()
     os.close(read)
     done = subprocess.run(
-        [sys.executable, "-c", CALL, "params", "apf"],
+        [*MODULE, "params", "apf"],
         stdout=write, stderr=subprocess.PIPE, text=True, check=False,
     )  # fmt: skip
     os.close(write)
     assert (done.returncode, done.stderr) == (141, "")
+
+
+@pytest.mark.parametrize("words", [["params", "ms"], ["params", "nope"], ["nope"], ["--version"]])
+def test_the_package_as_a_module_is_the_command(words, capsys):
+    status = command.main(words)
+    told = capsys.readouterr()
+    done = subprocess.run([*MODULE, *words], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (status, told.out, told.err)
 
 
 def test_bag_replay_is_the_verb_replay(capsys):

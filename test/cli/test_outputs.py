@@ -219,7 +219,7 @@ def test_a_disk_that_fills_costs_the_video_and_nothing_else(
         yield write
         write(None, 0)
 
-    monkeypatch.setattr(video_file, "_h264", filling)
+    monkeypatch.setattr(video_file, "h264_writer", filling)
     verb, *options = words
     assert main([verb, "clip.mp4", *options, "-o", "whole"]) == 0
     assert main([verb, "clip.mp4", *options, "-o", "out", "--video", "full/v.mp4"]) == 1
@@ -236,7 +236,7 @@ def test_a_disk_that_fills_leaves_no_truth_of_a_video_that_is_not_there(here, mo
     def full(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(video_file, "_h264", full)
+    monkeypatch.setattr(video_file, "h264_writer", full)
     assert main(["synth", "bar", "full/bar.mp4"]) == 1
     assert "cannot write full/bar.mp4: No space left on device" in capsys.readouterr().err
     assert not (here / "full").exists()

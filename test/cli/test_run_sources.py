@@ -371,7 +371,7 @@ def test_a_video_of_any_rate_costs_no_estimate(run, video, tmp_path, capsys, rat
         ("showing.video_file.Fraction", "cannot make the video"),
         ("showing.video_file.replacing", "cannot make the video"),
         ("showing.contact_sheet.write_picture", "cannot make the picture"),
-        ("showing.contact_sheet._thumb", "cannot make the picture"),
+        ("showing.contact_sheet.thumbnail", "cannot make the picture"),
         ("showing.estimates_recording.jpeg", "cannot make the recording"),
         ("showing.estimates_recording.RecordingWriter", "cannot make the recording"),
     ],

@@ -3,7 +3,6 @@
 
 import pytest
 
-from vehicle_pf_tracker.evaluation import cache_key
 from vehicle_pf_tracker.evaluation.cache_key import source_digest
 
 COUNTS = {
@@ -27,7 +26,6 @@ def package(tmp_path, monkeypatch):
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text("X = 1\n")
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(cache_key, "_PACKAGE", package)
     source_digest.cache_clear()
     yield package
     source_digest.cache_clear()
@@ -36,15 +34,15 @@ def package(tmp_path, monkeypatch):
 @pytest.mark.parametrize(("name", "counts"), COUNTS.items())
 def test_a_key_depends_on_the_code_that_a_run_needs(package, name, counts):
     own = frozenset({f"{package.name}.trackers.papers.own"})
-    before = source_digest(own)
+    before = source_digest(own, package)
     (package / name).write_text("X = 2\n")
     source_digest.cache_clear()
-    assert (source_digest(own) != before) == counts
+    assert (source_digest(own, package) != before) == counts
 
 
 def test_a_start_that_is_not_there_is_an_error(package):
     with pytest.raises(ModuleNotFoundError, match="gone"):
-        source_digest(frozenset({f"{package.name}.trackers.gone"}))
+        source_digest(frozenset({f"{package.name}.trackers.gone"}), package)
 
 
 @pytest.mark.parametrize("name", ["plugged", "plugs.cells"])

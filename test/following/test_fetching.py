@@ -154,7 +154,7 @@ def test_a_size_beyond_every_network_is_refused_at_once(server, tmp_path):
 
 @pytest.mark.parametrize("tag", ["", '"v1"'])
 def test_a_file_that_never_ends_is_given_up(server, tmp_path, monkeypatch, tag):
-    monkeypatch.setattr(fetching, "_MOST_BYTES", 3 * len(CONTENT))
+    monkeypatch.setattr(fetching, "MOST_BYTES", 3 * len(CONTENT))
     server.endless, server.states_length, server.tag = True, False, tag
     with pytest.raises(InputError, match="does not end; it is not kept"):
         model_file(server.url)

@@ -14,7 +14,6 @@ import pytest
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.parameters import DetectorParameters
 from vehicle_pf_tracker.following.detectors import detector_maker
-from vehicle_pf_tracker.following.networks import fetching
 from vehicle_pf_tracker.following.networks.model_files import model_file
 
 CONTENT = bytes(range(256)) * 1000
@@ -101,8 +100,7 @@ def test_without_a_network_it_is_one_sentence(server, tmp_path):
     assert kept(tmp_path) == []
 
 
-def test_a_full_disk_is_one_sentence_and_nothing_is_kept(server, tmp_path, monkeypatch):
-    monkeypatch.setattr(fetching, "_CHUNK", 1000)
+def test_a_full_disk_is_one_sentence_and_nothing_is_kept(server, tmp_path):
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, before[1]))
     try:

@@ -142,10 +142,16 @@ class StatedTimes:
         pass
 
 
+def state_times(monkeypatch, decoder):
+    """Let videos be decoded by this from now on."""
+    name = "vehicle_pf_tracker.recordings.video.open_decoder"
+    monkeypatch.setattr(name, lambda path: decoder)
+
+
 def test_the_times_of_a_variable_rate_are_kept(tmp_path, monkeypatch):
     video = VideoFile(video_of(tmp_path / "v.avi"))
     video.fps = 1000 / 60
-    monkeypatch.setattr(video, "_open", lambda: StatedTimes([0.0, 40.0, 120.0, 160.0, 240.0]))
+    state_times(monkeypatch, StatedTimes([0.0, 40.0, 120.0, 160.0, 240.0]))
     assert [p.stamp_ns - START for p in video.frames()] == [
         0, 40_000_000, 120_000_000, 160_000_000, 240_000_000
     ]  # fmt: skip
@@ -153,7 +159,7 @@ def test_the_times_of_a_variable_rate_are_kept(tmp_path, monkeypatch):
 
 def test_frames_without_a_time_follow_at_the_rate(tmp_path, monkeypatch):
     video = VideoFile(video_of(tmp_path / "v.avi"))
-    monkeypatch.setattr(video, "_open", lambda: StatedTimes([0.0, math.nan, 200.0]))
+    state_times(monkeypatch, StatedTimes([0.0, math.nan, 200.0]))
     video.fps = 100.0
     assert [p.stamp_ns - START for p in video.frames()] == [0, 10_000_000, 200_000_000]
     assert any("for 1 frames" in notice for notice in video.notices)
@@ -161,7 +167,7 @@ def test_frames_without_a_time_follow_at_the_rate(tmp_path, monkeypatch):
 
 def test_times_that_go_back_are_replaced_and_counted(tmp_path, monkeypatch):
     video = VideoFile(video_of(tmp_path / "v.avi"))
-    monkeypatch.setattr(video, "_open", lambda: StatedTimes([0.0, 0.0, 0.0, 500.0]))
+    state_times(monkeypatch, StatedTimes([0.0, 0.0, 0.0, 500.0]))
     video.fps = 100.0
     found = [p.stamp_ns - START for p in video.frames()]
     assert found == [0, 10_000_000, 20_000_000, 500_000_000]

@@ -17,7 +17,6 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.showing import live_page, page_server
 from vehicle_pf_tracker.showing.live_page import LivePage
 
 GREY = np.full((48, 64, 3), 120, np.uint8)
@@ -84,7 +83,7 @@ def connection(page):
     "drip", [b"", b"GET / HT", b"GET /x HTTP/1.1\r\nHost: a\r\n"], ids=["silent", "begun", "slow"]
 )
 def test_a_connection_that_does_not_ask_for_the_page_is_closed(monkeypatch, drip):
-    monkeypatch.setattr(page_server, "_STRANGER_SECONDS", 0.5)
+    monkeypatch.setattr(LivePage, "stranger_seconds", 0.5)
     with closing(LivePage(0)) as page, connection(page) as stranger:
         began = time.monotonic()
         with suppress(OSError):
@@ -99,8 +98,8 @@ def test_a_connection_that_does_not_ask_for_the_page_is_closed(monkeypatch, drip
 
 
 def test_strangers_leave_the_page_to_its_user(monkeypatch):
-    monkeypatch.setattr(page_server, "_MOST_STRANGERS", 4)
-    monkeypatch.setattr(page_server, "_STRANGER_SECONDS", 0.5)
+    monkeypatch.setattr(LivePage, "most_strangers", 4)
+    monkeypatch.setattr(LivePage, "stranger_seconds", 0.5)
     with closing(LivePage(0)) as page, ExitStack() as strangers:
         for _ in range(12):
             strangers.enter_context(connection(page))
@@ -116,8 +115,8 @@ def test_strangers_leave_the_page_to_its_user(monkeypatch):
 
 
 def test_who_knows_the_address_may_take_longer(monkeypatch):
-    monkeypatch.setattr(page_server, "_STRANGER_SECONDS", 0.3)
-    monkeypatch.setattr(live_page, "_SECONDS", 1.5)
+    monkeypatch.setattr(LivePage, "stranger_seconds", 0.3)
+    monkeypatch.setattr(LivePage, "picture_seconds", 1.5)
     with closing(LivePage(0)) as page, pytest.raises(HTTPError, match="404"):
         get(f"{page.url}picture.jpg")  # waits for a picture that does not come
 

@@ -79,7 +79,7 @@ class ReapedElsewhere:
 
 
 def test_a_status_that_the_pool_took_first_is_waited_for():
-    assert processes._status_of(ReapedElsewhere()) == -signal.SIGKILL
+    assert processes.status_of(ReapedElsewhere()) == -signal.SIGKILL
 
 
 def test_without_a_result_for_it_the_end_of_a_process_is_an_error():

@@ -41,6 +41,7 @@ def variant_modules(variant: Variant) -> set[str]:
 
 
 _PACKAGE = Path(__file__).parents[1]
+"""Folder of our code."""
 _WHOLE = (
     "core",
     "road",
@@ -61,7 +62,7 @@ _ALONE = ("trackers", "evaluation", "evaluation/grid")
 
 
 @functools.cache
-def source_digest(modules: frozenset[str]) -> str:
+def source_digest(modules: frozenset[str], package: Path = _PACKAGE) -> str:
     """Digest the code of `_WHOLE` rooms, of `_ALONE` folders and of those that `modules` are in.
 
     Parameters
@@ -69,9 +70,11 @@ def source_digest(modules: frozenset[str]) -> str:
     modules : frozenset of str
         Full names, such as ``vehicle_pf_tracker.trackers.papers.apf``: of the trackers, only those
         beside the modules count. Of a module without a package only its own file counts.
+    package : Path
+        Folder of the package that has the shared folders.
     """
-    paths = {path for name in _WHOLE for path in (_PACKAGE / name).rglob("*.py")}
-    paths |= {path for name in _ALONE for path in (_PACKAGE / name).glob("*.py")}
+    paths = {path for name in _WHOLE for path in (package / name).rglob("*.py")}
+    paths |= {path for name in _ALONE for path in (package / name).glob("*.py")}
     for name in modules:
         found = importlib.util.find_spec(name)
         if found is None or found.origin is None:

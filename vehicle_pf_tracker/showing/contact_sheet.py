@@ -40,8 +40,8 @@ class ContactSheet:
         changes = modes != self._modes
         if changes and len(self._kept) < _KEPT:
             if self._modes is not None and self._last is not None:
-                self._kept.append(_thumb(self._last()))
-            self._kept.append(_thumb(draw()))
+                self._kept.append(thumbnail(self._last()))
+            self._kept.append(thumbnail(draw()))
             self._last = None
         else:
             self._last = draw
@@ -55,7 +55,7 @@ class ContactSheet:
         InputError
             If it cannot be written.
         """
-        thumbs = [*self._kept, *([] if self._last is None else [_thumb(self._last())])]
+        thumbs = [*self._kept, *([] if self._last is None else [thumbnail(self._last())])]
         if not thumbs:
             return
         chosen = np.unique(np.linspace(0, len(thumbs) - 1, min(len(thumbs), _MOST)).round())
@@ -72,7 +72,8 @@ class ContactSheet:
         write_picture(path, sheet)
 
 
-def _thumb(picture: Frame) -> Frame:
+def thumbnail(picture: Frame) -> Frame:
+    """Scale a picture to `THUMB_WIDTH`."""
     height = max(1, round(THUMB_WIDTH * picture.shape[0] / picture.shape[1]))
     thumb: Frame = cv2.resize(picture, (THUMB_WIDTH, height), interpolation=cv2.INTER_AREA)  # type: ignore[assignment]
     return thumb

@@ -17,9 +17,6 @@ from vehicle_pf_tracker.showing.page_server import LOCAL_ADDRESS, Content, PageH
 
 PAGE_NAME = "the live page"
 """Name of the page in messages."""
-_SECONDS = 2.0
-"""Longest wait for the next image, s, after which the one before is sent again: so it is where a
-camera gives less than one image in two seconds."""
 _FAREWELL = 2.0
 """Time at the end of a run in which a browser that looks on fetches the last picture, s."""
 _LOOKED_ON = 5.0
@@ -44,6 +41,10 @@ class LivePage(PageServer):
     InputError
         If the port cannot be had.
     """
+
+    picture_seconds = 2.0
+    """Longest wait for the next image, s, after which the one before is sent again: so it is where
+    a camera gives less than one image in two seconds."""
 
     def __init__(self, port: int, host: str = LOCAL_ADDRESS, token: str = "") -> None:
         super().__init__(PageHandler, port, host, token)
@@ -100,5 +101,5 @@ class LivePage(PageServer):
             self._asked = time.monotonic()
             if not self._has_ended:
                 self._is_wanted = True
-                self._shown.wait(_SECONDS)
+                self._shown.wait(self.picture_seconds)
             return ("image/jpeg", self._picture) if self._picture else None

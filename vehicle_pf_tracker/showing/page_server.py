@@ -21,14 +21,6 @@ from vehicle_pf_tracker.core.errors import InputError
 Content = tuple[str, bytes]
 """Media type and bytes of an answer."""
 
-
-_STRANGER_SECONDS = 10.0
-"""Time that a connection has to ask under the secret path, s: browsers open some ahead, and open
-others when these are closed."""
-_MOST_STRANGERS = 64
-"""Connections that have not asked under the secret path yet, which cost a thread each."""
-
-
 LOCAL_ADDRESS = "127.0.0.1"
 """Address of this machine alone."""
 _EVERYWHERE = frozenset({"0.0.0.0", "::"})  # noqa: S104 - only where it is asked for
@@ -67,6 +59,11 @@ class PageServer(ThreadingHTTPServer):
 
     daemon_threads = True
     block_on_close = False
+    stranger_seconds = 10.0
+    """Time that a connection has to ask under the secret path, s: browsers open some ahead, and
+    open others when these are closed."""
+    most_strangers = 64
+    """Connections that have not asked under the secret path yet, which cost a thread each."""
 
     def __init__(
         self, handler: type[PageHandler], port: int = 0, host: str = LOCAL_ADDRESS, token: str = ""
@@ -90,9 +87,9 @@ class PageServer(ThreadingHTTPServer):
     def verify_request(self, request: Any, client_address: Any) -> bool:
         """Take a connection, unless too many wait that have not asked for anything yet."""
         with self._lock:
-            if len(self._strangers) >= _MOST_STRANGERS:
+            if len(self._strangers) >= self.most_strangers:
                 return False
-            self._strangers[request] = time.monotonic() + _STRANGER_SECONDS
+            self._strangers[request] = time.monotonic() + self.stranger_seconds
         return True
 
     def admit(self, request: Any) -> None:

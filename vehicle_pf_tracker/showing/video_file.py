@@ -73,13 +73,23 @@ def video_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[Wri
     check_video(path)
     make_folder(path.parent)
     even = size[0] // 2 * 2, size[1] // 2 * 2
-    with replacing(path) as partial, _h264(partial, even, rate) as write:
+    with replacing(path) as partial, h264_writer(partial, even, rate) as write:
         yield lambda frame, at: write(np.ascontiguousarray(frame[: even[1], : even[0]]), at)
 
 
 @contextmanager
-def _h264(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
-    """Give a function that appends frames of this size, whose sides are even, to an H.264 file."""
+def h264_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
+    """Give a function that appends frames to an H.264 file, which is whole at the end of the block.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    size : (int, int)
+        Width and height of the frames in px, both even.
+    rate : float
+        Usual number of frames per second.
+    """
     import av  # noqa: PLC0415 - an extra
 
     limited = min(max(rate, LOWEST_RATE), HIGHEST_RATE)

@@ -106,7 +106,7 @@ def _results(
     by_key = {key(task): task for task in tasks}
     # Not pure for Dask: a worker of this run, not a result of an earlier one, has to answer.
     submitted = [
-        client.submit(_checked, function, task, own, key=name, pure=False)
+        client.submit(call_if_alike, function, task, own, key=name, pure=False)
         for name, task in by_key.items()
     ]
     waiting = distributed.as_completed(submitted, loop=client.loop)
@@ -125,8 +125,16 @@ def _results(
         raise InputError(f"the cluster gave up {len(given_up)} of {len(by_key)}, {given_up[0]}")
 
 
-def _checked(function: Callable[[TaskT], ResultT], task: TaskT, own: Mapping[str, str]) -> ResultT:
-    """Call `function` on a worker, after its versions were compared."""
+def call_if_alike(
+    function: Callable[[TaskT], ResultT], task: TaskT, own: Mapping[str, str]
+) -> ResultT:
+    """Call `function` on a worker, once its fingerprint is found to be `own`.
+
+    Raises
+    ------
+    InputError
+        If it would give other numbers.
+    """
     with _ONE_TASK:
         # On the worker itself, each time: one that joined on the way was not asked at the start.
         _compare(own, {socket.gethostname(): fingerprint()})

@@ -119,7 +119,7 @@ def _in_pool(
 
 def _how_it_ended(processes: Sequence[multiprocessing.process.BaseProcess]) -> str:
     """Say how the first of some processes ended, in words that follow "was ended"."""
-    status = _status_of(processes[0]) if processes else None
+    status = status_of(processes[0]) if processes else None
     if status is None or status >= 0:
         return f"with status {status}"
     if -status == signal.SIGKILL:
@@ -127,7 +127,7 @@ def _how_it_ended(processes: Sequence[multiprocessing.process.BaseProcess]) -> s
     return f"by {signal.Signals(-status).name}, perhaps by a library that its file is too much for"
 
 
-def _status_of(process: multiprocessing.process.BaseProcess) -> int | None:
+def status_of(process: multiprocessing.process.BaseProcess) -> int | None:
     """Wait for the status of a process; None where it goes on for longer than `PATIENCE`.
 
     Joining it is not enough: a thread of the pool waits for it too, and where that is first, the

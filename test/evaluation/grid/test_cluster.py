@@ -15,7 +15,7 @@ from evaluation_samples import here, make_plan, results, silent, system, write_r
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.grid.running import complete, on_cluster, run_cell
 from vehicle_pf_tracker.workers import cluster
-from vehicle_pf_tracker.workers.cluster import fingerprint, run_on_cluster
+from vehicle_pf_tracker.workers.cluster import call_if_alike, fingerprint, run_on_cluster
 
 
 @pytest.fixture
@@ -86,8 +86,8 @@ def test_a_worker_of_another_version_is_named_with_what_differs(address, tmp_pat
 def test_a_worker_that_joins_on_the_way_is_compared_too(tmp_path):
     (cell,) = make_plan(write_recordings(tmp_path)[:1], [system("ms")]).cells()
     with pytest.raises(InputError, match="instead of 0"):
-        cluster._checked(run_cell, cell, {**fingerprint(), "code": "0"})
-    assert cluster._checked(run_cell, cell, fingerprint()).metrics is not None
+        call_if_alike(run_cell, cell, {**fingerprint(), "code": "0"})
+    assert call_if_alike(run_cell, cell, fingerprint()).metrics is not None
 
 
 def test_a_scheduler_that_does_not_answer_is_named():

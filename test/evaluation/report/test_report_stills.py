@@ -13,10 +13,9 @@ from vehicle_pf_tracker.evaluation.evaluation_folder import EvaluationFolder
 from vehicle_pf_tracker.evaluation.report.aggregates import aggregate
 from vehicle_pf_tracker.evaluation.report.scored_runs import score_folder
 from vehicle_pf_tracker.evaluation.report.stills import (
-    _APART,
     FOLDER,
-    _peaks,
     embedded_stills,
+    peaks,
     worst_moments,
     write_stills,
 )
@@ -42,10 +41,10 @@ def test_peaks_are_the_largest_values_apart_from_each_other():
     values = np.zeros(100)
     values[[10, 12, 80]] = 3.0, 2.0, 1.0
     values[50] = np.nan
-    found = list(_peaks(np.where(np.isnan(values), -np.inf, values)))
+    found = list(peaks(np.where(np.isnan(values), -np.inf, values), 30))
     assert found[:2] == [10, 80]
-    assert all(abs(a - b) > _APART for a in found for b in found if a != b)
-    assert list(_peaks(np.full(5, -np.inf))) == []
+    assert all(abs(a - b) > 30 for a in found for b in found if a != b)
+    assert list(peaks(np.full(5, -np.inf), 30)) == []
 
 
 def test_the_worst_frame_of_a_recording_is_that_of_its_first_system(scored):

@@ -21,6 +21,7 @@ from traffic_rig import TrafficRig, lanes
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.node.kept_target import KeptTarget
+from vehicle_pf_tracker.ros.own_files import own_file
 
 GOOD = json.dumps(list(TARGET))
 
@@ -111,7 +112,7 @@ def test_a_pipe_where_the_target_is_written_is_replaced(file):
 
 @given(st.binary(max_size=200))
 def test_no_content_ends_the_node(content):
-    file = KeptTarget("/apf_tracker")._path
+    file = own_file("/apf_tracker", "target.json")
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_bytes(content)
     try:

@@ -88,7 +88,7 @@ def test_pause_and_resume_say_where_nothing_changes():
 
 def test_the_space_bar_pauses_and_continues(monkeypatch):
     keys = iter(["", " ", "x", " "])
-    monkeypatch.setattr(pausing, "_is_at_terminal", lambda: True)
+    monkeypatch.setattr(pausing, "is_at_terminal", lambda: True)
     monkeypatch.setattr(pausing, "pressed_keys", lambda: next(keys))
     node, pace = Node(), ReplayPace(1.0)
     pausing.offer_pausing(node, pace, lambda _: None)

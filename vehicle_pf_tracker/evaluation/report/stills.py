@@ -95,7 +95,9 @@ def worst_moments(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[
         for frame, truth in truths.items():
             if frame <= len(errors) and np.isfinite(errors[frame - 1]):
                 relative[frame - 1] = errors[frame - 1] / truth.box.diagonal
-        found += [(relative[at], source, at + 1, float(errors[at])) for at in _peaks(relative)]
+        found += [
+            (relative[at], source, at + 1, float(errors[at])) for at in peaks(relative, _APART)
+        ]
     found.sort(key=lambda moment: -moment[0])
     return [
         Moment(
@@ -109,8 +111,16 @@ def worst_moments(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[
     ]
 
 
-def _peaks(values: Array) -> Iterator[int]:
-    """Give the indices of the largest values that are far enough from each other."""
+def peaks(values: Array, apart: int) -> Iterator[int]:
+    """Give the indices of the largest finite values, at most `_MOST`, each from its neighbours.
+
+    Parameters
+    ----------
+    values : (N,) array
+        Values; what is not finite is none.
+    apart : int
+        Number of values on each side of a peak that are passed over.
+    """
     values = values.copy()
     for _ in range(_MOST):
         index = int(np.argmax(values))
@@ -118,7 +128,7 @@ def _peaks(values: Array) -> Iterator[int]:
             return
         yield index
         # Its neighbours are out: they show the same failure.
-        values[max(index - _APART, 0) : index + _APART + 1] = -np.inf
+        values[max(index - apart, 0) : index + apart + 1] = -np.inf
 
 
 def _boxes(

@@ -31,7 +31,7 @@ _CHUNK = 1 << 16
 """Bytes between two reports of progress: some ten a second at the rate of a slow line."""
 _BLOCK = 1 << 20
 """Bytes of a file that are summed at once, so that a large one needs no memory."""
-_MOST_BYTES = 2**31
+MOST_BYTES = 2**31
 """Size of the largest file of a network: protobuf, which ONNX is written in, has no larger
 ones."""
 _LEFT_SECONDS = 7 * 86400.0
@@ -197,7 +197,7 @@ class _Download:
     ) -> None:
         """Write the chunks of a file that has `done` bytes already, of `total` if it is known."""
         # Twice: by what the server says before, and by what it sends below.
-        if total is not None and total > _MOST_BYTES:
+        if total is not None and total > MOST_BYTES:
             raise InputError(f"the network {self._url} has {total} bytes; no network is so large")
         try:
             for chunk in chunks:
@@ -208,7 +208,7 @@ class _Download:
                         "browser; a page to log in may be before it"
                     )
                 done += file.write(chunk)
-                if done > _MOST_BYTES:
+                if done > MOST_BYTES:
                     raise InputError(f"the network {self._url} does not end; it is not kept")
                 self._progress(f"fetching {self._url}", done / total if total else None)
         except InputError:

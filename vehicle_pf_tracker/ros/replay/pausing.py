@@ -68,14 +68,14 @@ def offer_pausing(node: Node, pace: ReplayPace, tell: Callable[[str], None]) -> 
         if " " in pressed_keys():
             set_paused(not pace.is_paused)
 
-    if _is_at_terminal():
+    if is_at_terminal():
         node.create_timer(1 / _LOOKS, look, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
 
 @contextmanager
 def keys_at_once() -> Iterator[None]:
     """Have the terminal give each key as it is pressed, without the return key or an echo."""
-    if not _is_at_terminal():
+    if not is_at_terminal():
         yield
         return
     before = termios.tcgetattr(sys.stdin)
@@ -89,7 +89,7 @@ def keys_at_once() -> Iterator[None]:
 def pressed_keys() -> str:
     """Return the keys that were pressed since the last call."""
     keys = ""
-    while _is_at_terminal() and select.select([sys.stdin], [], [], 0.0)[0]:
+    while is_at_terminal() and select.select([sys.stdin], [], [], 0.0)[0]:
         # Past Python's buffer, which `select` does not see.
         if not (read := os.read(sys.stdin.fileno(), 64)):
             break
@@ -97,7 +97,7 @@ def pressed_keys() -> str:
     return keys
 
 
-def _is_at_terminal() -> bool:
+def is_at_terminal() -> bool:
     """Tell whether this process has the keyboard: reading in the background would stop it."""
     try:
         return os.tcgetpgrp(sys.stdin.fileno()) == os.getpgrp()
