@@ -4,7 +4,7 @@
 """The command line of the laboratory: ``python -m laboratory VERB``, ``stress`` or ``faults``.
 
 The programs beside it that fit and score have command lines of their own:
-``python -m laboratory.fusion_fit --help``.
+``python -m laboratory.fusion.fit --help``.
 """
 
 from __future__ import annotations

@@ -5,9 +5,9 @@
 
     python -m laboratory.readme_table SEQUENCES FURTHER --budget 12 --cases 2 --hard 2 -o OUT
 
-The rows are of ``SEQUENCES``. The first has what `laboratory.fusion_fit` reaches there with the
+The rows are of ``SEQUENCES``. The first has what `laboratory.fusion.fit` reaches there with the
 same options and two seeds, fitted on ``FURTHER``, too. CSRT and NanoTrack were measured beside the
-sequences: ``SEQUENCES/baselines.csv``. What ``OUT`` has is not run again; `laboratory.fusion_fit`
+sequences: ``SEQUENCES/baselines.csv``. What ``OUT`` has is not run again; `laboratory.fusion.fit`
 may have written it.
 """
 
@@ -20,7 +20,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from laboratory.fusion_fit import (
+from laboratory.fusion.fit import (
     NUMBERS,
     fit,
     judge,

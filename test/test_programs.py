@@ -51,12 +51,12 @@ PROGRAMS = {
         "toy={toy}/traffic=good,motion two={toy}/traffic=good@.2 -o {out}",
         ("calibration.md", "left_out.md", "runs.jsonl"),
     ),
-    "laboratory.fusion_ablation": Program(
+    "laboratory.fusion.ablation": Program(
         f"{BATTERY} --changes no_camera_motion",
         ("ablation.md", "ablation.jsonl"),
         "| no camera motion |",
     ),
-    "laboratory.fusion_clips": Program(
+    "laboratory.fusion.clips": Program(
         "{toy}/clip.mp4 {toy}/clip --model none -o {toy}/seen",
         printed="| all | 10 |",  # one of each clip, and eight look-alikes
     ),
@@ -66,14 +66,14 @@ PROGRAMS = {
         needs=("baselines",),
     ),
     "benchmarks.memory_parts": Program("", printed="| kernels and step of `apf` | +"),
-    "laboratory.fusion_fit": Program(
+    "laboratory.fusion.fit": Program(
         f"{BATTERY} {ONE_CASE} --budget 2 --cases 1", ("fit.json", "leave_one_camera_out.md")
     ),
-    "laboratory.fusion_reliability": Program(
+    "laboratory.fusion.reliability": Program(
         f"{BATTERY} {ONE_CASE}", ("shipped.md", "reliability.md", "reliability.png")
     ),
-    "laboratory.fusion_scene_pictures": Program(f"{{out}} --only {PICTURE}", (f"{PICTURE}.webp",)),
-    "laboratory.fusion_scenes": Program("--scenes bridge --seeds 1 -o {out}/a.md", ("a.md",)),
+    "laboratory.fusion.scene_pictures": Program(f"{{out}} --only {PICTURE}", (f"{PICTURE}.webp",)),
+    "laboratory.fusion.scenes": Program("--scenes bridge --seeds 1 -o {out}/a.md", ("a.md",)),
     "laboratory.readme_table": Program(
         f"{BATTERY} {ONE_CASE} --budget 2 --cases 1", ("readme.md",), "| `fusion` as it ships | "
     ),
@@ -81,7 +81,7 @@ PROGRAMS = {
         "--seeds 1 --speeds 130 --variant apf -o {out}/a.md", ("a.md",), "| all | pairs |"
     ),
     "laboratory.target_contrast": Program("{toy}/sequences", printed="| one |"),
-    "laboratory.traffic_clips": Program(
+    "laboratory.traffic.clips": Program(
         "{toy}/clip.mp4 0 {toy}/clip/groundtruth.csv --seeds 1", printed="| clip | 0 |"
     ),
     "benchmarks.traffic_cost": Program(
@@ -89,24 +89,25 @@ PROGRAMS = {
         printed="per further vehicle",
         needs=("baselines",),
     ),
-    "laboratory.traffic_fit": Program(
+    "laboratory.traffic.fit": Program(
         "toy={toy}/traffic --boxes good --only detection.blobs:_PIECE -o {out}",
         ("leave_one_camera_out.md", "runs.jsonl"),
         needs=("baselines",),
     ),
-    "laboratory.traffic_occluders": Program("{toy}/traffic", printed="traffic: "),
-    "laboratory.traffic_perturbed": Program(
+    "laboratory.traffic.occluders": Program("{toy}/traffic", printed="traffic: "),
+    "laboratory.traffic.perturbed": Program(
         "{toy}/traffic -o {out}", ("traffic.md",), "the report is", ("baselines",)
     ),
-    "laboratory.traffic_score": Program(
+    "laboratory.traffic.score": Program(
         "{toy}/traffic --baselines", printed="bytetrack", needs=("baselines",)
     ),
-    "laboratory.traffic_spread": Program(
+    "laboratory.traffic.spread": Program(
         "{toy}/traffic --runs 1 --frames 40", printed="| traffic", needs=("baselines",)
     ),
 }
 LIBRARIES = {
-    "laboratory.__init__", "laboratory.__main__", "laboratory.covariance_coverage",
+    "laboratory.__init__", "laboratory.fusion.__init__", "laboratory.traffic.__init__",
+    "laboratory.__main__", "laboratory.covariance_coverage",
     "laboratory.coverage_picture", "laboratory.figure_files", "laboratory.result_store",
     "benchmarks.versus", "benchmarks.versus_worker",
 }  # fmt: skip
@@ -207,8 +208,12 @@ def test_covariances_are_fitted_and_reported(tmp_path):
 
 
 def test_every_program_is_tried():
-    folders = "benchmarks", "laboratory"
-    there = {f"{one}.{path.stem}" for one in folders for path in (ROOT / one).glob("*.py")}
+    folders = "benchmarks", "laboratory", "laboratory.fusion", "laboratory.traffic"
+    there = {
+        f"{folder}.{path.stem}"
+        for folder in folders
+        for path in (ROOT / folder.replace(".", "/")).glob("*.py")
+    }
     assert {*PROGRAMS, "laboratory.uncertainty"} == there - LIBRARIES
 
 

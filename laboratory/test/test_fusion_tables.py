@@ -10,15 +10,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from laboratory import (
-    fusion_ablation,
-    fusion_clips,
-    fusion_fit,
-    fusion_reliability,
-    fusion_scene_pictures,
-    readme_table,
-)
-from laboratory.fusion_fit import fitted, listed_cases, objective
+from laboratory import readme_table
+from laboratory.fusion import ablation, clips, fit, reliability, scene_pictures
+from laboratory.fusion.fit import fitted, listed_cases, objective
 from laboratory.stress import Reliability, Result, Score
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -47,7 +41,7 @@ def test_a_change_is_compared_with_the_default_camera_by_camera():
         result("a", 0.8, recovered=1, judged=1), result("b", 1.0),
         result("a", 0.6, "less", recovered=0, judged=1), result("b", 1.0, "less"),
     ]  # fmt: skip
-    default, less = (fusion_ablation.row(name, results) for name in ("default", "less"))
+    default, less = (ablation.row(name, results) for name in ("default", "less"))
     assert default == ["default", "0.900", "0.500", "1 of 1", "–", "–", "–"]
     assert less[:4] == ["less", "0.800", "0.500", "0 of 1"]
     assert less[4].startswith("-0.100 (-0.200 +0.000")
@@ -56,8 +50,8 @@ def test_a_change_is_compared_with_the_default_camera_by_camera():
 
 
 def test_every_change_of_the_ablation_is_a_parameter():
-    for change in fusion_ablation.CHANGES.values():
-        fusion_ablation.variant_system("fusion", change).make(0)
+    for change in ablation.CHANGES.values():
+        ablation.variant_system("fusion", change).make(0)
 
 
 def test_the_table_of_the_readme_has_means_and_sums(tmp_path):
@@ -78,7 +72,7 @@ def test_the_calibration_error_is_pooled_over_frames_and_names_the_worst_sequenc
         result("a", 1.0, pairs=[(1.0, True)] * 9),
         result("b", 0.0, kind="wall", pairs=[(0.8, False)]),
     ]
-    table = fusion_reliability.reliability_table(results)
+    table = reliability.reliability_table(results)
     assert "| all | 10 | 0.080 |" in table
     assert "| plain | 9 | 0.000 |" in table
     assert "| wall | 1 | 0.800 |" in table
@@ -90,7 +84,7 @@ def test_the_figure_has_a_line_for_plain_and_one_for_harder_cases(tmp_path):
         result("a", 1.0, pairs=[(0.95, True), (0.95, False), (0.25, False)]),
         result("b", 0.0, kind="wall", pairs=[(0.85, False)]),
     ]
-    above = fusion_reliability.reliability_figure(results).axes[0]
+    above = reliability.reliability_figure(results).axes[0]
     ideal, plain, hard = (line.get_xydata().tolist() for line in above.lines)
     assert ideal == [[0, 0], [1, 1]]
     assert plain == [[0.25, 0], [pytest.approx(0.95), 0.5]]
@@ -98,8 +92,8 @@ def test_the_figure_has_a_line_for_plain_and_one_for_harder_cases(tmp_path):
 
 
 def test_a_picture_may_have_a_row_that_is_not_full(tmp_path):
-    short = fusion_scene_pictures.Picture("short", "turn", 0, (1, 2, 3, 4))
-    fusion_scene_pictures.draw_pictures(tmp_path, [short])
+    short = scene_pictures.Picture("short", "turn", 0, (1, 2, 3, 4))
+    scene_pictures.draw_pictures(tmp_path, [short])
     assert (tmp_path / "short.webp").stat().st_size > 0
 
 
@@ -114,7 +108,7 @@ def drive(first, last, speed):
 def test_only_vehicles_that_drive_out_well_before_the_clip_ends_are_judged():
     boxes = {1: drive(0, 40, 4), 2: drive(0, 40, 0.1), 3: drive(100, 160, 3), 4: drive(0, 10, 4)}
     sure = {identity: set(own) for identity, own in boxes.items()}
-    runs = fusion_clips.leaving(boxes, sure, (200, 100), 180)
+    runs = clips.leaving(boxes, sure, (200, 100), 180)
     assert [(run.identity, run.first, run.last) for run in runs] == [(1, 0, 40)]
 
 
@@ -122,24 +116,24 @@ def test_a_start_is_free_of_others():
     """The boxes of both overlap until frame 4."""
     boxes = {1: drive(0, 40, 4), 2: drive(0, 40, 4)}
     boxes[2] = {time: boxes[2][time] for time in range(5)}
-    runs = fusion_clips.leaving(boxes, {1: set(boxes[1]), 2: set()}, (200, 100), 180)
+    runs = clips.leaving(boxes, {1: set(boxes[1]), 2: set()}, (200, 100), 180)
     assert [(run.identity, run.first) for run in runs] == [(1, 5)]
 
 
 def test_look_alikes_leave_on_both_sides():
-    clip = fusion_clips.look_alikes(200)
-    runs = fusion_clips.leaving(clip.boxes, clip.sure, (640, 360), 200)
+    clip = clips.look_alikes(200)
+    runs = clips.leaving(clip.boxes, clip.sure, (640, 360), 200)
     assert {clip.boxes[run.identity][run.last].x < 320 for run in runs} == {False, True}
 
 
 def test_seeds_are_judged_apart():
-    one = fusion_clips.Run(1, 0, 2)
+    one = clips.Run(1, 0, 2)
     assert replace(one, seed=1).claims is not one.claims
 
 
 def test_tracking_counts_once_the_vehicle_has_left():
     """On target in one of two frames; of four later ones one is claimed, on another vehicle."""
-    run, gone = fusion_clips.Run(1, 0, 2), fusion_clips.GRACE + 2
+    run, gone = clips.Run(1, 0, 2), clips.GRACE + 2
     right, other = Box(0, 0, 9, 9), Box(80, 0, 9, 9)
     boxes = {1: {1: right, 2: right}, 2: {gone + 2: other}}
     shown = {1: (right, Mode.TRACKING), 2: (other, Mode.TRACKING), gone: (right, Mode.TRACKING)}
@@ -147,7 +141,7 @@ def test_tracking_counts_once_the_vehicle_has_left():
     for frame in range(1, gone + 5):
         box, mode = shown.get(frame, (other, Mode.LOST))
         run.take(frame, SimpleNamespace(box=box, mode=mode), boxes)
-    assert fusion_clips.row("clip", [run]) == ["clip", "1", "0.500", "4", "0.250", "0.250", "1"]
+    assert clips.row("clip", [run]) == ["clip", "1", "0.500", "4", "0.250", "0.250", "1"]
 
 
 def test_a_camera_has_no_part_in_the_fit_that_is_judged_on_it():
@@ -181,8 +175,8 @@ def listing(monkeypatch):
         calls.append(choice)
         return [Made("case", "plain", "a/one", "a")]
 
-    monkeypatch.setattr(fusion_fit, "find_sequences", lambda folders, cameras: [])
-    monkeypatch.setattr(fusion_fit, "list_cases", list_cases)
+    monkeypatch.setattr(fit, "find_sequences", lambda folders, cameras: [])
+    monkeypatch.setattr(fit, "list_cases", list_cases)
     return calls
 
 
@@ -204,4 +198,4 @@ def test_other_options_list_other_cases(tmp_path, listing, changed, limit):
 
 def test_one_camera_alone_cannot_be_left_out(tmp_path, listing):
     with pytest.raises(InputError, match="all sequences are of the camera a"):
-        fusion_fit.fit(make_options(tmp_path))
+        fit.fit(make_options(tmp_path))

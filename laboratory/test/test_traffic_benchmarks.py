@@ -9,10 +9,10 @@ import pytest
 from benchmarks.traffic_cost import made, place
 from laboratory.scenes import make_traffic_scene
 from laboratory.scenes.mot_folder import write_mot_folder
-from laboratory.traffic_clips import Row, read_truth, report
-from laboratory.traffic_occluders import judged
-from laboratory.traffic_perturbed import PERTURBATIONS
-from laboratory.traffic_spread import Run, summary
+from laboratory.traffic.clips import Row, read_truth, report
+from laboratory.traffic.occluders import judged
+from laboratory.traffic.perturbed import PERTURBATIONS
+from laboratory.traffic.spread import Run, summary
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.evaluation.traffic.sequence import read_sequence
 

@@ -46,7 +46,7 @@ _MEMBER = 0.5
 _LEAST_PART = 0.15
 """Smallest share of a blob's area that may be a vehicle of its own, and least pixels, of the
 fullest row's, of a row that belongs to a vehicle. With other shares HOTA by motion behind a bridge
-is seven less (`python -m laboratory traffic_score`)."""
+is seven less (`python -m laboratory.traffic.score`)."""
 _LEAST_SHARE = 0.1
 """Area of a piece, of the largest one's, below which it is a speck that happens to be in the same
 prediction. A choice below `_LEAST_PART`, from which a piece may be a vehicle."""

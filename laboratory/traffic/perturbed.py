@@ -3,7 +3,7 @@
 
 """`traffic` and the baselines on detections made worse, as `evaluate --traffic` compares them.
 
-``python -m laboratory.traffic_perturbed FOLDER… -o DIR`` with folders in MOTChallenge's layout.
+``python -m laboratory.traffic.perturbed FOLDER… -o DIR`` with folders in MOTChallenge's layout.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 
 """Fit the numbers of `fusion` to recordings with truth, and judge them on cameras left out.
 
-``python -m laboratory.fusion_fit SEQUENCES -o results/fusion_fit`` draws `--budget` settings of the
+``python -m laboratory.fusion.fit SEQUENCES -o results/fusion_fit`` draws `--budget` settings of the
 parameters that are marked as tuned, around the present defaults, and runs each over the same cases
 of every camera. The fitted setting is the mean of the best quarter (one step of the cross-entropy
 method): once by all cameras, and for each camera by all others. ``fit.json`` has all of them;
@@ -311,4 +311,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(exit_status(main, "python -m laboratory.fusion_fit"))
+    sys.exit(exit_status(main, "python -m laboratory.fusion.fit"))

@@ -3,9 +3,9 @@
 
 """The shipped values of `fusion` on recordings with truth, and how far its confidence is right.
 
-    python -m laboratory.fusion_reliability SEQUENCES -o results/fusion_reliability
+    python -m laboratory.fusion.reliability SEQUENCES -o results/fusion_reliability
 
-``shipped.md`` is the table that `laboratory.fusion_fit` has, for the defaults;
+``shipped.md`` is the table that `laboratory.fusion.fit` has, for the defaults;
 ``reliability.md`` the calibration error by kind of case; and ``reliability.png`` the reliability
 diagram: visible frames by reported confidence, against the share of them that are on target.
 """
@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from laboratory.figure_files import save
-from laboratory.fusion_fit import (
+from laboratory.fusion.fit import (
     JUDGED_KINDS,
     listed_cases,
     make_parser,
@@ -35,7 +35,7 @@ from vehicle_pf_tracker.results.output_files import write_text
 
 
 def shipped_results(options: argparse.Namespace) -> list[Result]:
-    """Run the defaults over the cases that `laboratory.fusion_fit` judges settings on."""
+    """Run the defaults over the cases that `laboratory.fusion.fit` judges settings on."""
     plain = listed_cases(options, "plain_cases", ("plain",))
     hard = listed_cases(options, "judged_cases", JUDGED_KINDS[1:], per_sequence=options.hard)
     results: list[Result] = []
@@ -118,4 +118,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(exit_status(main, "python -m laboratory.fusion_reliability"))
+    sys.exit(exit_status(main, "python -m laboratory.fusion.reliability"))

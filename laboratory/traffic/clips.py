@@ -3,7 +3,7 @@
 
 """Identity of single vehicles with truth among all that `traffic` follows in a clip.
 
-    python -m laboratory.traffic_clips CLIP FRAME TRUTH.csv [FRAME TRUTH.csv ...]
+    python -m laboratory.traffic.clips CLIP FRAME TRUTH.csv [FRAME TRUTH.csv ...]
 
 FRAME is the number in the clip, from 0, of the truth's first row (`frame,x,y,w,h,visible,occ`, as
 in a frame folder). Vehicles are found by the embedded motion detector alone; the run of seed k

@@ -3,7 +3,7 @@
 
 """Spread of the scores of `traffic` over changes that ought to change nothing.
 
-    python -m laboratory.traffic_spread FOLDER... --runs 6
+    python -m laboratory.traffic.spread FOLDER... --runs 6
 
 Run k begins k frames later, with seed k of the tracker and of the detector of motion. The scores
 from motion are chaotic: two runs differ by more than most changes of the tracker are worth, so that

@@ -3,8 +3,8 @@
 
 """Score files of tracks against folders with truth, beside baselines on the same detections.
 
-    python -m laboratory.traffic_score FOLDER TRACKS.txt
-    python -m laboratory.traffic_score FOLDER... --baselines
+    python -m laboratory.traffic.score FOLDER TRACKS.txt
+    python -m laboratory.traffic.score FOLDER... --baselines
 
 Files are in MOTChallenge's layout; a row of scores for each is printed. The interpreter of the
 baselines is found as `evaluate --baselines` finds it.

@@ -3,7 +3,7 @@
 
 """Who hides a vehicle: `hidden_by` of hidden tracks against the truth of synthetic scenes.
 
-    python -m laboratory.traffic_occluders FOLDER [FOLDER ...] [--detections good]
+    python -m laboratory.traffic.occluders FOLDER [FOLDER ...] [--detections good]
 
 FOLDER is one that `synth traffic-*` writes, with `gt/occluders.csv`.
 """

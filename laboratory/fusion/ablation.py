@@ -5,7 +5,7 @@
 
 The intervals are over cameras.
 
-    python -m laboratory.fusion_ablation SEQUENCES -o results/fusion_ablation
+    python -m laboratory.fusion.ablation SEQUENCES -o results/fusion_ablation
 
 Every system is the default with one parameter changed. The table has its means and, as differences
 to the default, 95 % bootstrap intervals over cameras (`laboratory.stress.difference`).
@@ -18,7 +18,7 @@ import statistics
 import sys
 from collections.abc import Mapping, Sequence
 
-from laboratory.fusion_fit import listed_cases, make_parser, parsed, report_progress
+from laboratory.fusion.fit import listed_cases, make_parser, parsed, report_progress
 from laboratory.stress import Case, Result, difference, run_battery
 from laboratory.stress.systems import variant_system
 from vehicle_pf_tracker.cli.main import exit_status
@@ -107,4 +107,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(exit_status(main, "python -m laboratory.fusion_ablation"))
+    sys.exit(exit_status(main, "python -m laboratory.fusion.ablation"))

@@ -3,7 +3,7 @@
 
 """Does `fusion` know that its vehicle has left? Clips without truth, with `traffic` in its place.
 
-    python -m laboratory.fusion_clips CLIP... --model yolox_nano.onnx -o OUT
+    python -m laboratory.fusion.clips CLIP... --model yolox_nano.onnx -o OUT
 
 A clip is a video or a folder of images. `traffic` with the network says where vehicles are (kept in
 ``OUT``). `fusion` starts on up to eight of each clip that drive out of the image, and runs on after
@@ -248,4 +248,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(exit_status(main, "python -m laboratory.fusion_clips"))
+    sys.exit(exit_status(main, "python -m laboratory.fusion.clips"))

@@ -3,7 +3,7 @@
 
 """`fusion` on synthetic scenes: the table of laboratory/notes/fusion_scenes.md.
 
-    python -m laboratory.fusion_scenes --seeds 10 -o scenes.md
+    python -m laboratory.fusion.scenes --seeds 10 -o scenes.md
 
 A scene and the tracker on it have the same seed.
 """
@@ -118,4 +118,4 @@ def _summary(score: Score) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(exit_status(main, "python -m laboratory.fusion_scenes"))
+    sys.exit(exit_status(main, "python -m laboratory.fusion.scenes"))

@@ -3,7 +3,7 @@
 
 """Fit the decisions of `traffic` and of its detectors, and judge each on cameras left out.
 
-    python -m laboratory.traffic_fit CAMERA=FOLDER... --boxes motion -o results/traffic_fit
+    python -m laboratory.traffic.fit CAMERA=FOLDER... --boxes motion -o results/traffic_fit
 
 runs every decision of `FITTED_DECISIONS` (or those of ``--only``) at each of its values over all
 clips, which are folders in MOTChallenge's layout; clips of one camera have the same name before the
@@ -212,4 +212,4 @@ def best_for_others(
 
 
 if __name__ == "__main__":
-    sys.exit(exit_status(main, "python -m laboratory.traffic_fit"))
+    sys.exit(exit_status(main, "python -m laboratory.traffic.fit"))

@@ -3,7 +3,7 @@
 
 """Pictures of what `fusion` does on synthetic scenes, for laboratory/notes/fusion_scenes.md.
 
-python -m laboratory.fusion_scene_pictures laboratory/notes/images
+python -m laboratory.fusion.scene_pictures laboratory/notes/images
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import Normal, Stroke
 
-from laboratory.fusion_scenes import track
+from laboratory.fusion.scenes import track
 from laboratory.scenes import make_scene
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -80,7 +80,7 @@ def main() -> int:
     try:
         draw_pictures(args.folder, [one for one in PICTURES if one.name in args.only])
     except InputError as error:
-        print(f"fusion_scene_pictures: {error}", file=sys.stderr)
+        print(f"laboratory.fusion.scene_pictures: {error}", file=sys.stderr)
         return 1
     return 0
 
