@@ -22,7 +22,7 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS
 
 STREET = Street(speed=2.0)
 BITS = "histogram_bits"
-LEARNT = ("_reference", "reference", "references", "_first")
+LEARNT = ("reference", "references", "first_histogram", "first_histograms")
 """Attributes in which variants keep what they have learnt of the target."""
 
 

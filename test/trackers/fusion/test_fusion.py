@@ -89,8 +89,8 @@ def test_what_comes_out_in_another_paint_is_another_vehicle():
 def test_with_the_cameras_motion_off_the_camera_is_taken_to_stand():
     street, tracker = Street(speed=2.0), fusion(**{"motion.camera": False})
     follow(tracker, street, range(30))
-    assert tracker._memory.foreground.is_known
-    assert tracker._state.sightings.are_steady
+    assert tracker.memory.foreground.is_known
+    assert tracker.state.sightings.are_steady
 
 
 def test_a_vehicle_that_left_waits_in_the_background_not_in_the_image():
@@ -106,9 +106,9 @@ def test_a_vehicle_that_left_waits_in_the_background_not_in_the_image():
         frame = frame if x > left + 320 or time < 30 else road[:, left : left + 320].copy()
         estimate = tracker.step(frame) if time else tracker.start(frame, Box(x, 100, 60, 40))
         if time == 39:
-            before = tracker._state.verdict.departure.position.copy()
+            before = tracker.state.verdict.departure.position.copy()
     assert estimate.mode is Mode.LOST
-    moved = tracker._state.verdict.departure.position - before
+    moved = tracker.state.verdict.departure.position - before
     assert moved == pytest.approx([-58.0, 0.0], abs=3.0)
 
 
@@ -118,7 +118,7 @@ def test_a_turn_while_hidden_keeps_no_patch_of_the_occluder():
     tracker = fusion(seed=0)
     for number, each in enumerate(make_scene("turn_occluded", seed=0).frames()):
         tracker.step(each.frame) if number else tracker.start(each.frame, each.truth.box)
-        surfaces.append((type(tracker._state.verdict), len(tracker._state.surface.patches)))
+        surfaces.append((type(tracker.state.verdict), len(tracker.state.surface.patches)))
     after = [
         now[1] for last, now in itertools.pairwise(surfaces)
         if (last[0], now[0]) == (Hidden, Turning)
@@ -249,7 +249,7 @@ def test_a_turn_before_a_moving_camera_is_followed():
 
 def change(tracker, **values):
     """Replace parts of the tracker's state."""
-    tracker._state = tracker._state._replace(**values)
+    tracker.state = tracker.state._replace(**values)
 
 
 def extent(estimate):
@@ -273,7 +273,7 @@ def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
             patch.setattr(SurfaceFlow, "judged", lambda *_: surface)
             patch.setattr(visibility, "wholeness", lambda *_: whole)
             patch.setattr(flow_evidence, "points_evidence", lambda *_: 0.0)
-            surface = tracker._state.surface._replace(share=share, is_reliable=reliable)
+            surface = tracker.state.surface._replace(share=share, is_reliable=reliable)
             change(tracker, surface=surface)
             tracker.step(street.frame(8))
         return learnt
@@ -295,14 +295,14 @@ def test_of_a_vehicle_that_is_partly_hidden_nothing_is_learnt_and_its_size_is_pr
     tracker.start(street.frame(0), street.box(0))
     for ago in range(12, 0, -1):
         size = np.array([24.0, 16.0]) / (1 + 0.01 * ago)
-        sightings = tracker._state.sightings.added(np.array([32.0 - 2.0 * ago, 58.0]), size, 1.0)
+        sightings = tracker.state.sightings.added(np.array([32.0 - 2.0 * ago, 58.0]), size, 1.0)
         change(tracker, sightings=sightings.moved_on(1.0, CameraMotion()))
-    half = tracker._state.surface._replace(share=0.5, is_reliable=True)
+    half = tracker.state.surface._replace(share=0.5, is_reliable=True)
     monkeypatch.setattr(SurfaceFlow, "judged", lambda *_: half)
     while (estimate := tracker.step(street.frame(1))).similarities["whole"] > 0.5:
         pass  # the first frames may still count as whole
     done, size = counted(monkeypatch), extent(estimate)
-    appearance = tracker._memory.appearance
+    appearance = tracker.memory.appearance
     usual = appearance.usual_response
     estimate = tracker.step(street.frame(1), 2.0)
     assert estimate.mode is Mode.TRACKING
@@ -348,7 +348,7 @@ def test_before_a_camera_that_moved_a_hidden_vehicle_is_looked_for_farther_away(
         street, tracker = Street(speed=2.0, hidden=(20, 99)), fusion(**values)
         follow(tracker, street, range(20))
         camera = CameraMotion(np.eye(2), np.array([shift, 0.0]))
-        change(tracker, sightings=tracker._state.sightings.moved_on(1e-6, camera))
+        change(tracker, sightings=tracker.state.sightings.moved_on(1e-6, camera))
         for time in range(20, 30):
             estimate = tracker.step(street.frame(time))
         return estimate.particles[:, 0].std()
@@ -359,7 +359,7 @@ def test_before_a_camera_that_moved_a_hidden_vehicle_is_looked_for_farther_away(
 def test_a_pan_is_noticed_as_a_camera_that_moves():
     tracker = fusion()
     follow(tracker, Spinning(), range(4))
-    assert not tracker._state.sightings.are_steady
+    assert not tracker.state.sightings.are_steady
 
 
 def counted(monkeypatch):

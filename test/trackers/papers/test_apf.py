@@ -259,12 +259,18 @@ def test_one_low_similarity_is_enough_for_the_occlusion_regime():
 
 
 def test_new_parameters_keep_the_moves_that_were_seen():
-    street, tracker = Street(), make(**REAL_VIDEO)
-    follow(tracker, street, range(30))
-    value, settled = tracker._velocity.value, tracker._velocity.settled
-    assert value != settled  # 12 moves are left out of the drift
-    tracker.reconfigure(tracker.parameters)
-    assert (tracker._velocity.value, tracker._velocity.settled) == (value, settled)
+    street, trackers = Street(hidden=(30, 50)), [make(**REAL_VIDEO) for _ in range(2)]
+    for tracker in trackers:
+        follow(tracker, street, range(30))
+    trackers[0].reconfigure(trackers[0].parameters)
+    regimes = set()
+    for time in range(30, 36):
+        after, without = (tracker.step(street.frame(time)) for tracker in trackers)
+        assert after.velocity == without.velocity != (0.0, 0.0)
+        # Hidden particles drift along the mean without its last 12 moves.
+        assert np.array_equal(after.particles, without.particles)
+        regimes.add(after.regime)
+    assert "occlusion" in regimes
 
 
 def test_as_printed_the_first_move_begins_in_the_corner():
@@ -276,10 +282,16 @@ def test_as_printed_the_first_move_begins_in_the_corner():
 @pytest.mark.parametrize(("sigma_r", "drawn"), [(0.0, 6.0), (3.0, 3.0)])
 def test_a_sigma_of_zero_is_that_of_the_regular_regime(sigma_r, drawn, monkeypatch):
     sigmas = []
-    monkeypatch.setattr(
-        apf, "sample_normal_rayleigh", lambda rng, count, velocity, r, n: sigmas.append((r, n))
-    )
+
+    def still(rng, count, velocity, sigma_r, sigma_n):
+        sigmas.append((sigma_r, sigma_n))
+        return np.zeros((count, 2))
+
+    monkeypatch.setattr(apf, "sample_normal_rayleigh", still)
     motion = {"sigma_w": 6.0, "sigma_n": 4.0, "sigma_r": sigma_r, "drift_from_velocity": False}
-    tracker = make(**{f"motion.{name}": value for name, value in motion.items()})
-    tracker._drift(tracker.parameters, 5, 2.0)
+    # Every frame after the first step is one of the occlusion regime.
+    values = {**PRINTED_RULE, "occlusion.tau": 1.0}
+    tracker = make(**values, **{f"motion.{name}": value for name, value in motion.items()})
+    follow(tracker, Street(), range(2))
+    assert tracker.step(Street().frame(2), 2.0).regime == "occlusion"
     assert sigmas == [(2 * drawn, 8.0)]

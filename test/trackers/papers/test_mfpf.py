@@ -7,10 +7,12 @@ import itertools
 
 import numpy as np
 import pytest
-from street import Street, error, follow
+from street import WIDTH, Street, error, follow
 
+from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES
 from vehicle_pf_tracker.image.windows.gradients import GradientDirections
 from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.evidence import EvidenceJudge
 from vehicle_pf_tracker.trackers.papers import mfpf
 from vehicle_pf_tracker.trackers.papers.feature_weighting import weigh_features
@@ -253,25 +255,35 @@ def test_gaussian_noise_has_the_variance_of_the_disc(monkeypatch):
     assert sigmas[0] == (200, 3.0)
 
 
-def test_a_search_reaches_further_in_a_longer_time():
-    _, tracker = started(**{"dispersion.radius": 14.0, "dispersion.growth": 2.0})
-    assert tracker._search_radius(2.0, 0.0) == pytest.approx(56.0)
-    assert tracker._search_radius(1.0, 3.0) == pytest.approx(34.0)
+def test_a_search_reaches_further_in_a_longer_time(monkeypatch):
+    radii, draw = [], mfpf.sample_disc
+    monkeypatch.setattr(
+        mfpf, "sample_disc", lambda rng, n, radius: radii.append(radius) or draw(rng, n, radius)
+    )
+    street, tracker = started(**{"dispersion.radius": 14.0, "dispersion.growth": 2.0})
+    tracker.step(street.frame(1), 2.0)
+    assert radii[-1] == pytest.approx(56.0)
+    empty = Street(hidden=(0, 99))
+    assert tracker.step(empty.frame(2), 3.0).regime == "prediction"
+    tracker.step(empty.frame(3), 1.0)
+    assert radii[-1] == pytest.approx(34.0)
 
 
-def test_noise_is_added_to_the_move():
+def test_noise_is_added_to_the_move(monkeypatch):
+    monkeypatch.setattr(mfpf, "sample_disc", lambda *_: np.full((200, 2), (3.0, -2.0)))
     street, tracker = started()
-    tracker._noise = lambda radius: np.full((200, 2), (3.0, -2.0))
-    particles, _, _ = tracker._disperse(street.frame(1), 1.0)
+    particles = tracker.step(street.frame(1)).particles
     assert particles == pytest.approx(np.tile(np.add(street.box(0).centre, (3.0, -2.0)), (200, 1)))
 
 
 @pytest.mark.parametrize("left", [True, False])
-def test_the_image_is_left_where_the_particles_leave_it(left):
-    street, tracker = started()
-    move = tracker._move
-    tracker._move = lambda frame, positions, moves: (move(frame, positions, moves)[0], left)
-    assert tracker._advance(street.frame(1), 1.0).left_image is left
+def test_the_image_is_left_where_the_particles_leave_it(left, monkeypatch):
+    # Towards the near border by half the image, or not at all.
+    moved = -0.5 * WIDTH if left else 0.0
+    _, tracker = started()
+    monkeypatch.setattr(mfpf, "sample_disc", lambda *_: np.full((200, 2), (moved, 0.0)))
+    estimate = tracker.step(Street(hidden=(0, 99)).frame(1))
+    assert estimate.mode is (Mode.LOST if left else Mode.OCCLUDED)
 
 
 def test_as_printed_each_feature_draws_its_own_survivors(monkeypatch):
@@ -282,13 +294,14 @@ def test_as_printed_each_feature_draws_its_own_survivors(monkeypatch):
         lambda sets, count, otherwise: asked.append((len(sets), count)) or otherwise,
     )
     street, tracker = started(joint_resampling=False, resample_below=1.0, resampling="systematic")
-    draws, draw = [], tracker._draw
-    tracker._draw = lambda weights, scheme: draws.append((weights, scheme)) or draw(weights, scheme)
+    draws, draw = [], RESAMPLING_SCHEMES["systematic"]
+    monkeypatch.setitem(
+        RESAMPLING_SCHEMES, "systematic", lambda *words: draws.append(words[0]) or draw(*words)
+    )
     weigh, weighed = tracker.weigh, []
     tracker.weigh = lambda *words: weighed.append(weigh(*words)) or weighed[-1]
     tracker.step(street.frame(1))
     assert asked == [(3, 200)]
     own, cloud = weighed[0]
-    assert [scheme for _, scheme in draws] == ["systematic"] * 4
-    for (weights, _), expected in zip(draws, (cloud.weights, *own), strict=True):
+    for weights, expected in zip(draws, (cloud.weights, *own), strict=True):
         assert np.array_equal(weights, expected)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from street import Street, error, follow
 
+from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES
 from vehicle_pf_tracker.image.windows.colour import JointColour
 from vehicle_pf_tracker.image.windows.similarity import Reference
 from vehicle_pf_tracker.parameters.table import from_mapping
@@ -40,15 +41,18 @@ def test_it_stays_behind_where_the_vehicle_vanished():
     assert error(estimates[-1], street, 49) > 40
 
 
+SECOND_ORDER = {"dynamics": "second_order", "resampling": "systematic"}
+
+
 def test_second_order_particles_go_on_with_their_ancestors_moves(monkeypatch):
     moves = np.array([[1.0, 0.0], [2.0, 3.0], [-1.0, 4.0]])
-    street, tracker = Street(speed=0.0), make(num_particles=3, dynamics="second_order")
+    street, tracker = Street(speed=0.0), make(num_particles=3, **SECOND_ORDER)
     started = tracker.start(street.frame(0), street.box(0)).particles
-    tracker._draw = lambda weights, scheme: np.array([0, 1, 2])
+    monkeypatch.setitem(RESAMPLING_SCHEMES, "systematic", lambda *_: np.array([0, 1, 2]))
     monkeypatch.setattr(pf, "sample_normal", lambda rng, count, sigma: moves)
     first = tracker.step(street.frame(1)).particles
     assert first == pytest.approx(started + moves)
-    tracker._draw = lambda weights, scheme: np.array([1, 1, 2])
+    monkeypatch.setitem(RESAMPLING_SCHEMES, "systematic", lambda *_: np.array([1, 1, 2]))
     monkeypatch.setattr(pf, "sample_normal", lambda rng, count, sigma: np.zeros((3, 2)))
     # Two periods: twice the ancestor's own last move of one.
     second = tracker.step(street.frame(2), 2.0).particles
@@ -57,11 +61,14 @@ def test_second_order_particles_go_on_with_their_ancestors_moves(monkeypatch):
     assert third == pytest.approx(second[[1, 1, 2]] + moves[[1, 1, 2]])
 
 
-def test_another_number_of_particles_all_have_the_mean_speed():
-    street, tracker = Street(), make(num_particles=3, dynamics="second_order")
-    follow(tracker, street, range(3))
-    speeds = tracker._speeds.copy()
+def test_another_number_of_particles_all_have_the_mean_speed(monkeypatch):
+    chosen = lambda weights, count, rng: np.arange(count) % len(weights)  # noqa: E731
+    monkeypatch.setitem(RESAMPLING_SCHEMES, "systematic", chosen)
+    street, tracker = Street(), make(num_particles=3, **SECOND_ORDER)
+    *_, before, last = (estimate.particles for estimate in follow(tracker, street, range(3)))
     tracker.reconfigure(replace(tracker.parameters, num_particles=5))
-    assert tracker._speeds == pytest.approx(np.array([speeds.mean(axis=0)] * 5))
+    monkeypatch.setattr(pf, "sample_normal", lambda rng, count, sigma: np.zeros((count, 2)))
+    moves = tracker.step(street.frame(3)).particles - last[[0, 1, 2, 0, 1]]
+    assert moves == pytest.approx(np.array([(last - before).mean(axis=0)] * 5))
     tracker.reconfigure(replace(tracker.parameters, sigma=3.0))
-    assert len(tracker.step(street.frame(3)).particles) == 5
+    assert len(tracker.step(street.frame(4)).particles) == 5

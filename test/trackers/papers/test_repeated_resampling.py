@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 from street import Street, follow
 
+from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES
 from vehicle_pf_tracker.filtering.weights import effective_sample_size
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.base import Cloud
+from vehicle_pf_tracker.trackers.papers import repeated_resampling
 from vehicle_pf_tracker.trackers.papers.repeated_resampling import (
     AdaptiveParameters,
     AdaptiveTracker,
@@ -200,14 +202,30 @@ def test_particles_of_equal_weight_are_all_good():
 def test_the_plain_mean_leaves_the_particles_their_weights(make):
     street, tracker = Street(), make(weighted_mean=False, most_passes=0)
     tracker.start(street.frame(0), street.box(0))
-    outcome = tracker._advance(street.frame(1), 1.0)
-    assert outcome.position == pytest.approx(outcome.cloud.positions.mean(axis=0))
-    assert np.ptp(outcome.cloud.weights) > 0
+    estimate = tracker.step(street.frame(1))
+    assert estimate.position == pytest.approx(estimate.particles.mean(axis=0))
+    assert np.ptp(estimate.weights) > 0
 
 
-def test_the_conventional_filter_replaces_all_in_the_regular_regime():
-    tracker = conventional()
-    cloud = Cloud.uniform(np.zeros((3, 2)))
-    replaced, weights, jitter, regime = tracker._choose(WeighedParticles(np.ones(3), cloud))
-    assert replaced.dtype == bool and replaced.all()
-    assert (weights.tolist(), jitter, regime) == ([1 / 3] * 3, 0.5, "regular")
+def test_the_conventional_filter_replaces_all_in_the_regular_regime(monkeypatch):
+    drawn_by, spreads = [], []
+
+    def in_order(weights, count, rng):
+        drawn_by.append(weights.tolist())
+        return np.arange(count)
+
+    def apart(rng, count, sigma):
+        spreads.append(sigma)
+        return np.ones((count, 2))
+
+    monkeypatch.setitem(RESAMPLING_SCHEMES, "systematic", in_order)
+    monkeypatch.setattr(repeated_resampling, "sample_normal", apart)
+    street, tracker = Street(), conventional(sigma=10.0, resampling="systematic")
+    tracker.start(street.frame(0), street.box(0))
+    positions = np.array([[20.0, 50.0], [30.0, 50.0], [40.0, 60.0]])
+    spreads.clear()
+    before = tracker.weigh(positions, np.full(3, 0.9))
+    after, replaced, regime = tracker.resample_once(street.frame(0), before, 1.0)
+    assert (replaced, regime) == (3, "regular")
+    assert np.array_equal(after.cloud.positions, positions + 1.0)
+    assert (drawn_by, spreads) == ([pytest.approx([1 / 3] * 3)], [0.5 * 10.0])

@@ -3,10 +3,12 @@
 
 """The annealed particle filter: its layers, their rates and their diffusion."""
 
+import numpy as np
 import pytest
-from street import Street, error, follow
+from street import WIDTH, Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
+from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.papers import pf
 from vehicle_pf_tracker.trackers.papers.sapf import SapfParameters, SapfTracker
 
@@ -62,12 +64,13 @@ def test_tied_the_variance_shrinks_by_the_share_that_survives(monkeypatch):
 
 
 @pytest.mark.parametrize("left", [True, False])
-def test_the_image_is_left_where_the_last_layer_leaves_it(left):
-    street, tracker = Street(), make(**{"annealing.layers": 2})
-    tracker.start(street.frame(0), street.box(0))
-    diffuse, answers = tracker._diffuse, iter((not left, left))
-    tracker._diffuse = lambda frame, parents, sigma: (
-        diffuse(frame, parents, sigma)[0],
-        next(answers),
+def test_the_image_is_left_where_the_last_layer_leaves_it(left, monkeypatch):
+    tracker = make(**{"annealing.layers": 2})
+    tracker.start(Street().frame(0), Street().box(0))
+    # The first layer leaves by the near border and the second comes back, or the other way round.
+    moves = iter((0.0, -0.5 * WIDTH) if left else (-0.5 * WIDTH, 0.5 * WIDTH))
+    monkeypatch.setattr(
+        pf, "sample_normal", lambda rng, count, sigma: np.full((count, 2), (next(moves), 0.0))
     )
-    assert tracker._advance(street.frame(1), 1.0).left_image is left
+    estimate = tracker.step(Street(hidden=(0, 99)).frame(1))
+    assert estimate.mode is (Mode.LOST if left else Mode.OCCLUDED)

@@ -54,10 +54,18 @@ of the size per frame; faster starts are measured by `SurfacePoints.first_motion
 
 
 class FusionTracker(ParticleTracker[FusionParameters]):
-    """Tracker of one vehicle by a belief about it (`State`) and what was learnt (`Memory`)."""
+    """Tracker of one vehicle by a belief about it and what was learnt of it.
 
-    _state: State | None = None
-    _memory: Memory | None = None
+    Attributes
+    ----------
+    state : State or None
+        Belief after the latest frame; None before the start.
+    memory : Memory or None
+        What was learnt up to it; None before the start.
+    """
+
+    state: State | None = None
+    memory: Memory | None = None
     _tasks: Tasks = Tasks()
 
     def start(self, frame: Frame, box: Box) -> Estimate:
@@ -68,7 +76,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         # here.
         memory.camera.measure(small_grey(frame), box)
         patch = memory.appearance.patch(frame, state.position, state.size)
-        self._state = state._replace(
+        self.state = state._replace(
             points=state.points.kept(patch, state.position),
             surface=state.surface.kept(patch, state.position, state.size),
         )
@@ -78,8 +86,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
     def _track(self) -> tuple[State, Memory]:
         """State and memory of a tracker that was started; raises the user's error before."""
         _ = self.target  # says what is wrong before the start
-        assert self._state is not None and self._memory is not None
-        return self._state, self._memory
+        assert self.state is not None and self.memory is not None
+        return self.state, self.memory
 
     def _scatter(self, centre: Position) -> Array:
         """Draw the first hypotheses around `centre`; return their positions (N, 2), px."""
@@ -94,9 +102,9 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
         positions = np.asarray(position + spread[0] * motion.position_sigma)
         particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - PRIOR_DOUBT)
-        self._state = State(particles, position, size, Wholeness.at_start(size))
+        self.state = State(particles, position, size, Wholeness.at_start(size))
         # A new target: nothing of the last one may be compared with it.
-        self._memory = None
+        self.memory = None
         self._tasks = Tasks()
         return positions
 
@@ -110,7 +118,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         appearance = Appearance(self.kernels, size, learnt, self.parameters.filter.penalty)
         appearance.learn_first(target.patch, np.array(target.centre), size)
         # A new filter for the same target keeps what is known of camera and background.
-        self._memory = replace(self._memory or Memory(appearance), appearance=appearance)
+        self.memory = replace(self.memory or Memory(appearance), appearance=appearance)
 
     def reconfigure(self, parameters: FusionParameters) -> None:
         """Take new parameters; see `BaseTracker.reconfigure`."""
@@ -120,7 +128,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             # Before the next frame, so that no frame is measured by two implementations.
             memory.appearance.use_kernels(self.kernels)
             particles = state.particles.resampled(self._rng, parameters.num_particles)
-            self._state = state._replace(particles=particles)
+            self.state = state._replace(particles=particles)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         """Take one frame: predict, observe, weigh by flow, judge, follow, learn, resample."""
@@ -138,7 +146,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         state = learn(state, seen, step)
         # Last, so that the estimate and the next prediction have the same set of hypotheses.
         particles = state.particles.resampled(self._rng, self.parameters.num_particles)
-        self._state = state._replace(particles=particles)
+        self.state = state._replace(particles=particles)
         self._tasks = seen.tasks
         has_left = prediction.left_image or isinstance(verdict, Gone)
         return _outcome(state, seen.response, step, has_left=has_left)

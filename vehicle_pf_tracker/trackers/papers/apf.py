@@ -171,7 +171,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
 
     def __init__(self, parameters: ApfParameters) -> None:
         super().__init__(parameters)
-        self._first: Histogram = np.zeros(0)
+        self.first_histogram: Histogram = np.zeros(0)
         """Histogram of the target in the first frame."""
         self.reference = Reference(np.zeros(0))
         """Histogram that particles are compared with; it follows the vehicle (step 15)."""
@@ -198,8 +198,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         bits = self._settings.histogram_bits
         if self._is_clear(self._settings):  # else the new levels would be those of the occluder
             self._levels = ClearLevel(), ClearLevel()
-        self._first = self.target.joint_histogram(self.window, bits)
-        self.reference = Reference(self._first)
+        self.first_histogram = self.target.joint_histogram(self.window, bits)
+        self.reference = Reference(self.first_histogram)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         settings = self._settings
@@ -282,7 +282,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
 
         `to_last` is the similarity of the histogram to the reference.
         """
-        to_first = hellinger_similarity(histogram, self._first)
+        to_first = hellinger_similarity(histogram, self.first_histogram)
         alpha = self._follow_rate(settings, to_first)
         blended = alpha * histogram + (1 - alpha) * self.reference.histogram
         # The blend is nearly the reference itself, and lags behind a cover (interpretation 7).
@@ -290,7 +290,7 @@ class ApfTracker(ParticleTracker[ApfParameters]):
             self._pi = to_first
             self._pi_up = to_last
         else:
-            self._pi = hellinger_similarity(blended, self._first)
+            self._pi = hellinger_similarity(blended, self.first_histogram)
             self._pi_up = hellinger_similarity(blended, self.reference.histogram)
         self._update_levels(settings)
         # Last, as step 16 compares with the reference of the frame before.

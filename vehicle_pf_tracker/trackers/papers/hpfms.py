@@ -64,14 +64,14 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
         # Mean shift needs a histogram that changes smoothly with the position, which a kernel that
         # falls to 0 at the window's border makes.
         bits = self.parameters.histogram_bits
-        self._reference = self.target.kernel_reference(self.window, bits)
+        self.reference = self.target.kernel_reference(self.window, bits)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         """Take one frame: resample, spread by speed and confidence, climb by mean shift, weigh."""
         settings = self.parameters
         parents = self._resample(self._cloud)
         particles, left_image = self._diffuse(frame, parents, self.spread() * elapsed)
-        measured_by = self.window, self._reference, settings.histogram_bits
+        measured_by = self.window, self.reference, settings.histogram_bits
         # Mean shift takes each particle to the next maximum, so that 25 do for hundreds.
         for _ in range(settings.iterations):
             particles = self.kernels.mean_shift(frame, particles, *measured_by)
@@ -97,4 +97,4 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
     def similarity(self, frame: Frame, positions: Array) -> Array:
         """Bhattacharyya coefficient of each window with the reference, shape (N,)."""
         bits = self.parameters.histogram_bits
-        return self.kernels.kernel_similarity(frame, positions, self.window, self._reference, bits)
+        return self.kernels.kernel_similarity(frame, positions, self.window, self.reference, bits)

@@ -57,7 +57,7 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
     def __init__(self, parameters: FilterParametersT) -> None:
         super().__init__(parameters)
         self.features: Mapping[str, WindowFeature] = {}
-        self._first: list[Histograms] = []
+        self.first_histograms: list[Histograms] = []
         """Histogram of each feature in the first frame, hist(0)."""
         self._latest: list[Histograms] = []
         """Histogram of each feature at the last estimate, hist(k - 1)."""
@@ -91,12 +91,12 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         """Describe the selected window by every feature (step 1)."""
         self.features = self._make_features()
         centre = np.asarray([self.target.centre])
-        self._first = [
+        self.first_histograms = [
             feature.histograms(self.target.patch, centre, self.window)[0]
             for feature in self.features.values()
         ]
-        self._latest = list(self._first)
-        self.references = [Reference(first) for first in self._first]
+        self._latest = list(self.first_histograms)
+        self.references = [Reference(first) for first in self.first_histograms]
         if self._initial is not None:
             # The frame after the start is no longer available; the start itself is closest to it.
             # Predictions since widen the search, but not the one that gave this similarity.
@@ -269,7 +269,9 @@ class FeatureFilter(ParticleTracker[FilterParametersT]):
         else:
             self._predicted_for = 0.0
             self._velocity.add(self._position, position, elapsed)
-            for number, (first, found) in enumerate(zip(self._first, histograms, strict=True)):
+            for number, (first, found) in enumerate(
+                zip(self.first_histograms, histograms, strict=True)
+            ):
                 if weighting.factors[number] > 0 or settings.update_unused:
                     weight = settings.reference_weight
                     last = self._latest[number] if settings.delayed_reference else found

@@ -47,13 +47,13 @@ class MsTracker(BaseTracker[MsParameters]):
 
     def __init__(self, parameters: MsParameters) -> None:
         super().__init__(parameters)
-        self._reference = Reference(np.zeros(0))
+        self.reference = Reference(np.zeros(0))
         self._velocity = MeanVelocity(VELOCITY_WINDOW)
 
     def _learn(self) -> None:
         bits = self.parameters.histogram_bits
         # The target model (eq. 2): its kernel counts the border least, where windows hold road.
-        self._reference = self.target.kernel_reference(self.window, bits)
+        self.reference = self.target.kernel_reference(self.window, bits)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         self._velocity = MeanVelocity(VELOCITY_WINDOW)
@@ -64,7 +64,7 @@ class MsTracker(BaseTracker[MsParameters]):
         """Take one frame: step from the last position until a step is short (steps 2 to 4)."""
         settings = self.parameters
         place = self._cloud.positions
-        measured_by = self.window, self._reference, settings.histogram_bits
+        measured_by = self.window, self.reference, settings.histogram_bits
         # Steps 2 to 4; the bound ends the rare walks between two places of one weight.
         for _ in range(settings.iterations):
             last = place

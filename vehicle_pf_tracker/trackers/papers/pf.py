@@ -57,13 +57,13 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
 
     def __init__(self, parameters: ColourParametersT) -> None:
         super().__init__(parameters)
-        self._reference = Reference(np.zeros(0))
+        self.reference = Reference(np.zeros(0))
         self._velocity = shared.MeanVelocity(VELOCITY_WINDOW)
         self._position = (0.0, 0.0)
 
     def _learn(self) -> None:
         histogram = self.target.joint_histogram(self.window, self._settings.histogram_bits)
-        self._reference = Reference(histogram)
+        self.reference = Reference(histogram)
 
     def _scatter(self, centre: tuple[float, float]) -> Array:
         self._velocity = shared.MeanVelocity(VELOCITY_WINDOW)
@@ -83,7 +83,7 @@ class ColourTracker(ParticleTracker[ColourParametersT]):
     def similarity(self, frame: Frame, positions: Array) -> Array:
         """Bhattacharyya coefficient of each window with the reference, shape (N,)."""
         feature = JointColour(self._settings.histogram_bits)
-        return self.kernels.similarity(feature, frame, positions, self.window, self._reference)
+        return self.kernels.similarity(feature, frame, positions, self.window, self.reference)
 
     def _report(
         self, frame: Frame, cloud: Cloud, elapsed: float, *, left_image: bool, passes: int = 1
