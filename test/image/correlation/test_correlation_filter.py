@@ -6,8 +6,11 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.correlation import correlation_filter
-from vehicle_pf_tracker.image.correlation.correlation_filter import CorrelationFilter
+from vehicle_pf_tracker.image.correlation.correlation_filter import (
+    FIRST_IMAGE,
+    CorrelationFilter,
+    Schedule,
+)
 from vehicle_pf_tracker.image.correlation.spectra import PartialFourier, shifted
 
 SIDE = 32
@@ -26,8 +29,8 @@ def cells_of(made, seed=0):
     return WHOLE.cells_of(made.spectrum(features(seed)))
 
 
-def trained(seed=0):
-    made = CorrelationFilter(SIDE, TARGET, 0.1)
+def trained(seed=0, first=FIRST_IMAGE):
+    made = CorrelationFilter(SIDE, TARGET, 0.1, first)
     made.train(made.spectrum(features(seed)), 0.0)
     return made
 
@@ -46,15 +49,13 @@ def test_the_peak_on_the_training_patch_is_in_its_middle():
     assert np.abs(response[apart][:, apart]).max() < 0.4 * response.max()
 
 
-def test_more_steps_reach_the_least_squares_solution(monkeypatch):
+def test_more_steps_reach_the_least_squares_solution():
     """The system sum_k x_k * g_k = y with 5 x 48 unknowns is solved here directly.
 
     The usual eight steps with a growing penalty end on the way there: the filter is smoother.
     """
     eight = trained()
-    monkeypatch.setattr(correlation_filter, "_FIRST_STEPS", 40)
-    monkeypatch.setattr(correlation_filter, "_FIRST_GROWTH", 1.0)
-    made = trained()
+    made = trained(first=Schedule(steps=40, growth=1.0))
     cells = cells_of(made)
     columns = [
         np.roll(channel, (SIDE // 2 - row, SIDE // 2 - column), (0, 1)).ravel()

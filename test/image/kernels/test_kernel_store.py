@@ -118,11 +118,9 @@ def test_the_folder_of_ones_choice_has_the_kernel_as_it_is_now(folder):
 def test_another_setting_of_numba_has_code_of_its_own(folder, monkeypatch):
     kernel_store.write("a.module", "first", "its text", CODE)
     monkeypatch.setenv("NUMBA_OPT", "1")
-    kernel_store._machine.cache_clear()
     assert not kernel_store.has_any()
     kernel_store.write("a.module", "first", "its text", CODE)
     monkeypatch.delenv("NUMBA_OPT")
-    kernel_store._machine.cache_clear()
     assert kernel_store.read("a.module", "first", "its text") == CODE
     assert len(list(folder.rglob("*.kernel"))) == 2
 

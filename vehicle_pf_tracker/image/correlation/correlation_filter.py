@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -39,15 +39,21 @@ UPSAMPLING = 2
 """Places per cell and axis at which the response is computed; its peak is a cell wide."""
 _LABEL_SIGMA = 1 / 16
 """Standard deviation of the ideal response, of the target's side; the value of STRCF."""
-_FIRST_STEPS = 8
-"""ADMM steps on the first image, which all later ones build on: a choice, as it is paid once."""
-_FIRST_GROWTH = 3.0
-"""Growth of the penalty in each of them: the limit in space is enforced step by step, by a penalty
-that is 2187 times the first one in the end."""
-_STEPS = 2
-"""ADMM steps on later images: STRCF shows that two from the filter before are enough."""
-_GROWTH = 5.0
-"""Growth of the penalty in those: two steps have to enforce the limit."""
+
+
+class Schedule(NamedTuple):
+    """Number of ADMM steps on an image, and growth of the penalty in each of them."""
+
+    steps: int
+    growth: float
+
+
+FIRST_IMAGE = Schedule(steps=8, growth=3.0)
+"""On the first image, which all later ones build on: a choice, as it is paid once. The limit in
+space is enforced step by step, by a penalty that is 2187 times the first one in the end."""
+_LATER_IMAGES = Schedule(steps=2, growth=5.0)
+"""On later images: STRCF shows that two steps from the filter before are enough; these two have to
+enforce the limit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,10 +86,15 @@ class CorrelationFilter:
         Width and height of the target in cells.
     penalty : float
         First ADMM penalty: the larger, the smoother the filter and the less a step changes it.
+    first : Schedule
+        Steps on the first image.
     """
 
-    def __init__(self, cells: int, target: Array, penalty: float) -> None:
+    def __init__(
+        self, cells: int, target: Array, penalty: float, first: Schedule = FIRST_IMAGE
+    ) -> None:
         self.penalty = penalty
+        self._first = first
         offsets = np.arange(cells) - cells // 2
         sigma = _LABEL_SIGMA * float(np.sqrt(target.prod()))
         label = np.exp(-0.5 * (offsets[:, np.newaxis] ** 2 + offsets**2) / sigma**2)
@@ -125,14 +136,12 @@ class CorrelationFilter:
         if self.weights is None:
             right_side = spectrum * self._label
             stiffness = 0.0
-            steps = _FIRST_STEPS
-            growth = _FIRST_GROWTH
+            steps, growth = self._first
         else:
             # The gradient of the term that ties the filter to the one before (STRCF eq. 5).
             before = self.weights.spectrum * np.float32(stiffness)
             right_side = spectrum * self._label + before
-            steps = _STEPS
-            growth = _GROWTH
+            steps, growth = _LATER_IMAGES
         # 2. What the steps need of this image.
         conjugate = spectrum.conj()
         # Energy of all channels at each frequency: the only non-zero eigenvalue of x x^H.

@@ -118,9 +118,20 @@ def _remove_older(file: Path) -> None:
                 older.unlink()
 
 
-@functools.cache
 def _machine() -> str:
     """Digest of what object code depends on beside its source."""
+    # They may choose another processor, or another optimisation.
+    settings = [
+        f"{name}={value}"
+        for name, value in sorted(os.environ.items())
+        if name.startswith("NUMBA_") and name != "NUMBA_CACHE_DIR"
+    ]
+    return hashlib.sha256("\n".join([*_installed(), *settings]).encode()).hexdigest()[:_DIGITS]
+
+
+@functools.cache
+def _installed() -> tuple[str, ...]:
+    """Name the libraries and the processor of this process, which stay, and how code is made."""
     parts = [
         sys.implementation.cache_tag,
         np.__version__,
@@ -132,10 +143,4 @@ def _machine() -> str:
     ]
     # How code is made and written. Read, as compilation imports numba.
     parts += [pkgutil.get_data(__package__, name) for name in _MADE_BY]
-    # They may choose another processor, or another optimisation.
-    parts += [
-        f"{name}={value}"
-        for name, value in sorted(os.environ.items())
-        if name.startswith("NUMBA_") and name != "NUMBA_CACHE_DIR"
-    ]
-    return hashlib.sha256("\n".join(map(str, parts)).encode()).hexdigest()[:_DIGITS]
+    return tuple(map(str, parts))
