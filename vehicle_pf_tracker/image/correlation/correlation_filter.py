@@ -139,8 +139,8 @@ class CorrelationFilter:
             steps, growth = self._first
         else:
             # The gradient of the term that ties the filter to the one before (STRCF eq. 5).
-            before = self.weights.spectrum * np.float32(stiffness)
-            right_side = spectrum * self._label + before
+            right_side = self.weights.spectrum * np.float32(stiffness)
+            right_side += spectrum * self._label
             steps, growth = _LATER_IMAGES
         # 2. What the steps need of this image.
         conjugate = spectrum.conj()

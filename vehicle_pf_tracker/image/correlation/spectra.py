@@ -74,6 +74,7 @@ class PartialFourier:
         return spectrum
 
 
+@functools.cache
 def frequencies(cells: int) -> npt.NDArray[np.intp]:
     """Frequency along y of each row of a spectrum: the two without a negative one come first."""
     positive = np.arange(1, cells // 2)

@@ -49,6 +49,12 @@ NEARLY = 1.3
 """Factor to the limits within which points take part in the fit of the turn, a choice: some are
 beyond a limit only until the turn is taken off."""
 
+_NO_TURN = np.eye(2)
+"""Turn of a vehicle that drives straight on; read only."""
+_KEPT = TURN_INERTIA * np.eye(2)
+"""Ridge towards no turn, in the normal equations: as if five points had not turned."""
+
+
 
 def shared_turn(before: Array, after: Array, strayed: float) -> Array:
     """Linear map (2, 2) that most places (N, 2) in a box have moved by: a vehicle that turns.
@@ -56,15 +62,15 @@ def shared_turn(before: Array, after: Array, strayed: float) -> Array:
     It has no shift, so that points which stay behind with an occluder do not fit into it. Those
     that are `strayed` off count half.
     """
-    turn = np.eye(2)
-    # A ridge towards no turn, in the normal equations: as if five points had not turned.
-    kept = TURN_INERTIA * np.eye(2)
-    for _ in range(TURN_FITS):
-        off = after - before @ turn
+    turn = _NO_TURN
+    off = after - before
+    for fit in range(TURN_FITS):
+        if fit:
+            off = after - before @ turn
         far = (off[:, 0] ** 2 + off[:, 1] ** 2) / strayed**2
         weighted = before.T / (1 + far)
         # Reweighted with a Cauchy weight: a stray point pulls less the farther it is off.
-        turn = solved(weighted @ before + kept, weighted @ after + kept)
+        turn = solved(weighted @ before + _KEPT, weighted @ after + _KEPT)
     return turn
 
 
@@ -100,13 +106,13 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
         # Each of the lower half with one of the upper half: far apart for most, and no N² pairs.
         # Stable, so that points in one place pair alike on every machine.
         order = before[:, axis].argsort(kind="stable")
-        low = order[:half]
-        high = order[-half:]
-        old = before[high, axis] - before[low, axis]
-        new = after[high, axis] - after[low, axis]
+        sorted_before = before[order, axis]
+        sorted_after = after[order, axis]
+        old = sorted_before[-half:] - sorted_before[:half]
+        new = sorted_after[-half:] - sorted_after[:half]
         # Of points that are close an error of half a px is a change of size of a tenth.
         far = old > APART * size[axis]
-        if far.sum() >= FEWEST_POINTS // 2:
+        if np.count_nonzero(far) >= FEWEST_POINTS // 2:
             ratio = np.maximum(new[far] / old[far], LEAST_RATIO)
             change[axis] = median(np.log(ratio))
     # Per frame no vehicle changes by more: what is beyond is an error, of which the sign is kept.
@@ -149,10 +155,10 @@ def carried_share(
         # vehicle.
         limits = np.minimum(limits, np.hypot(stays[:, 0], stays[:, 1]))
     near = np.hypot(off[:, 0], off[:, 1]) < NEARLY * limits
-    if near.sum() >= FEWEST_CARRIED:
+    if np.count_nonzero(near) >= FEWEST_CARRIED:
         # The turn is fitted to the residual, so that only what all share is taken off.
-        gram = place[near].T @ place[near] + np.eye(2) * TURN_INERTIA
-        off = off - place @ solved(gram, place[near].T @ off[near])
+        held = place[near]
+        off = off - place @ solved(held.T @ held + _KEPT, held.T @ off[near])
     return float((np.hypot(off[:, 0], off[:, 1]) < limits).mean())
 
 

@@ -136,11 +136,10 @@ class CameraFlow:
             self._corners = _find_corners(grey)
             self._number_found = len(self._corners)
             self._age = 0.0
-        x, y = self._corners[:, 0] / zoom, self._corners[:, 1] / zoom
-        middle_x, middle_y = target.centre
+        off = np.abs(self._corners / zoom - np.array(target.centre))
         # Of the two axes one is enough: a corner above the box is as far off as one beside it.
-        outside = np.abs(x - middle_x) > _CLEARANCE * target.width
-        outside |= np.abs(y - middle_y) > _CLEARANCE * target.height
+        outside = off[:, 0] > _CLEARANCE * target.width
+        outside |= off[:, 1] > _CLEARANCE * target.height
         return np.ascontiguousarray(self._corners[outside])
 
 

@@ -141,8 +141,11 @@ class Sightings(NamedTuple):
 
     def proven(self) -> Sightings:
         """Leave out those since a return that was short: it may have been to another vehicle."""
+        # The usual case first, which needs no look at the rows.
+        if self.in_view >= PROOF_FRAMES:
+            return self
         before = max(len(self.rows) - self.in_view, 0)
-        if self.in_view >= PROOF_FRAMES or not (self.rows[:before, 5] >= CLEAR_RESPONSE).any():
+        if not (self.rows[:before, 5] >= CLEAR_RESPONSE).any():
             return self
         # What is left was in view for long enough, or is all there is.
         return self._replace(rows=self.rows[:before], in_view=PROOF_FRAMES)
@@ -151,8 +154,8 @@ class Sightings(NamedTuple):
         """Let `elapsed` frames pass and the camera move."""
         # They are kept from the last clear one on: a vehicle may be hidden for as long again.
         proven = self.proven().rows
-        clear = proven[:, 5] >= CLEAR_RESPONSE
-        oldest = KEPT_FRAMES + (proven[clear, 0].min() if clear.any() else 0.0)
+        clear = proven[proven[:, 5] >= CLEAR_RESPONSE, 0]
+        oldest = KEPT_FRAMES + (clear.min() if len(clear) else 0.0)
         # A mask copies: the rows of the state before stay as they were.
         rows = self.rows[self.rows[:, 0] < oldest]
         rows[:, 0] += elapsed

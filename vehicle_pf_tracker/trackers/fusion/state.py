@@ -94,7 +94,8 @@ class State(NamedTuple):
     @property
     def box(self) -> Box:
         """Box in the image, px."""
-        return Box.around((self.position[0], self.position[1]), *self.size.tolist())
+        x, y = self.position.tolist()
+        return Box.around((x, y), *self.size.tolist())
 
     @property
     def extent(self) -> float:

@@ -152,7 +152,8 @@ class SurfaceFlow(NamedTuple):
         for kept in reversed(self.patches):
             if not kept.camera.still:
                 since = since.after(kept.camera)
-            apart = math.hypot(*((position - since.apply(kept.position)) * zoom).tolist())
+            start = kept.position if since.still else since.apply(kept.position)
+            apart = math.hypot(*((position - start) * zoom).tolist())
             if apart >= _APART_PX:
                 break
         return kept, since, apart
