@@ -149,8 +149,10 @@ class CorrelationFilter:
         power = products.sum(axis=0).real
         # 3. ADMM in its scaled form: the multiplier, with the solution added, is confined.
         # Nothing is confined yet, and the multiplier is zero, so that the first right-hand side is
-        # all. Written in place: few spectra fit into the cache of a core.
-        multiplier = confined = right = right_side.copy()
+        # all; its solution is the multiplier. Written in place: few spectra fit into the cache of a
+        # core.
+        right = right_side
+        multiplier = confined = np.empty_like(right_side)
         for step in range(steps):
             penalty = self.penalty * growth**step
             if step:
@@ -164,7 +166,7 @@ class CorrelationFilter:
             total = penalty + stiffness
             share = np.multiply(conjugate, right, out=products).sum(axis=0)
             share /= power + np.float32(self._cells**2 * total)
-            right -= np.multiply(spectrum, share, out=products)
+            right = np.subtract(right, np.multiply(spectrum, share, out=products), out=confined)
             right *= np.float32(1 / total)
             if step:
                 multiplier += right

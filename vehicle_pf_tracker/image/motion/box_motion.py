@@ -55,7 +55,6 @@ _KEPT = TURN_INERTIA * np.eye(2)
 """Ridge towards no turn, in the normal equations: as if five points had not turned."""
 
 
-
 def shared_turn(before: Array, after: Array, strayed: float) -> Array:
     """Linear map (2, 2) that most places (N, 2) in a box have moved by: a vehicle that turns.
 

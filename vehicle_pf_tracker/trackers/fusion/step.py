@@ -83,9 +83,12 @@ class Step:
 
     def share_inside(self, position: Array, size: Array) -> float:
         """Share of a box, whose centre is inside the image, that is inside."""
-        # The centre is inside, so that both differences are positive and their product is a share.
-        low, high = np.maximum(position - size / 2, 0), position + size / 2
-        return float(((np.minimum(high, frame_size(self.frame)) - low) / size).prod())
+        share = 1.0
+        sides = zip(position.tolist(), size.tolist(), frame_size(self.frame), strict=True)
+        for middle, side, length in sides:
+            # The centre is inside, so that the differences are positive and their product a share.
+            share *= (min(middle + side / 2, length) - max(middle - side / 2, 0)) / side
+        return share
 
     def hidden_velocity_sigma(self, sightings: Sightings) -> float:
         """Give the deviation of a hidden vehicle's change of velocity, sizes per frame squared.
