@@ -10,7 +10,8 @@ from vehicle_pf_tracker.cli.console import UsageError
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.results.estimates import EstimateRow, read_estimates
-from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions, ReplayReport
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+from vehicle_pf_tracker.ros.replay.replay_report import NodeReport, ReplayReport
 
 
 def parse(*words):

@@ -23,8 +23,8 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.results.estimates import EstimateRow, read_estimates
 from vehicle_pf_tracker.results.run_folder import ESTIMATES_FILE
 
-# Programs of Python, not names of executables: those need not be on the path.
-_VERB = "from vehicle_pf_tracker.cli.main import main; raise SystemExit(main())"
+# By Python, and not by the names of executables: those need not be on the path.
+_COMMAND = (sys.executable, "-m", "vehicle_pf_tracker")
 _NODE = "from vehicle_pf_tracker.ros.executables import main; raise SystemExit(main('fusion'))"
 _PATIENCE = "600"
 """Patience with a busy machine that compiles kernels, s; a quiet one needs a few."""
@@ -44,10 +44,12 @@ def run(request: Request) -> int:
     """Run the whole chain; return 1 if the node's numbers differ from those of `run`."""
     replaced = ["--overwrite"] if request.overwrite else []
     folder = request.output
+    # 1. A scene, and `run` on it.
     recording, offline, ros = (str(folder / name) for name in ("recording", "offline", "ros"))
     video = str(folder / "demo.mp4")
     _verb("synth", "highway", recording, *replaced)
     _verb("run", recording, "--seed", "0", "-o", offline, "--video", video, *replaced)
+    # 2. The same images through a node, whose numbers have to be the same.
     same = True
     if importlib.util.find_spec("rclpy") is None:
         tell_notice("ROS is not installed or not sourced, so no node is run")
@@ -67,6 +69,7 @@ def run(request: Request) -> int:
             )
         same = _numbers(Path(ros)) == _numbers(Path(offline))
         print(f"the node's numbers are {'' if same else 'NOT '}those of `run`")
+    # 3. Variants compared on them.
     if all(importlib.util.find_spec(name) for name in EVALUATION_MODULES):
         scores = folder / "evaluation"
         words = ["--variants", "fusion,apf,pf", "--seeds", "3", "--figures", "png"]
@@ -81,7 +84,7 @@ def run(request: Request) -> int:
 def _verb(*words: str) -> None:
     """Run a verb as a process of its own, and show what one would type."""
     print(f"+ {PROGRAM_NAME} {' '.join(words)}", flush=True)
-    status = subprocess.run([sys.executable, "-c", _VERB, *words], check=False).returncode
+    status = subprocess.run([*_COMMAND, *words], check=False).returncode
     if status:
         raise InputError(f"the demo ends here: {words[0]} ended with status {status}")
 

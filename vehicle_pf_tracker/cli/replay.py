@@ -25,7 +25,8 @@ from vehicle_pf_tracker.results.output_files import make_folder
 from vehicle_pf_tracker.results.run_folder import ESTIMATES_FILE
 
 if TYPE_CHECKING:
-    from vehicle_pf_tracker.ros.replay.replay_options import NodeReport, ReplayOptions, ReplayReport
+    from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+    from vehicle_pf_tracker.ros.replay.replay_report import NodeReport, ReplayReport
 
 
 ANSWERS = (ESTIMATES_FILE, f"*/{ESTIMATES_FILE}")

@@ -134,11 +134,13 @@ def _tune(
     """Search, write trials and best parameters, and judge these where recordings are held out."""
     from vehicle_pf_tracker.evaluation import tuning
 
+    # 1. Search; the log keeps every trial, so that the same command goes on with them.
     folder = make_folder(request.output)
     variant = what.base.kind
     study = tuning.open_study(what, folder / "study.log")
     with counting("tuned", "runs") as on_progress:
         trials = tuning.search(what, request.trials, study, runner_of(request), on_progress)
+    # 2. Write the trials, and the parameters of the best one.
     header = ["trial", what.objective, *what.space]
     rows = (
         [trial.number, trial.value, *(trial.params[name] for name in what.space)]
@@ -161,6 +163,7 @@ def _tune(
         f"{what.objective}: {first} at first, {best.value:.3f} in trial {best.number}\n"
         f"the parameters are {folder / BEST}"
     )
+    # 3. Judge these where the search has not been.
     if request.held_out:
         return _judge(request, what, best.params, recordings)
     print(

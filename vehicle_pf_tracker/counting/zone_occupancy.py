@@ -14,6 +14,7 @@ _LONGEST_NS = 2 * 10**9
 """Time in ns that an image stands for at most: what happens in a longer gap is not known. Cameras
 of parking places send an image a second."""
 _NS = 1e9
+"""Nanoseconds per second."""
 
 
 @dataclass(slots=True)

@@ -40,6 +40,7 @@ NORMALISED_PRECISION = 0.2
 _MODES = (*(mode.value for mode in Mode), WAITING_MODE, REJECTED_MODE)
 
 
+# A table by name: its fields are the keys of metrics.json and the metrics that options name.
 @dataclass(frozen=True, slots=True)
 class Metrics:
     """Metrics of one run; None where there is nothing to take them from.

@@ -25,6 +25,8 @@ class Mode(str, Enum):
     LOST = "LOST"
 
 
+# Flat, with one field more than others have: programs of users read these names, and `~/mode` and
+# the tables have them as columns.
 @dataclass(frozen=True, slots=True, eq=False)
 class Estimate:
     """Position of the vehicle with its confidence, and the state of the filter.

@@ -12,7 +12,8 @@ from replay_rig import IMAGE_TOPIC, record
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.replay.publishing import make_publishers
-from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, recorded_qos
+from vehicle_pf_tracker.ros.replay.recorded_qos import recorded_qos
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
 pytestmark = pytest.mark.ros
 

@@ -17,7 +17,8 @@ from vehicle_pf_tracker.ros.replay.discovery import Interrupted, Spinner
 from vehicle_pf_tracker.ros.replay.pace import PlaybackClock, ReplayPace
 from vehicle_pf_tracker.ros.replay.pausing import offer_pausing
 from vehicle_pf_tracker.ros.replay.publishing import make_publishers
-from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, ReplayReport
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+from vehicle_pf_tracker.ros.replay.replay_report import ReplayReport
 from vehicle_pf_tracker.ros.replay.starting_target import Targets, played, starting_target
 from vehicle_pf_tracker.ros.replay.tracker_links import TrackerLinks
 

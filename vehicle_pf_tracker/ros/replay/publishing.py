@@ -22,7 +22,8 @@ from vehicle_pf_tracker.recordings.bags.messages import COMPRESSED_IMAGE
 from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.bags.topic_table import TopicInfo
 from vehicle_pf_tracker.ros.messages import image_message
-from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, recorded_qos
+from vehicle_pf_tracker.ros.replay.recorded_qos import recorded_qos
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
 _SUFFIX = "/compressed"
 """End of a topic of compressed images, as image_transport names it."""

@@ -1,18 +1,14 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Options of a replay, the quality of service of its publishers among them; and its report."""
+"""Options of a replay, flat as those of the rosbag2 player, whose names and meanings they have."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from rclpy.qos import DurabilityPolicy, QoSProfile
-
 from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.results.estimates import EstimateRow
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,69 +68,3 @@ class ReplayOptions:
     set_target: bool = True
     timeout: float = 10.0
     ros_args: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class NodeReport:
-    """Answers of one node to the images.
-
-    Attributes
-    ----------
-    name : str
-        Its full name.
-    answered : int
-        Number of images answered, in all passes of a loop.
-    rows : tuple of EstimateRow
-        One for each image of the last pass, in order; mode `DROPPED` where no answer came.
-    road : mapping of str to list of float or None
-        Columns beside the rows, where the node has a road.
-    """
-
-    name: str
-    answered: int
-    rows: tuple[EstimateRow, ...]
-    road: Mapping[str, list[float | None]] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class ReplayReport:
-    """Summary of a replay.
-
-    Attributes
-    ----------
-    frames : int
-        Images published, in all passes of a loop.
-    seconds : float
-        Time from the first message to the last answer.
-    nodes : tuple of NodeReport
-        The tracker nodes that took part.
-    notices : tuple of str
-        Irregularities, a sentence each.
-    interrupted : bool
-        True if the user ended it.
-    """
-
-    frames: int
-    seconds: float
-    nodes: tuple[NodeReport, ...]
-    notices: tuple[str, ...] = ()
-    interrupted: bool = False
-
-
-def recorded_qos(offered: str, depth: int) -> QoSProfile:
-    """Return the QoS to publish a recorded topic with: reliable, and latched if it was.
-
-    Reliable publishers suit best-effort subscriptions too, and lock-step needs them.
-
-    Parameters
-    ----------
-    offered : str
-        The recorded profiles as the recording's YAML text; may be empty or damaged.
-    depth : int
-        Number of messages to keep.
-    """
-    durabilities = set(re.findall(r"\bdurability\W+(\w+)", offered))
-    # rosbag2 writes names since Jazzy, and the numbers of rmw before.
-    if durabilities and durabilities <= {"transient_local", "1"}:
-        return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    return QoSProfile(depth=depth)

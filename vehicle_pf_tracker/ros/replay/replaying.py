@@ -22,7 +22,8 @@ from vehicle_pf_tracker.ros.replay.discovery import Spinner
 from vehicle_pf_tracker.ros.replay.pausing import keys_at_once
 from vehicle_pf_tracker.ros.replay.player import Player
 from vehicle_pf_tracker.ros.replay.publishing import decompressed
-from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions, ReplayReport
+from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
+from vehicle_pf_tracker.ros.replay.replay_report import ReplayReport
 from vehicle_pf_tracker.ros.replay.starting_target import first_image
 from vehicle_pf_tracker.ros.transport import image_transport
 

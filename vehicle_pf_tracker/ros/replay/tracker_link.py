@@ -19,7 +19,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.messages import NOT_READY
 from vehicle_pf_tracker.ros.replay.answers import Answers
 from vehicle_pf_tracker.ros.replay.discovery import SHORTEST_SEARCH, Spinner
-from vehicle_pf_tracker.ros.replay.replay_options import NodeReport
+from vehicle_pf_tracker.ros.replay.replay_report import NodeReport
 
 _DEPTH = 1000
 """Answers that may wait: half a minute of 30 Hz, while the player reads a slow disk."""
