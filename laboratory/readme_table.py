@@ -20,15 +20,9 @@ import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from laboratory.fusion.fit import (
-    NUMBERS,
-    fit,
-    judge,
-    listed_cases,
-    make_parser,
-    parsed,
-    report_progress,
-)
+from laboratory.fusion.case_lists import listed_cases
+from laboratory.fusion.fit import fit, judge
+from laboratory.fusion.options import NUMBERS, make_parser, parsed, report_progress
 from laboratory.stress import Case, Result, run_battery, variant_system
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.tables import markdown

@@ -106,6 +106,8 @@ PROGRAMS = {
     ),
 }
 LIBRARIES = {
+    "laboratory.fusion.case_lists", "laboratory.fusion.objective", "laboratory.fusion.options",
+    "laboratory.fusion.score_table", "laboratory.fusion.settings",
     "laboratory.__init__", "laboratory.fusion.__init__", "laboratory.traffic.__init__",
     "laboratory.__main__", "laboratory.covariance_coverage",
     "laboratory.coverage_picture", "laboratory.figure_files", "laboratory.result_store",

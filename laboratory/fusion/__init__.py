@@ -10,4 +10,7 @@ Each is run by its name, as `python -m laboratory.fusion.fit`:
 - `ablation`: what each part contributes
 - `clips`: whether it knows that its vehicle has left, in clips without truth
 - `scenes`: what it reaches on synthetic scenes, with `scene_pictures` of them
+
+Those over recordings share `options` of the command line, `case_lists` and the `score_table`. What
+is tried in a fit are `settings`, by the `objective`.
 """

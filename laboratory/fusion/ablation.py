@@ -18,7 +18,8 @@ import statistics
 import sys
 from collections.abc import Mapping, Sequence
 
-from laboratory.fusion.fit import listed_cases, make_parser, parsed, report_progress
+from laboratory.fusion.case_lists import listed_cases
+from laboratory.fusion.options import make_parser, parsed, report_progress
 from laboratory.stress import Case, Result, difference, run_battery
 from laboratory.stress.systems import variant_system
 from vehicle_pf_tracker.cli.main import exit_status

@@ -19,14 +19,9 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from laboratory.figure_files import save
-from laboratory.fusion.fit import (
-    JUDGED_KINDS,
-    listed_cases,
-    make_parser,
-    page,
-    parsed,
-    report_progress,
-)
+from laboratory.fusion.case_lists import HARD_KINDS, judged_cases
+from laboratory.fusion.options import make_parser, parsed, report_progress
+from laboratory.fusion.score_table import score_table
 from laboratory.stress import Reliability, Result, run_battery, variant_system
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
@@ -36,11 +31,8 @@ from vehicle_pf_tracker.results.output_files import write_text
 
 def shipped_results(options: argparse.Namespace) -> list[Result]:
     """Run the defaults over the cases that `laboratory.fusion.fit` judges settings on."""
-    plain = listed_cases(options, "plain_cases", ("plain",))
-    hard = listed_cases(options, "judged_cases", JUDGED_KINDS[1:], per_sequence=options.hard)
     results: list[Result] = []
-    # Seeds on the plain sequences only: of the hard cases there are many.
-    for cases, seeds in ((plain, range(options.seeds)), (hard, range(1))):
+    for cases, seeds in judged_cases(options):
         results += run_battery(
             cases,
             [variant_system("fusion")],
@@ -60,7 +52,7 @@ def pooled(results: Sequence[Result]) -> Reliability:
 def reliability_table(results: Sequence[Result]) -> str:
     """Markdown table of the calibration error by kind of case, and without the worst sequence."""
     rows = []
-    for kind in ("", *JUDGED_KINDS):
+    for kind in ("", "plain", *HARD_KINDS):
         own = [result for result in results if not kind or result.case.kind == kind]
         rows.append(_row(kind or "all", own))
     # Without the worst sequence: one that is lost with confidence outweighs all others.
@@ -109,7 +101,7 @@ def main() -> int:
     """Run, and write tables and figure."""
     options = parsed(make_parser(__doc__, "seeds", "hard"))
     results = shipped_results(options)
-    tables = {"shipped.md": page(results), "reliability.md": reliability_table(results)}
+    tables = {"shipped.md": score_table(results), "reliability.md": reliability_table(results)}
     for name, text in tables.items():
         write_text(options.output / name, text)
         print(text)

@@ -11,8 +11,10 @@ from types import SimpleNamespace
 import pytest
 
 from laboratory import readme_table
-from laboratory.fusion import ablation, clips, fit, reliability, scene_pictures
-from laboratory.fusion.fit import fitted, listed_cases, objective
+from laboratory.fusion import ablation, case_lists, clips, fit, reliability, scene_pictures
+from laboratory.fusion.case_lists import listed_cases
+from laboratory.fusion.objective import objective
+from laboratory.fusion.settings import fitted
 from laboratory.stress import Reliability, Result, Score
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
@@ -175,8 +177,8 @@ def listing(monkeypatch):
         calls.append(choice)
         return [Made("case", "plain", "a/one", "a")]
 
-    monkeypatch.setattr(fit, "find_sequences", lambda folders, cameras: [])
-    monkeypatch.setattr(fit, "list_cases", list_cases)
+    monkeypatch.setattr(case_lists, "find_sequences", lambda folders, cameras: [])
+    monkeypatch.setattr(case_lists, "list_cases", list_cases)
     return calls
 
 
