@@ -165,9 +165,9 @@ class ExperimentVerdict:
         if not any(named):
             return None
         judged = [
-            found[0] if found else claim.findings[0].holds
-            for claim, found in zip(self.claims, named, strict=True)
-            if found or len(claim.findings) == 1
+            judgements[0] if judgements else claim.findings[0].holds
+            for claim, judgements in zip(self.claims, named, strict=True)
+            if judgements or len(claim.findings) == 1
         ]
         return Holds.all(judged)
 
@@ -176,7 +176,7 @@ class ExperimentVerdict:
         others = {
             name: self.under(name) for name in (BASIC_RIVALS, OUR_INTERPRETATION, PRINTED_RULE)
         }
-        under = {name: None if found is None else found.value for name, found in others.items()}
+        under = {name: None if holds is None else holds.value for name, holds in others.items()}
         return {"holds": self.holds.value, "under": under, **asdict(self)}
 
     def to_markdown(self) -> str:

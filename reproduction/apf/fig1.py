@@ -156,9 +156,9 @@ def _least(interpretation: str, grid: Grid, size: ex.Size) -> ex.Finding:
         parts = f"no sigma follows the vehicle (least mean RMSE: {means.min():.0f} px)"
         return ex.Finding(interpretation, ex.Holds.NO, parts)
     slope = float(speeds @ best / (speeds @ speeds))
-    held = np.any(holding, axis=1)
+    followed = np.any(holding, axis=1)
     first = sigmas[holding.argmax(axis=1)]
-    boundary = float(speeds[held] @ first[held] / (speeds[held] @ speeds[held]))
+    boundary = float(speeds[followed] @ first[followed] / (speeds[followed] @ speeds[followed]))
     low, high = _SLOPES
     halves = means[
         np.arange(len(speeds)), np.abs(sigmas - speeds[:, np.newaxis] / 2).argmin(axis=1)

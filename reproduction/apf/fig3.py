@@ -108,9 +108,9 @@ class _Runs:
 
     def end_error(self, width: int, run: Result) -> float:
         """Mean error over the last frames, px."""
-        found = zip(run["trace"]["x"][-_LAST:], run["trace"]["y"][-_LAST:], strict=True)
-        pairs = zip(found, self._ends[width], strict=True)
-        return fmean(float(np.hypot(x - tx, y - ty)) for (x, y), (tx, ty) in pairs)
+        estimated = zip(run["trace"]["x"][-_LAST:], run["trace"]["y"][-_LAST:], strict=True)
+        with_truth = zip(estimated, self._ends[width], strict=True)
+        return fmean(float(np.hypot(x - tx, y - ty)) for (x, y), (tx, ty) in with_truth)
 
 
 def _occluded_frames(run: Result) -> int:
@@ -118,8 +118,8 @@ def _occluded_frames(run: Result) -> int:
 
 
 def _least_pi(run: Result) -> float:
-    found: list[float | None] = run["trace"]["pi"]
-    return min(pi for pi in found if pi is not None)
+    similarities: list[float | None] = run["trace"]["pi"]
+    return min(pi for pi in similarities if pi is not None)
 
 
 def _has_resumed(width: int, run: Result) -> bool:
@@ -168,18 +168,18 @@ def _figure(
 
 def _outline(axes: Axes, spans: dict[int, tuple[int, int] | None]) -> None:
     """Draw where the bar begins and ends to cover a part of the vehicle."""
-    found = [(width, span) for width, span in spans.items() if span is not None]
+    covering = [(width, span) for width, span in spans.items() if span is not None]
     for end, label in ((0, "the bar covers a part of the vehicle, or all of it"), (1, None)):
-        frames = [span[end] for _, span in found]
+        frames = [span[end] for _, span in covering]
         axes.plot(
-            frames, [width for width, _ in found], color="#E69F00", ls="--", lw=1.3, label=label
+            frames, [width for width, _ in covering], color="#E69F00", ls="--", lw=1.3, label=label
         )
 
 
 def _verdict(table: _Runs) -> ex.ExperimentVerdict:
     def claim(words: str, judge: Callable[[_Runs, str], ex.Finding], rule: str) -> ex.Claim:
-        found = tuple(judge(table, interpretation) for interpretation in INTERPRETATIONS)
-        return ex.Claim(words, _PLACE, found, rule)
+        findings = tuple(judge(table, interpretation) for interpretation in INTERPRETATIONS)
+        return ex.Claim(words, _PLACE, findings, rule)
 
     return ex.ExperimentVerdict(
         (

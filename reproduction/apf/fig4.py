@@ -180,8 +180,8 @@ def _detected(interpretation: str, runs: Sequence[Result]) -> ex.Finding:
 
 
 def _least(run: Result, scalar: str, frames: slice = _ALL) -> float:
-    found: list[float | None] = run["trace"][scalar][frames]
-    return min(value for value in found if value is not None)
+    values: list[float | None] = run["trace"][scalar][frames]
+    return min(value for value in values if value is not None)
 
 
 def _occluded(run: Result) -> list[bool]:
@@ -190,9 +190,9 @@ def _occluded(run: Result) -> list[bool]:
 
 def _span(width: int) -> slice:
     """Return the indices of the frames in which the bar covers the vehicle, and a few around."""
-    found = covered(artificial_video(width).truths())
-    assert found is not None
-    return slice(found[0] - 1 - _SLACK, found[1] + _SLACK)
+    hidden = covered(artificial_video(width).truths())
+    assert hidden is not None
+    return slice(hidden[0] - 1 - _SLACK, hidden[1] + _SLACK)
 
 
 EXPERIMENT = ex.Experiment(

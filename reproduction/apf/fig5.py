@@ -124,11 +124,11 @@ def _verdict(
     results: ex.Results, runs: dict[str, list[Scores]], size: ex.Size
 ) -> ex.ExperimentVerdict:
     def claim(words: str, judge: _Judge, rule: str) -> ex.Claim:
-        found = []
+        findings = []
         for interpretation, system in INTERPRETATIONS.items():
             raw = [results[video3.cell(system, seed)] for seed in size.seeds]
-            found.append(judge(interpretation, raw, runs[system.label]))
-        return ex.Claim(words, _PLACE, tuple(found), rule)
+            findings.append(judge(interpretation, raw, runs[system.label]))
+        return ex.Claim(words, _PLACE, tuple(findings), rule)
 
     def followed(name: str, raw: Sequence[Result], scored: Sequence[Scores]) -> ex.Finding:
         return _followed(

@@ -117,15 +117,15 @@ def published_ratio(video: str) -> float:
 def ratio_table(videos: Errors) -> DataTable:
     """Compare how far APF is ahead of the best rival, which the scene's size does not change."""
     rivals = [rival.label for rival in apf.APF_RIVALS]
-    found = {
+    by_form = {
         system.label: ratios(videos, system.label, rivals) for system in (apf.APF, apf.RELATIVE)
     }
     rows = tuple(
-        (name, VIDEO_SCENES[name].occlusion, *(f"{of[name]:.2f}" for of in found.values()),
+        (name, VIDEO_SCENES[name].occlusion, *(f"{of[name]:.2f}" for of in by_form.values()),
          f"{published_ratio(name):.2f}")
         for name in videos
     )  # fmt: skip
-    return DataTable(("video", "occlusion", *found, "in the paper"), rows)
+    return DataTable(("video", "occlusion", *by_form, "in the paper"), rows)
 
 
 def beside_table(videos: Errors, recovered: Mapping[str, Sequence[bool]]) -> DataTable:

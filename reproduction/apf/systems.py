@@ -145,8 +145,8 @@ def with_sigma(system: System, sigma: float) -> System:
 
 def sigma_of(system: System) -> float | None:
     """Return the spread that `with_sigma` has set; None where there is none."""
-    found = dict(system.settings).get(_SIGMA.get(system.variant, "sigma") or "")
-    return None if found is None else float(found)
+    sigma = dict(system.settings).get(_SIGMA.get(system.variant, "sigma") or "")
+    return None if sigma is None else float(sigma)
 
 
 def ruled(scene: SceneChoice, system: System, seed: int, record: tuple[str, ...] = ()) -> RunCell:

@@ -55,8 +55,8 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
     fits = []
     for number, name in enumerate(VIDEO_SCENES, start=1):
         published = _published(number)
-        found = [_found(name, truths[name, seed]) for seed in size.seeds]
-        fits += [row == published for row in found]
+        of_scenes = [_of_scene(name, truths[name, seed]) for seed in size.seeds]
+        fits += [row == published for row in of_scenes]
         counts = [_counts(truths[name, seed]) for seed in size.seeds]
         rows.append(
             (
@@ -85,7 +85,7 @@ def _published(number: int) -> _Row:
     return _Row(vehicle, occlusion, "768x576" if number in _LARGE else "640x480")
 
 
-def _found(name: str, truths: Sequence[Truth]) -> _Row:
+def _of_scene(name: str, truths: Sequence[Truth]) -> _Row:
     """Describe a scene; the occlusion comes from its truth."""
     parameters = VIDEO_SCENES[name].parameters
     return _Row(parameters.vehicle, _kind(truths), parameters.resolution)

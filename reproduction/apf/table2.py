@@ -73,7 +73,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
     """Make the tables, and judge them."""
     videos = {
         video: {
-            system.label: [found["rmse_px"] for found in _metrics(results, size, video, system)]
+            system.label: [metrics["rmse_px"] for metrics in _metrics(results, size, video, system)]
             for system in _SYSTEMS
         }
         for video in _videos(size)
@@ -123,29 +123,29 @@ def _metrics(
 
 
 def _recoveries(results: ex.Results, size: ex.Size, system: System) -> list[bool]:
-    found = [
+    verdicts = [
         occlusion["recovered"]
         for video in _videos(size)
         for metrics in _metrics(results, size, video, system)
         for occlusion in metrics["occlusions"]
     ]
-    return [verdict for verdict in found if verdict is not None]
+    return [verdict for verdict in verdicts if verdict is not None]
 
 
 def _data(results: ex.Results, size: ex.Size) -> ex.DataTable:
     rows: list[tuple[ex.Entry, ...]] = []
     for cell in cells(size):
-        found = results[cell]["metrics"]
-        hits = [occlusion["recovered"] for occlusion in found["occlusions"]]
+        metrics = results[cell]["metrics"]
+        hits = [occlusion["recovered"] for occlusion in metrics["occlusions"]]
         rows.append(
             (
                 cell.scene.name,
                 cell.system.label,
                 cell.seed,
                 sigma_of(cell.system),
-                found["rmse_px"],
-                found["rmse_visible_px"],
-                found["on_target"],
+                metrics["rmse_px"],
+                metrics["rmse_visible_px"],
+                metrics["on_target"],
                 len(hits),
                 hits.count(True),
             )
@@ -156,31 +156,34 @@ def _data(results: ex.Results, size: ex.Size) -> ex.DataTable:
 
 
 def _claims(videos: Errors, recovered: Mapping[str, Sequence[bool]]) -> tuple[ex.Claim, ...]:
-    found = groups(videos)
+    kinds = groups(videos)
     return (
         ex.Claim(
             "over all videos APF has the smallest average RMSE",
             _PLACE,
-            tuple(_first(videos, found["average"], one, 1.0) for one in COMPARISONS),
+            tuple(_first(videos, kinds["average"], comparison, 1.0) for comparison in COMPARISONS),
             "yes: its mean is at most the best rival's; partly: it is with half of the seeds",
         ),
         ex.Claim(
             "on the videos with total occlusions it is far ahead: at most half of the best rival's "
             "average (in the paper about a quarter)",
             _PLACE,
-            tuple(_first(videos, found["total occlusion"], one, _AT_MOST) for one in COMPARISONS),
+            tuple(
+                _first(videos, kinds["total occlusion"], comparison, _AT_MOST)
+                for comparison in COMPARISONS
+            ),
             "yes: at most half of it; partly: it is below the rival's with half of the seeds",
         ),
         ex.Claim(
             "it is ahead on every video with a partial or total occlusion",
             _PLACE,
-            tuple(_everywhere(videos, one) for one in COMPARISONS),
+            tuple(_everywhere(videos, comparison) for comparison in COMPARISONS),
             "yes: on 95 % of them by the median over the seeds; partly: on half",
         ),
         ex.Claim(
             "after the occlusion APF resumes tracking, the others do not",
             _PLACE,
-            tuple(_resumes(recovered, one) for one in COMPARISONS),
+            tuple(_resumes(recovered, comparison) for comparison in COMPARISONS),
             "yes: APF recovers from 90 % of them, each other from less than half; partly: APF "
             "recovers most often",
         ),
@@ -188,7 +191,7 @@ def _claims(videos: Errors, recovered: Mapping[str, Sequence[bool]]) -> tuple[ex
             "without occlusion (videos 19 and 20) APF is a little behind the best rival: 1.12 and "
             f"1.39 times its RMSE (within a factor of {_ALIKE:g})",
             _PLACE,
-            tuple(_unoccluded(videos, one) for one in COMPARISONS),
+            tuple(_unoccluded(videos, comparison) for comparison in COMPARISONS),
             "yes: both ratios of medians are within that factor; partly: one is",
         ),
         ex.Claim(
@@ -201,44 +204,46 @@ def _claims(videos: Errors, recovered: Mapping[str, Sequence[bool]]) -> tuple[ex
     )
 
 
-def _best(videos: Errors, names: Sequence[str], one: Comparison) -> tuple[str, list[float]]:
-    found = {rival.label: averages(videos, names, rival.label) for rival in one.rivals}
-    label = min(found, key=lambda name: fmean(found[name]))
-    return label, found[label]
+def _best(videos: Errors, names: Sequence[str], comparison: Comparison) -> tuple[str, list[float]]:
+    means = {rival.label: averages(videos, names, rival.label) for rival in comparison.rivals}
+    label = min(means, key=lambda name: fmean(means[name]))
+    return label, means[label]
 
 
-def _first(videos: Errors, names: Sequence[str], one: Comparison, at_most: float) -> ex.Finding:
-    own = averages(videos, names, one.apf.label)
-    label, best = _best(videos, names, one)
+def _first(
+    videos: Errors, names: Sequence[str], comparison: Comparison, at_most: float
+) -> ex.Finding:
+    own = averages(videos, names, comparison.apf.label)
+    label, best = _best(videos, names, comparison)
     ratio = fmean(own) / fmean(best)
     ahead = [ours < theirs for ours, theirs in zip(own, best, strict=True)]
     return ex.Finding(
-        one.name,
+        comparison.name,
         ex.Holds.of(ratio <= at_most, share(ahead) >= 0.5),
         f"{mean_and_spread(own)} px against {mean_and_spread(best)} px of {label}, the best rival: "
         f"{ratio:.2f} times; by seed {median_and_range(own)} px",
     )
 
 
-def _everywhere(videos: Errors, one: Comparison) -> ex.Finding:
+def _everywhere(videos: Errors, comparison: Comparison) -> ex.Finding:
     occluded = {name: of for name, of in videos.items() if VIDEO_SCENES[name].occlusion != "none"}
-    found = ratios(occluded, one.apf.label, one.rival_labels)
-    ahead = [ratio <= 1 for ratio in found.values()]
-    behind = ", ".join(name.removeprefix("video") for name, ratio in found.items() if ratio > 1)
+    by_video = ratios(occluded, comparison.apf.label, comparison.rival_labels)
+    ahead = [ratio <= 1 for ratio in by_video.values()]
+    behind = ", ".join(name.removeprefix("video") for name, ratio in by_video.items() if ratio > 1)
     parts = f"; behind on {behind}" if any(ahead) and behind else ""
     return ex.Finding(
-        one.name,
+        comparison.name,
         ex.Holds.share(share(ahead)),
         f"smallest median RMSE on {counted(ahead)} of them{parts}",
     )
 
 
-def _resumes(recovered: Mapping[str, Sequence[bool]], one: Comparison) -> ex.Finding:
-    own = recovered[one.apf.label]
-    others = {label: recovered[label] for label in one.rival_labels}
+def _resumes(recovered: Mapping[str, Sequence[bool]], comparison: Comparison) -> ex.Finding:
+    own = recovered[comparison.apf.label]
+    others = {label: recovered[label] for label in comparison.rival_labels}
     parts = "; ".join(f"{label} {counted(hits)}" for label, hits in others.items())
     return ex.Finding(
-        one.name,
+        comparison.name,
         ex.Holds.of(
             share(own) >= 0.9 and all(share(hits) < 0.5 for hits in others.values()),
             share(own) > max(map(share, others.values())),
@@ -247,22 +252,25 @@ def _resumes(recovered: Mapping[str, Sequence[bool]], one: Comparison) -> ex.Fin
     )
 
 
-def _unoccluded(videos: Errors, one: Comparison) -> ex.Finding:
+def _unoccluded(videos: Errors, comparison: Comparison) -> ex.Finding:
     clear = {name: of for name, of in videos.items() if VIDEO_SCENES[name].occlusion == "none"}
-    found = ratios(clear, one.apf.label, one.rival_labels)
-    alike = [1 / _ALIKE <= r / published_ratio(name) <= _ALIKE for name, r in found.items()]
+    by_video = ratios(clear, comparison.apf.label, comparison.rival_labels)
+    alike = [1 / _ALIKE <= r / published_ratio(name) <= _ALIKE for name, r in by_video.items()]
     parts = ", ".join(
-        f"{name} {ratio:.2f} (paper {published_ratio(name):.2f})" for name, ratio in found.items()
+        f"{name} {ratio:.2f} (paper {published_ratio(name):.2f})"
+        for name, ratio in by_video.items()
     )
     return ex.Finding(
-        one.name, ex.Holds.of(all(alike), any(alike)), f"APF over the best rival: {parts}"
+        comparison.name, ex.Holds.of(all(alike), any(alike)), f"APF over the best rival: {parts}"
     )
 
 
-def _alike(found: Mapping[str, float]) -> ex.Finding:
-    parts = ", ".join(f"{label} {rank:.2f}" for label, rank in found.items())
+def _alike(correlations: Mapping[str, float]) -> ex.Finding:
+    parts = ", ".join(f"{label} {rank:.2f}" for label, rank in correlations.items())
     return ex.Finding(
-        ex.PAPER_RULE, ex.Holds.of(min(found.values()) >= 0.7, median(found.values()) >= 0.4), parts
+        ex.PAPER_RULE,
+        ex.Holds.of(min(correlations.values()) >= 0.7, median(correlations.values()) >= 0.4),
+        parts,
     )
 
 

@@ -36,8 +36,8 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
     times = {seed: results[_cell(seed)]["step_ms"] for seed in size.seeds}
     medians = {s.label: [median(times[seed][s.label]) for seed in size.seeds] for s in SIX_SYSTEMS}
     ratios = {
-        label: [own / ours for own, ours in zip(found, medians[APF.label], strict=True)]
-        for label, found in medians.items()
+        label: [own / ours for own, ours in zip(of_tracker, medians[APF.label], strict=True)]
+        for label, of_tracker in medians.items()
     }
     rows = tuple(
         (system.label, seed, frame, step)
@@ -70,11 +70,11 @@ def _figure(ratios: dict[str, list[float]]) -> Figure:
     figure = Figure(figsize=(7, 3.6), layout="constrained")
     axes = figure.add_subplot()
     places = np.arange(len(ratios))
-    ours = [median(found) for found in ratios.values()]
+    ours = [median(of_tracker) for of_tracker in ratios.values()]
     paper = [_MINUTES[label] / _MINUTES[APF.label] for label in ratios]
     axes.bar(places - 0.2, paper, 0.38, color="0.75", ec="black", hatch="//", label="paper")
     axes.bar(places + 0.2, ours, 0.38, color="#0072B2", ec="black", label="here")
-    ranges = [[min(found), max(found)] for found in ratios.values()]
+    ranges = [[min(of_tracker), max(of_tracker)] for of_tracker in ratios.values()]
     axes.vlines(places + 0.2, *zip(*ranges, strict=True), color="black", lw=1.5)
     axes.axhline(1, color="black", lw=0.8, ls=":")
     axes.set_xticks(places, list(ratios))

@@ -65,8 +65,8 @@ def data(runs: dict[str, list[Scores]], size: Size) -> DataTable:
 
 def recoveries(of_seeds: Sequence[Scores]) -> list[bool]:
     """Return for every judged total occlusion of every run whether it recovered."""
-    found = [verdict for scored in of_seeds for verdict in measure(scored).recovered]
-    return [verdict for verdict in found if verdict is not None]
+    verdicts = [verdict for scored in of_seeds for verdict in measure(scored).recovered]
+    return [verdict for verdict in verdicts if verdict is not None]
 
 
 def total_span(scored: Scores) -> tuple[int, int]:

@@ -47,13 +47,17 @@ def draw_cases(axes: Axes, values: Values, shades: Mapping[str, str]) -> None:
         axes.axvspan(place - 0.5, place + 0.5, color=shades[name], lw=0)
     for index, (label, style) in enumerate(zip(labels, LINE_STYLES, strict=False)):
         places = np.arange(len(values)) + (index - (len(labels) - 1) / 2) * step
-        found = [of_scene[label] for of_scene in values.values()]
+        of_tracker = [of_scene[label] for of_scene in values.values()]
         axes.vlines(
-            places, [min(f) for f in found], [max(f) for f in found], color=style.colour, lw=1.3
+            places,
+            [min(f) for f in of_tracker],
+            [max(f) for f in of_tracker],
+            color=style.colour,
+            lw=1.3,
         )
         axes.plot(
             places,
-            [median(f) for f in found],
+            [median(f) for f in of_tracker],
             ls="",
             marker=style.marker,
             ms=6,

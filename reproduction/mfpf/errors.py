@@ -135,7 +135,7 @@ def _parts(
     results: ex.Results, size: ex.Size, interpretation: str
 ) -> Mapping[str, tuple[float, bool]]:
     """Share of the frames with MFPF ahead of all, and whether it is by its RMS, by case."""
-    found = {}
+    by_case = {}
     for case in mfpf.cases(size):
         shares = []
         for seed in size.seeds:
@@ -149,14 +149,14 @@ def _parts(
             s.label: fmean(mfpf.per_seed(results, size, case, s, interpretation, "rmse_px"))
             for s in FOUR_SYSTEMS
         }
-        found[case] = fmean(shares), totals.pop(MFPF.label) <= min(totals.values())
-    return found
+        by_case[case] = fmean(shares), totals.pop(MFPF.label) <= min(totals.values())
+    return by_case
 
 
-def _in_parts(interpretation: str, found: Mapping[str, tuple[float, bool]]) -> ex.Finding:
-    both = [ahead < 1 and on_the_whole for ahead, on_the_whole in found.values()]
-    mean = fmean(ahead for ahead, _ in found.values())
-    wholes = [on_the_whole for _, on_the_whole in found.values()]
+def _in_parts(interpretation: str, by_case: Mapping[str, tuple[float, bool]]) -> ex.Finding:
+    both = [ahead < 1 and on_the_whole for ahead, on_the_whole in by_case.values()]
+    mean = fmean(ahead for ahead, _ in by_case.values())
+    wholes = [on_the_whole for _, on_the_whole in by_case.values()]
     return ex.Finding(
         interpretation,
         ex.Holds.of(all(both), any(both)),

@@ -72,7 +72,7 @@ _Counts: TypeAlias = Mapping[str, tuple[list[int], list[int]]]
 
 
 def _counts(results: ex.Results, size: ex.Size) -> _Counts:
-    found = {}
+    counts = {}
     for case in mfpf.cases(size):
         hidden = []
         partial = []
@@ -81,8 +81,8 @@ def _counts(results: ex.Results, size: ex.Size) -> _Counts:
             kinds = [truth.occlusion for truth in truths if truth is not None]
             hidden.append(kinds.count(Occlusion.TOTAL))
             partial.append(kinds.count(Occlusion.PARTIAL))
-        found[case] = hidden, partial
-    return found
+        counts[case] = hidden, partial
+    return counts
 
 
 def _finding(counts: _Counts) -> ex.Finding:

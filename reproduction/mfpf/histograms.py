@@ -156,7 +156,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
         for seed in size.seeds
         for name, distance in _distances(results, situation, seed, interpretation).items()
     ]
-    found = {
+    distances = {
         interpretation: {
             situation: {
                 name: [
@@ -173,7 +173,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
         ("", *(read_label(label, interpretation)
                for interpretation in INTERPRETATIONS for label in FEATURE_NAMES.values())),
         tuple(
-            (_TITLES[situation], *(mean_and_spread(found[interpretation][situation][name], 2)
+            (_TITLES[situation], *(mean_and_spread(distances[interpretation][situation][name], 2)
                                    for interpretation in INTERPRETATIONS for name in FEATURE_NAMES))
             for situation in _SITUATIONS
         ),
@@ -181,7 +181,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
     return ex.Report(
         ex.DataTable(("interpretation", "situation", "seed", "feature", "distance"), tuple(rows)),
         _figure(size),
-        ex.ExperimentVerdict(_claims(found), _setting(size)),
+        ex.ExperimentVerdict(_claims(distances), _setting(size)),
         {
             "Hellinger distance from the first frame's histogram, mean ± standard deviation over "
             "the seeds:": table
@@ -217,7 +217,7 @@ def chosen_frames(result: Result, situation: str) -> list[int]:
         return [index for index, share in enumerate(visible) if share < _GONE]
     if situation == "partial":
         (stretch,) = (
-            found for found in _stretches(visible) if min(visible[i] for i in found) >= _GONE
+            hidden for hidden in _stretches(visible) if min(visible[i] for i in hidden) >= _GONE
         )
         order = sorted(stretch, key=visible.__getitem__)
         return sorted(order[: max(len(order) // 4, 1)])
@@ -244,20 +244,20 @@ def _distances(
     }
 
 
-def _claims(found: dict[str, dict[str, dict[str, list[float]]]]) -> tuple[ex.Claim, ...]:
+def _claims(distances: dict[str, dict[str, dict[str, list[float]]]]) -> tuple[ex.Claim, ...]:
     return (
         ex.Claim(
             "in shadow and under a partial occlusion the edge histogram changes the least, colour "
             "the most, texture is in between",
             _PLACE,
-            tuple(_order(interpretation, of) for interpretation, of in found.items()),
+            tuple(_order(interpretation, of) for interpretation, of in distances.items()),
             "yes: in this order by the means, in both; partly: the edge histogram changes the "
             "least in one of them",
         ),
         ex.Claim(
             "under a full occlusion no histogram is informative",
             _PLACE,
-            tuple(_empty(interpretation, of) for interpretation, of in found.items()),
+            tuple(_empty(interpretation, of) for interpretation, of in distances.items()),
             "yes: all mean distances from the first are at least 0.6; partly: one is",
         ),
     )
@@ -294,14 +294,14 @@ def _figure(size: ex.Size) -> Figure:
     figure = Figure(figsize=(11, 1.9 * len(shown)), layout="constrained")
     grid = figure.subplots(len(shown), 4, width_ratios=(1, 1.6, 1.6, 1.6))
     colours = (("red", "#D55E00", "-"), ("green", "#009E73", "--"), ("blue", "#0072B2", ":"))
-    for axes, (situation, (window, found)) in zip(grid, shown.items(), strict=True):
+    for axes, (situation, (window, histograms)) in zip(grid, shown.items(), strict=True):
         axes[0].imshow(window)
         axes[0].set(xticks=[], yticks=[], ylabel=_TITLES[situation])
         for index, (name, colour, line) in enumerate(colours):
-            part = found["color"].reshape(3, -1)[index]
+            part = histograms["color"].reshape(3, -1)[index]
             axes[1].plot(part, color=colour, ls=line, lw=1.5, label=name, drawstyle="steps-mid")
         for ax, name in zip(axes[2:], ("edge", "texture"), strict=True):
-            ax.bar(range(len(found[name])), found[name], 1.0, color="0.25")
+            ax.bar(range(len(histograms[name])), histograms[name], 1.0, color="0.25")
         for ax in axes[1:]:
             ax.margins(x=0.01)
             ax.tick_params(labelsize="small")

@@ -50,8 +50,8 @@ def share_report(
     """Table the percentages by interpretation, case and filter, and the paper's claims."""
     rows: list[tuple[Entry, ...]] = [
         (interpretation, case, label, seed, value)
-        for interpretation, found in shares.items()
-        for case, of_case in found.items()
+        for interpretation, by_case in shares.items()
+        for case, of_case in by_case.items()
         for label, values in of_case.items()
         for seed, value in zip(size.seeds, values, strict=True)
     ]
@@ -69,9 +69,9 @@ def _share_table(shares: Mapping[str, Values], paper: Mapping[str, Sequence[floa
     rows = [
         (
             mfpf.read_label(label, interpretation),
-            *(mean_and_spread(of_case[label]) for of_case in found.values()),
+            *(mean_and_spread(of_case[label]) for of_case in by_case.values()),
         )
-        for interpretation, found in shares.items()
+        for interpretation, by_case in shares.items()
         for label in paper
     ]
     rows += [
@@ -81,12 +81,14 @@ def _share_table(shares: Mapping[str, Values], paper: Mapping[str, Sequence[floa
     return DataTable(("", *cases), tuple(rows))
 
 
-def _share_figure(found: Values, what: str) -> Figure:
+def _share_figure(by_case: Values, what: str) -> Figure:
     """Draw percentages by case; `what` they are of stands at the axis."""
     figure = Figure(figsize=(9, 4.2), layout="constrained")
     axes = figure.add_subplot()
-    draw_cases(axes, found, {case: OCCLUSION_SHADES[CASE_SCENES[case].occlusion] for case in found})
-    axes.set_xticks(range(len(found)), [case.removeprefix("case") for case in found])
+    draw_cases(
+        axes, by_case, {case: OCCLUSION_SHADES[CASE_SCENES[case].occlusion] for case in by_case}
+    )
+    axes.set_xticks(range(len(by_case)), [case.removeprefix("case") for case in by_case])
     axes.set(ylim=(-3, 103), ylabel=what, xlabel=f"case {GROUND_NOTE}")
     figure.legend(loc="outside lower center", ncols=4, frameon=False)
     return figure

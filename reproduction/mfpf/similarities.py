@@ -225,15 +225,15 @@ def _last_phase(
     results: ex.Results, size: ex.Size, interpretation: str
 ) -> Sequence[tuple[float, float, float]]:
     """Share of the frames of case 1's last phase with each feature out of use, for each seed."""
-    found = []
+    unused = []
     for seed in size.seeds if "case1" in mfpf.cases(size) else ():
         trace = mfpf.trace(results, "case1", MFPF, seed, interpretation)
         count = round(_LAST_PHASE * len(trace["regime"]))
         color, edge, texture = (
             1 - fmean(trace[f"used_{name}"][-count:]) for name in ("color", "edge", "texture")
         )
-        found.append((color, edge, texture))
-    return found
+        unused.append((color, edge, texture))
+    return unused
 
 
 def _excluded(interpretation: str, unused: Sequence[tuple[float, float, float]]) -> ex.Finding:
@@ -255,21 +255,21 @@ def _accepted(
     results: ex.Results, size: ex.Size, interpretation: str
 ) -> Sequence[tuple[bool, bool]]:
     """Tell for each seed whether RGB and texture are in use soon after case 6's occlusion."""
-    found = []
+    in_use = []
     for seed in size.seeds:
         trace = mfpf.trace(results, "case6", MFPF, seed, interpretation)
         frames = mfpf.run_scores(results, "case6", MFPF, seed, interpretation).frames
         last = max(index for index, frame in enumerate(frames) if frame.hidden)
         soon = slice(last + 1, last + 1 + _SOON)
         color, texture = (any(trace[f"used_{name}"][soon]) for name in ("color", "texture"))
-        found.append((color, texture))
-    return found
+        in_use.append((color, texture))
+    return in_use
 
 
-def _acceptable(interpretation: str, found: Sequence[tuple[bool, bool]]) -> ex.Finding:
-    color, texture = ([pair[number] for pair in found] for number in (0, 1))
+def _acceptable(interpretation: str, in_use: Sequence[tuple[bool, bool]]) -> ex.Finding:
+    color, texture = ([pair[number] for pair in in_use] for number in (0, 1))
     enough = [share(hits) >= 0.8 for hits in (color, texture)]
-    both = share([all(pair) for pair in found]) >= 0.8
+    both = share([all(pair) for pair in in_use]) >= 0.8
     return ex.Finding(
         interpretation,
         ex.Holds.of(both, any(enough)),
@@ -280,13 +280,13 @@ def _acceptable(interpretation: str, found: Sequence[tuple[bool, bool]]) -> ex.F
 
 def _all_back(results: ex.Results, size: ex.Size, interpretation: str) -> Sequence[Sequence[str]]:
     """Name the features that were back first, for each run that was in prediction mode."""
-    found = (
+    of_runs = (
         _back(results, case, seed, interpretation)
         for case in _RECOVERING
         if case in mfpf.cases(size)
         for seed in size.seeds
     )
-    return [names for names in found if names is not None]
+    return [names for names in of_runs if names is not None]
 
 
 def _first_back(interpretation: str, back: Sequence[Sequence[str]]) -> ex.Finding:

@@ -140,22 +140,22 @@ def cell(case: str, system: System, seed: int, interpretation: str = PAPER_RULE)
 
 def cells(size: Size) -> list[RunCell]:
     """Run the four filters on every case, under every interpretation, with every seed."""
-    found = [
+    all_cells = [
         cell(case, system, seed, interpretation)
         for case in cases(size)
         for interpretation in RIVALRIES
         for system in FOUR_SYSTEMS
         for seed in size.seeds
     ]
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(all_cells))
 
 
 def run_scores(
     results: Results, case: str, system: System, seed: int, interpretation: str = PAPER_RULE
 ) -> Scores:
     """Score one run against the truth again."""
-    found = cell(case, system, seed, interpretation)
-    return scores(found, results[found])
+    run = cell(case, system, seed, interpretation)
+    return scores(run, results[run])
 
 
 def trace(

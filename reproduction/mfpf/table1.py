@@ -117,8 +117,8 @@ def _data(
 ) -> ex.DataTable:
     rows: list[tuple[ex.Entry, ...]] = [
         (interpretation, case, label, "glcm", seed, rms, int(end))
-        for interpretation, found in errors.items()
-        for case, of_case in found.items()
+        for interpretation, by_case in errors.items()
+        for case, of_case in by_case.items()
         for label, values in of_case.items()
         for seed, rms, end in zip(
             size.seeds, values, followed[interpretation][case][label], strict=True
@@ -137,10 +137,10 @@ def _rms_table(errors: Mapping[str, Errors], size: ex.Size) -> ex.DataTable:
     rows: list[tuple[ex.Entry, ...]] = [
         (
             mfpf.read_label(label, interpretation),
-            *(mean_and_spread(of_case[label]) for of_case in found.values()),
-            mean_and_spread(_over_cases(found, label)),
+            *(mean_and_spread(of_case[label]) for of_case in by_case.values()),
+            mean_and_spread(_over_cases(by_case, label)),
         )
-        for interpretation, found in errors.items()
+        for interpretation, by_case in errors.items()
         for label in _PAPER
     ]
     numbers = [int(_short(case)) - 1 for case in mfpf.cases(size)]
@@ -159,9 +159,9 @@ def _followed_table(followed: Mapping[str, Followed], size: ex.Size) -> ex.DataT
     rows: list[tuple[ex.Entry, ...]] = [
         (
             mfpf.read_label(label, interpretation),
-            *(sum(of_case[label]) for of_case in found.values()),
+            *(sum(of_case[label]) for of_case in by_case.values()),
         )
-        for interpretation, found in followed.items()
+        for interpretation, by_case in followed.items()
         for label in _PAPER
     ]
     return ex.DataTable(("filter", *mfpf.cases(size)), tuple(rows))
@@ -172,9 +172,9 @@ def _over_cases(errors: Errors, label: str) -> list[float]:
     return seed_means(by_label[label] for by_label in errors.values())
 
 
-def _best_single(found: Mapping[str, Sequence[float]]) -> str:
+def _best_single(by_filter: Mapping[str, Sequence[float]]) -> str:
     return min(
-        (single.label for single in mfpf.SINGLE_FEATURES), key=lambda label: fmean(found[label])
+        (single.label for single in mfpf.SINGLE_FEATURES), key=lambda label: fmean(by_filter[label])
     )
 
 
@@ -183,50 +183,52 @@ def _claims(errors: Mapping[str, Errors]) -> tuple[ex.Claim, ...]:
         ex.Claim(
             "MFPF has the least RMS in all cases",
             _PLACE,
-            tuple(_least(interpretation, found) for interpretation, found in errors.items()),
+            tuple(_least(interpretation, by_case) for interpretation, by_case in errors.items()),
             "yes: its mean over the seeds is, in all cases; partly: in one",
         ),
         ex.Claim(
             "its RMS is always 10 to 25 % below the least of the single-feature filters (3 to 23 % "
             "by the paper's own table)",
             _PLACE,
-            tuple(_saving(interpretation, found) for interpretation, found in errors.items()),
+            tuple(_saving(interpretation, by_case) for interpretation, by_case in errors.items()),
             "yes: at least 10 % in all cases; partly: in one",
         ),
         ex.Claim(
             "no single feature is the best in all cases: each of them is in some",
             _PLACE,
-            tuple(_no_single(interpretation, found) for interpretation, found in errors.items()),
+            tuple(
+                _no_single(interpretation, by_case) for interpretation, by_case in errors.items()
+            ),
             "yes: by the mean RMS each of the three is the best somewhere; partly: two are",
         ),
     )
 
 
-def _ratios(found: Errors) -> dict[str, float]:
+def _ratios(by_case: Errors) -> dict[str, float]:
     """MFPF's mean RMS over the best single-feature filter's, by case."""
     return {
         case: fmean(of_case[mfpf.MFPF.label]) / fmean(of_case[_best_single(of_case)])
-        for case, of_case in found.items()
+        for case, of_case in by_case.items()
     }
 
 
-def _numbers_text(found: Errors) -> str:
+def _numbers_text(by_case: Errors) -> str:
     return ", ".join(
-        f"case {_short(case)} {ratio:.2f} of {_best_single(found[case])}'s"
-        for case, ratio in _ratios(found).items()
+        f"case {_short(case)} {ratio:.2f} of {_best_single(by_case[case])}'s"
+        for case, ratio in _ratios(by_case).items()
     )
 
 
-def _least(interpretation: str, found: Errors) -> ex.Finding:
-    least = [ratio <= 1 for ratio in _ratios(found).values()]
+def _least(interpretation: str, by_case: Errors) -> ex.Finding:
+    least = [ratio <= 1 for ratio in _ratios(by_case).values()]
     return ex.Finding(
-        interpretation, ex.Holds.of(all(least), any(least)), f"MFPF's RMS: {_numbers_text(found)}"
+        interpretation, ex.Holds.of(all(least), any(least)), f"MFPF's RMS: {_numbers_text(by_case)}"
     )
 
 
-def _saving(interpretation: str, found: Errors) -> ex.Finding:
-    enough = [ratio <= 1 - _AT_LEAST for ratio in _ratios(found).values()]
-    saved = ", ".join(f"{100 * (1 - ratio):.0f}" for ratio in _ratios(found).values())
+def _saving(interpretation: str, by_case: Errors) -> ex.Finding:
+    enough = [ratio <= 1 - _AT_LEAST for ratio in _ratios(by_case).values()]
+    saved = ", ".join(f"{100 * (1 - ratio):.0f}" for ratio in _ratios(by_case).values())
     return ex.Finding(
         interpretation,
         ex.Holds.of(all(enough), any(enough)),
@@ -234,8 +236,8 @@ def _saving(interpretation: str, found: Errors) -> ex.Finding:
     )
 
 
-def _no_single(interpretation: str, found: Errors) -> ex.Finding:
-    best = {case: _best_single(of_case) for case, of_case in found.items()}
+def _no_single(interpretation: str, by_case: Errors) -> ex.Finding:
+    best = {case: _best_single(of_case) for case, of_case in by_case.items()}
     parts = ", ".join(f"case {_short(case)} {label}" for case, label in best.items())
     kinds = len(set(best.values()))
     return ex.Finding(interpretation, ex.Holds.of(kinds == 3, kinds == 2), f"the best: {parts}")
@@ -252,8 +254,8 @@ def _further(
             _PLACE,
             (
                 *(
-                    _over_all(interpretation, found, found)
-                    for interpretation, found in errors.items()
+                    _over_all(interpretation, by_case, by_case)
+                    for interpretation, by_case in errors.items()
                 ),
                 _over_all(
                     "the paper's rule, single features with their defaults",
@@ -267,15 +269,17 @@ def _further(
             "(not in the paper in numbers) MFPF follows to the end: in 8 of 10 runs where the "
             "vehicle is never hidden, and otherwise as often as the best single feature",
             "section V, cases 1 to 6",
-            tuple(_to_the_end(interpretation, found) for interpretation, found in followed.items()),
+            tuple(
+                _to_the_end(interpretation, by_case) for interpretation, by_case in followed.items()
+            ),
             f"yes: {mfpf.LAST_FRAMES} last frames below {CLOSE_PX:g} px so often in all cases; "
             "partly: in one, by one run at least",
         ),
     )
 
 
-def _over_all(interpretation: str, found: Errors, rivals: Errors) -> ex.Finding:
-    own = _over_cases(found, mfpf.MFPF.label)
+def _over_all(interpretation: str, by_case: Errors, rivals: Errors) -> ex.Finding:
+    own = _over_cases(by_case, mfpf.MFPF.label)
     singles = {single.label: _over_cases(rivals, single.label) for single in mfpf.SINGLE_FEATURES}
     best = _best_single(singles)
     wins = [a < b for a, b in zip(own, singles[best], strict=True)]
@@ -290,10 +294,10 @@ def _over_all(interpretation: str, found: Errors, rivals: Errors) -> ex.Finding:
     )
 
 
-def _to_the_end(interpretation: str, found: Followed) -> ex.Finding:
+def _to_the_end(interpretation: str, by_case: Followed) -> ex.Finding:
     enough = []
     parts = []
-    for case, of_case in found.items():
+    for case, of_case in by_case.items():
         own = of_case[mfpf.MFPF.label]
         best = max(
             (single.label for single in mfpf.SINGLE_FEATURES), key=lambda label: sum(of_case[label])
@@ -302,7 +306,7 @@ def _to_the_end(interpretation: str, found: Followed) -> ex.Finding:
         # As often as a rival that never does is not often enough.
         enough.append(any(own) and share(own) >= needed)
         parts.append(f"case {_short(case)} {sum(own)} ({best} {sum(of_case[best])})")
-    runs = len(next(iter(next(iter(found.values())).values())))
+    runs = len(next(iter(next(iter(by_case.values())).values())))
     return ex.Finding(
         interpretation,
         ex.Holds.of(all(enough), any(enough)),

@@ -55,29 +55,29 @@ def report(results: Results, size: Size) -> Report:
 def _shares(results: Results, size: Size, case: str, interpretation: str) -> dict[str, list[float]]:
     """Count in each filter's own runs."""
     limit = mfpf.threshold(interpretation)
-    found: dict[str, list[float]] = {}
+    by_filter: dict[str, list[float]] = {}
     for seed in size.seeds:
         for (name, label), single in zip(FEATURE_NAMES.items(), mfpf.SINGLE_FEATURES, strict=True):
             averages = mfpf.trace(results, case, single, seed, interpretation)[f"as_{name}"][1:]
             above = [value >= limit * averages[0] for value in averages]
-            found.setdefault(label, []).append(100 * fmean(above))
+            by_filter.setdefault(label, []).append(100 * fmean(above))
         regimes = mfpf.trace(results, case, MFPF, seed, interpretation)["regime"][1:]
         estimating = [regime == "estimation" for regime in regimes]
-        found.setdefault(MFPF.label, []).append(100 * fmean(estimating))
-    return found
+        by_filter.setdefault(MFPF.label, []).append(100 * fmean(estimating))
+    return by_filter
 
 
 def _hidden_shares(results: Results, size: Size, interpretation: str) -> dict[str, list[float]]:
     """Percent of the totally hidden frames in prediction mode, by case."""
-    found: dict[str, list[float]] = {}
+    by_case: dict[str, list[float]] = {}
     for case in mfpf.cases(size):
         for seed in size.seeds:
             regimes = mfpf.trace(results, case, MFPF, seed, interpretation)["regime"]
             frames = mfpf.run_scores(results, case, MFPF, seed, interpretation).frames
             hits = [r == "prediction" for r, f in zip(regimes, frames, strict=True) if f.hidden]
             if hits:
-                found.setdefault(case, []).append(100 * fmean(hits))
-    return found
+                by_case.setdefault(case, []).append(100 * fmean(hits))
+    return by_case
 
 
 def _claims(
@@ -88,7 +88,7 @@ def _claims(
             "without a full occlusion (cases 1 to 3) nearly all frames have all features above "
             "their thresholds (88 % at least), and MFPF never predicts",
             _PLACE,
-            tuple(_open(interpretation, found) for interpretation, found in shares.items()),
+            tuple(_open(interpretation, by_case) for interpretation, by_case in shares.items()),
             f"yes: means of at least {_OFTEN:g} % for each feature and {_ALWAYS:g} % for MFPF in "
             f"all three; partly: {_ALWAYS:g} % for MFPF in one",
         ),
@@ -96,29 +96,30 @@ def _claims(
             "MFPF is in prediction mode less often than any single feature is below its threshold "
             "(in the paper, against the best feature, by 3.9, 9.5 and 10.9 points in cases 4 to 6)",
             _PLACE,
-            tuple(_less(interpretation, found) for interpretation, found in shares.items()),
+            tuple(_less(interpretation, by_case) for interpretation, by_case in shares.items()),
             "yes: by the means, in all three; partly: in one",
         ),
         Claim(
             "while the vehicle is fully hidden, all features are below their thresholds and MFPF "
             "predicts (of case 6 the paper says so in V-F, and the opposite in table II: 100 %)",
             "section V-D to V-F, figures 11, 13 and 15",
-            tuple(_predicts(interpretation, found) for interpretation, found in hidden.items()),
+            tuple(_predicts(interpretation, by_case) for interpretation, by_case in hidden.items()),
             f"yes: in {_OFTEN:g} % of the hidden frames of each case (mean); partly: in "
             f"{100 - _OFTEN:g} % of those of one",
         ),
     )
 
 
-def _open(interpretation: str, found: Values) -> Finding:
-    without = {case: of for case, of in found.items() if case in mfpf.WITHOUT_HIDING}
+def _open(interpretation: str, by_case: Values) -> Finding:
+    without = {case: of_case for case, of_case in by_case.items() if case in mfpf.WITHOUT_HIDING}
     least = [
-        min(fmean(v) for label, v in of.items() if label != MFPF.label) for of in without.values()
+        min(fmean(v) for label, v in of_case.items() if label != MFPF.label)
+        for of_case in without.values()
     ]
-    own = [fmean(of[MFPF.label]) for of in without.values()]
+    own = [fmean(of_case[MFPF.label]) for of_case in without.values()]
     parts = "; ".join(
-        f"{case}: " + ", ".join(f"{label} {fmean(values):.0f}" for label, values in of.items())
-        for case, of in without.items()
+        f"{case}: " + ", ".join(f"{label} {fmean(values):.0f}" for label, values in of_case.items())
+        for case, of_case in without.items()
     )
     holds = Holds.of(
         min(least) >= _OFTEN and min(own) >= _ALWAYS, max(own) >= _ALWAYS
@@ -126,12 +127,13 @@ def _open(interpretation: str, found: Values) -> Finding:
     return Finding(interpretation, holds, f"percent of the frames, {parts}")
 
 
-def _less(interpretation: str, found: Values) -> Finding:
+def _less(interpretation: str, by_case: Values) -> Finding:
     margins = {
-        case: fmean(of[MFPF.label]) - max(fmean(v) for k, v in of.items() if k != MFPF.label)
-        for case, of in found.items()
+        case: fmean(of_case[MFPF.label])
+        - max(fmean(v) for k, v in of_case.items() if k != MFPF.label)
+        for case, of_case in by_case.items()
     }
-    hiding = [margins[case] for case in found if case in mfpf.FULLY_HIDDEN]
+    hiding = [margins[case] for case in by_case if case in mfpf.FULLY_HIDDEN]
     parts = ", ".join(f"{case} {margin:.1f}" for case, margin in margins.items())
     return Finding(
         interpretation,
@@ -140,9 +142,9 @@ def _less(interpretation: str, found: Values) -> Finding:
     )
 
 
-def _predicts(interpretation: str, found: Mapping[str, Sequence[float]]) -> Finding:
-    means = [fmean(values) for values in found.values()]
-    parts = "; ".join(f"{case} {median_and_range(values, 0)}" for case, values in found.items())
+def _predicts(interpretation: str, by_case: Mapping[str, Sequence[float]]) -> Finding:
+    means = [fmean(values) for values in by_case.values()]
+    parts = "; ".join(f"{case} {median_and_range(values, 0)}" for case, values in by_case.items())
     return Finding(
         interpretation,
         Holds.of(min(means) >= _OFTEN, max(means) >= 100 - _OFTEN),

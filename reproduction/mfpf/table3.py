@@ -65,23 +65,23 @@ def _claims(shares: Mapping[str, Values]) -> tuple[Claim, ...]:
             "MFPF's error is below 15 px at least as often as any single-feature filter's (in the "
             "paper in five cases of six)",
             _PLACE,
-            tuple(_first(interpretation, found) for interpretation, found in shares.items()),
+            tuple(_first(interpretation, by_case) for interpretation, by_case in shares.items()),
             "yes: by the means, in all cases but one; partly: in one",
         ),
         Claim(
             "(taken together) over all cases MFPF's share is above the best single-feature "
             "filter's",
             _PLACE,
-            tuple(_over_all(interpretation, found) for interpretation, found in shares.items()),
+            tuple(_over_all(interpretation, by_case) for interpretation, by_case in shares.items()),
             "yes: its mean is above, and so it is with 80 % of the seeds; partly: one of the two",
         ),
     )
 
 
-def _first(interpretation: str, found: Values) -> Finding:
+def _first(interpretation: str, by_case: Values) -> Finding:
     ahead = []
     parts = []
-    for case, of_case in found.items():
+    for case, of_case in by_case.items():
         best = max((s.label for s in mfpf.SINGLE_FEATURES), key=lambda label: fmean(of_case[label]))
         own = fmean(of_case[mfpf.MFPF.label])
         ahead.append(own >= fmean(of_case[best]))
@@ -93,10 +93,10 @@ def _first(interpretation: str, found: Values) -> Finding:
     )
 
 
-def _over_all(interpretation: str, found: Values) -> Finding:
+def _over_all(interpretation: str, by_case: Values) -> Finding:
     means = {
         system.label: [
-            fmean(of) for of in zip(*(c[system.label] for c in found.values()), strict=True)
+            fmean(of) for of in zip(*(c[system.label] for c in by_case.values()), strict=True)
         ]
         for system in mfpf.FOUR_SYSTEMS
     }

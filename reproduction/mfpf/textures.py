@@ -61,26 +61,27 @@ def table(results: Results, size: Size) -> DataTable:
 
 def claim(results: Results, size: Size) -> Claim:
     """Judge which texture is the best."""
-    found = {
+    by_texture = {
         texture: [_over_cases(results, size, system) for system in systems]
         for texture, systems in _USED.items()
     }
     return Claim(
         "of the three textures the elements of the co-occurrence matrix are the most successful",
         "section III-D",
-        (_finding(found),),
+        (_finding(by_texture),),
         "yes: by the mean RMS over all cases, in MFPF and alone; partly: in one of them",
     )
 
 
-def _finding(found: Mapping[str, Sequence[Sequence[float]]]) -> Finding:
+def _finding(by_texture: Mapping[str, Sequence[Sequence[float]]]) -> Finding:
     """Judge each texture's RMS of every seed, in MFPF and alone."""
     first = [
-        min(found, key=lambda texture: fmean(found[texture][which])) == _KEPT for which in (0, 1)
+        min(by_texture, key=lambda texture: fmean(by_texture[texture][which])) == _KEPT
+        for which in (0, 1)
     ]
     parts = "; ".join(
         f"{texture} {mean_and_spread(joint)} px in MFPF, {mean_and_spread(alone)} px alone"
-        for texture, (joint, alone) in found.items()
+        for texture, (joint, alone) in by_texture.items()
     )
     return Finding(
         PAPER_RULE, Holds.of(all(first), any(first)), f"mean RMS over all cases: {parts}"

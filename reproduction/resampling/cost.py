@@ -76,23 +76,29 @@ def _figure(means: dict[str, list[float]]) -> Figure:
     for which, (name, (colour, hatch)) in enumerate(
         zip(("conventional", "adaptive"), looks, strict=True)
     ):
-        found = [means[view.pair[which].label] for view in INTERPRETATIONS.values()]
+        of_view = [means[view.pair[which].label] for view in INTERPRETATIONS.values()]
         at = places + (which - 0.5) * 0.4
         axes.bar(
-            at, [median(f) for f in found], 0.38, ec="black", label=name, color=colour, hatch=hatch
+            at,
+            [median(f) for f in of_view],
+            0.38,
+            ec="black",
+            label=name,
+            color=colour,
+            hatch=hatch,
         )
-        axes.vlines(at, [min(f) for f in found], [max(f) for f in found], color="black", lw=1.5)
+        axes.vlines(at, [min(f) for f in of_view], [max(f) for f in of_view], color="black", lw=1.5)
     axes.set_xticks(places, [textwrap.fill(name, 14) for name in INTERPRETATIONS])
     axes.set(ylabel="processor time, ms per frame")
     axes.legend(frameon=False)
     return figure
 
 
-def _no_more_time(interpretation: str, found: Sequence[float]) -> ex.Finding:
+def _no_more_time(interpretation: str, of_seeds: Sequence[float]) -> ex.Finding:
     return ex.Finding(
         interpretation,
-        ex.Holds.of(max(found) <= 1, median(found) <= 1),
-        f"{median_and_range(found, 2)} times the conventional filter's time",
+        ex.Holds.of(max(of_seeds) <= 1, median(of_seeds) <= 1),
+        f"{median_and_range(of_seeds, 2)} times the conventional filter's time",
     )
 
 
@@ -103,7 +109,8 @@ def _verdict(ratios: dict[str, list[float]], size: ex.Size) -> ex.ExperimentVerd
                 "the adaptive filter takes no more time than the conventional one",
                 "abstract and section VI",
                 tuple(
-                    _no_more_time(interpretation, found) for interpretation, found in ratios.items()
+                    _no_more_time(interpretation, of_seeds)
+                    for interpretation, of_seeds in ratios.items()
                 ),
                 "yes: with every seed; partly: by the median",
             ),

@@ -42,10 +42,10 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
         tuple(
             (
                 f"{variant}, {interpretation}",
-                *(median_and_range(of[name]) for name in (*resampling.PHASES, "all")),
+                *(median_and_range(by_phase[name]) for name in (*resampling.PHASES, "all")),
             )
-            for interpretation, found in errors.items()
-            for variant, of in found.items()
+            for interpretation, by_filter in errors.items()
+            for variant, by_phase in by_filter.items()
         ),
     )
     return ex.Report(
@@ -61,17 +61,17 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
 
 
 def _errors(results: ex.Results, size: ex.Size, interpretation: str) -> Errors:
-    found: Errors = {}
+    by_filter: Errors = {}
     view = resampling.VIEWS[interpretation]
     for system in view.pair:
-        of: dict[str, list[float]] = {name: [] for name in (*resampling.PHASES, "all")}
+        by_phase: dict[str, list[float]] = {name: [] for name in (*resampling.PHASES, "all")}
         for seed in size.seeds:
             scored = resampling.run_scores(results, view, system, seed)
             for name, chosen in resampling.phases(scored).items():
-                of[name].append(resampling.rms(scored, chosen))
-            of["all"].append(resampling.rms(scored, list(range(len(scored.frames)))))
-        found[system.variant] = of
-    return found
+                by_phase[name].append(resampling.rms(scored, chosen))
+            by_phase["all"].append(resampling.rms(scored, list(range(len(scored.frames)))))
+        by_filter[system.variant] = by_phase
+    return by_filter
 
 
 def _figure(results: ex.Results, size: ex.Size) -> Figure:
@@ -104,15 +104,17 @@ def _claims(errors: dict[str, Errors]) -> tuple[ex.Claim, ...]:
             "before the occlusion both filters follow the vehicle",
             f"{_PLACE}, case I",
             tuple(
-                _both_low(interpretation, found, "before")
-                for interpretation, found in errors.items()
+                _both_low(interpretation, by_filter, "before")
+                for interpretation, by_filter in errors.items()
             ),
             f"yes: both medians are below {_LOW:g} px; partly: one is",
         ),
         ex.Claim(
             "while it is partly hidden both have almost the same, low error",
             f"{_PLACE}, case II",
-            tuple(_alike(interpretation, found) for interpretation, found in errors.items()),
+            tuple(
+                _alike(interpretation, by_filter) for interpretation, by_filter in errors.items()
+            ),
             f"yes: the medians are within a factor of {_ALIKE:g} and below {_LOW:g} px; partly: "
             "within that factor",
         ),
@@ -121,7 +123,8 @@ def _claims(errors: dict[str, Errors]) -> tuple[ex.Claim, ...]:
             "one's",
             f"{_PLACE}, case III",
             tuple(
-                _worse(interpretation, found, "full") for interpretation, found in errors.items()
+                _worse(interpretation, by_filter, "full")
+                for interpretation, by_filter in errors.items()
             ),
             f"yes: its median is at least {_HIGHER:g} times the adaptive one's; partly: above "
             f"{_ALIKE:g} times",
@@ -130,7 +133,7 @@ def _claims(errors: dict[str, Errors]) -> tuple[ex.Claim, ...]:
             "after the occlusion the adaptive filter has the vehicle again, the conventional one "
             "has lost it",
             f"{_PLACE}, case IV",
-            tuple(_lost(interpretation, found) for interpretation, found in errors.items()),
+            tuple(_lost(interpretation, by_filter) for interpretation, by_filter in errors.items()),
             f"yes: below {_LOW:g} px in 80 % of the adaptive one's runs, and in at most 20 % of "
             "the other's; partly: in more of its runs",
         ),
@@ -138,66 +141,76 @@ def _claims(errors: dict[str, Errors]) -> tuple[ex.Claim, ...]:
             f"(not in the paper in numbers) the adaptive filter's median RMSE is at most "
             f"{_AT_MOST:g} times the conventional one's",
             _PLACE,
-            tuple(_no_worse(interpretation, found) for interpretation, found in errors.items()),
+            tuple(
+                _no_worse(interpretation, by_filter) for interpretation, by_filter in errors.items()
+            ),
             f"yes: it is; partly: at most {_ALIKE:g} times",
         ),
     )
 
 
-def _numbers_text(found: Errors, phase: str) -> str:
-    return ", ".join(f"{variant} {median_and_range(of[phase])} px" for variant, of in found.items())
-
-
-def _medians(found: Errors, phase: str) -> tuple[float, float]:
-    """Median RMSE of the conventional and of the adaptive filter in a phase, px."""
-    return (
-        median(found[resampling.CONVENTIONAL][phase]),
-        median(found[resampling.ADAPTIVE][phase]),
+def _numbers_text(by_filter: Errors, phase: str) -> str:
+    return ", ".join(
+        f"{variant} {median_and_range(by_phase[phase])} px"
+        for variant, by_phase in by_filter.items()
     )
 
 
-def _both_low(interpretation: str, found: Errors, phase: str) -> ex.Finding:
-    low = [value < _LOW for value in _medians(found, phase)]
-    return ex.Finding(interpretation, ex.Holds.of(all(low), any(low)), _numbers_text(found, phase))
+def _medians(by_filter: Errors, phase: str) -> tuple[float, float]:
+    """Median RMSE of the conventional and of the adaptive filter in a phase, px."""
+    return (
+        median(by_filter[resampling.CONVENTIONAL][phase]),
+        median(by_filter[resampling.ADAPTIVE][phase]),
+    )
 
 
-def _alike(interpretation: str, found: Errors) -> ex.Finding:
-    pair = _medians(found, "partial")
+def _both_low(interpretation: str, by_filter: Errors, phase: str) -> ex.Finding:
+    low = [value < _LOW for value in _medians(by_filter, phase)]
+    return ex.Finding(
+        interpretation, ex.Holds.of(all(low), any(low)), _numbers_text(by_filter, phase)
+    )
+
+
+def _alike(interpretation: str, by_filter: Errors) -> ex.Finding:
+    pair = _medians(by_filter, "partial")
     alike = max(pair) <= _ALIKE * min(pair)
     return ex.Finding(
         interpretation,
         ex.Holds.of(alike and max(pair) < _LOW, alike),
-        _numbers_text(found, "partial"),
+        _numbers_text(by_filter, "partial"),
     )
 
 
-def _worse(interpretation: str, found: Errors, phase: str) -> ex.Finding:
-    conventional, adaptive = _medians(found, phase)
+def _worse(interpretation: str, by_filter: Errors, phase: str) -> ex.Finding:
+    conventional, adaptive = _medians(by_filter, phase)
     return ex.Finding(
         interpretation,
         ex.Holds.of(conventional >= _HIGHER * adaptive, conventional > _ALIKE * adaptive),
-        _numbers_text(found, phase),
+        _numbers_text(by_filter, phase),
     )
 
 
-def _lost(interpretation: str, found: Errors) -> ex.Finding:
-    back = {variant: [value < _LOW for value in of["after"]] for variant, of in found.items()}
+def _lost(interpretation: str, by_filter: Errors) -> ex.Finding:
+    back = {
+        variant: [value < _LOW for value in by_phase["after"]]
+        for variant, by_phase in by_filter.items()
+    }
     ours, others = (sum(back[s]) for s in (resampling.ADAPTIVE, resampling.CONVENTIONAL))
     runs = len(back[resampling.ADAPTIVE])
     return ex.Finding(
         interpretation,
         ex.Holds.of(ours >= 0.8 * runs and others <= 0.2 * runs, ours > others),
-        f"{_numbers_text(found, 'after')}; below {_LOW:g} px in {ours} of {runs} runs of adaptive "
-        f"and {others} of conventional",
+        f"{_numbers_text(by_filter, 'after')}; below {_LOW:g} px in {ours} of {runs} runs of "
+        f"adaptive and {others} of conventional",
     )
 
 
-def _no_worse(interpretation: str, found: Errors) -> ex.Finding:
-    conventional, adaptive = _medians(found, "all")
+def _no_worse(interpretation: str, by_filter: Errors) -> ex.Finding:
+    conventional, adaptive = _medians(by_filter, "all")
     return ex.Finding(
         interpretation,
         ex.Holds.of(adaptive <= _AT_MOST * conventional, adaptive <= _ALIKE * conventional),
-        f"{_numbers_text(found, 'all')}: {adaptive / conventional:.2f} times",
+        f"{_numbers_text(by_filter, 'all')}: {adaptive / conventional:.2f} times",
     )
 
 

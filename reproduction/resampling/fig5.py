@@ -66,7 +66,7 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
 
 
 def _means(results: ex.Results, size: ex.Size, interpretation: str, scalar: str) -> Means:
-    found: Means = {}
+    by_filter: Means = {}
     view = resampling.VIEWS[interpretation]
     for system in view.pair:
         values: dict[str, list[float]] = {name: [] for name in resampling.PHASES}
@@ -75,8 +75,8 @@ def _means(results: ex.Results, size: ex.Size, interpretation: str, scalar: str)
             scored = resampling.run_scores(results, view, system, seed)
             for name, chosen in resampling.phases(scored).items():
                 values[name] += [column[index] for index in chosen]
-        found[system.variant] = {name: fmean(of) for name, of in values.items()}
-    return found
+        by_filter[system.variant] = {name: fmean(of) for name, of in values.items()}
+    return by_filter
 
 
 def _figure(results: ex.Results, size: ex.Size) -> Figure:
@@ -141,14 +141,16 @@ def _claims(
             f"once the vehicle is hidden the conventional filter takes all {_MOST_PASSES} passes, "
             "and goes on to when it can be seen again",
             _PLACE,
-            tuple(_endless(interpretation, found) for interpretation, found in passes.items()),
+            tuple(
+                _endless(interpretation, by_filter) for interpretation, by_filter in passes.items()
+            ),
             f"yes: the means while hidden and after are 95 % of {_MOST_PASSES} passes, and more "
             "than before; partly: one of them is 95 %",
         ),
         ex.Claim(
             "the adaptive filter's passes stay few in all phases",
             _PLACE,
-            tuple(_few(interpretation, found) for interpretation, found in passes.items()),
+            tuple(_few(interpretation, by_filter) for interpretation, by_filter in passes.items()),
             f"yes: at most {_LOW:g} a frame (mean); partly: in one phase",
         ),
         ex.Claim(
@@ -188,8 +190,8 @@ def _fewer(interpretation: str, of_passes: Means, of_particles: Means) -> ex.Fin
     return ex.Finding(interpretation, ex.Holds.of(all(less), any(less)), parts)
 
 
-def _endless(interpretation: str, found: Means) -> ex.Finding:
-    own = found[resampling.CONVENTIONAL]
+def _endless(interpretation: str, by_filter: Means) -> ex.Finding:
+    own = by_filter[resampling.CONVENTIONAL]
     full = [own[name] >= 0.95 * _MOST_PASSES for name in ("full", "after")]
     rises = own["full"] > own["before"]
     parts = ", ".join(f"{name} {own[name]:.1f}" for name in resampling.PHASES)
@@ -198,8 +200,8 @@ def _endless(interpretation: str, found: Means) -> ex.Finding:
     )
 
 
-def _few(interpretation: str, found: Means) -> ex.Finding:
-    own = found[resampling.ADAPTIVE]
+def _few(interpretation: str, by_filter: Means) -> ex.Finding:
+    own = by_filter[resampling.ADAPTIVE]
     few = [own[name] <= _LOW for name in resampling.PHASES]
     parts = ", ".join(f"{name} {own[name]:.1f}" for name in resampling.PHASES)
     return ex.Finding(interpretation, ex.Holds.of(all(few), any(few)), f"passes a frame: {parts}")
@@ -210,7 +212,7 @@ def _around(
 ) -> Mapping[str, tuple[float, float]]:
     """Mean of the particles resampled a frame up to the rise, and after it, by filter."""
     view = resampling.VIEWS[interpretation]
-    found = {}
+    by_filter = {}
     for system in view.pair:
         runs = [
             resampling.trace(results, view, system, seed)["resampled_particles"]
@@ -219,14 +221,15 @@ def _around(
         # The first frame has no step.
         before = fmean(value for run in runs for value in run[1:_RISE])
         after = fmean(value for run in runs for value in run[_RISE : _RISE + _AFTER])
-        found[system.variant] = before, after
-    return found
+        by_filter[system.variant] = before, after
+    return by_filter
 
 
-def _rises(interpretation: str, found: Mapping[str, tuple[float, float]]) -> ex.Finding:
-    higher = [after >= _MORE * before for before, after in found.values()]
+def _rises(interpretation: str, by_filter: Mapping[str, tuple[float, float]]) -> ex.Finding:
+    higher = [after >= _MORE * before for before, after in by_filter.values()]
     parts = ", ".join(
-        f"{variant} {before:.0f}, then {after:.0f}" for variant, (before, after) in found.items()
+        f"{variant} {before:.0f}, then {after:.0f}"
+        for variant, (before, after) in by_filter.items()
     )
     return ex.Finding(
         interpretation, ex.Holds.of(all(higher), any(higher)), f"particles a frame: {parts}"

@@ -70,10 +70,10 @@ def report(results: ex.Results, size: ex.Size) -> ex.Report:
 
 def _middles(scored: Scores) -> list[int]:
     """Return the index of the middle frame of each phase; of the last one the end."""
-    found = resampling.phases(scored)
+    phases = resampling.phases(scored)
     return [
-        *(found[name][len(found[name]) // 2] for name in resampling.PHASES[:-1]),
-        found["after"][-1],
+        *(phases[name][len(phases[name]) // 2] for name in resampling.PHASES[:-1]),
+        phases["after"][-1],
     ]
 
 

@@ -134,19 +134,19 @@ def cell(view: View, system: System, seed: int) -> RunCell:
 
 def cells(size: Size) -> list[RunCell]:
     """Run both filters in every view, with every seed."""
-    found = [
+    all_cells = [
         cell(view, system, seed)
         for view in VIEWS.values()
         for system in view.pair
         for seed in size.seeds
     ]
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(all_cells))
 
 
 def run_scores(results: Results, view: View, system: System, seed: int) -> Scores:
     """Score one run against the truth again."""
-    found = cell(view, system, seed)
-    return scores(found, results[found])
+    run = cell(view, system, seed)
+    return scores(run, results[run])
 
 
 def trace(results: Results, view: View, system: System, seed: int) -> Mapping[str, list[Any]]:
@@ -172,8 +172,8 @@ def phases(scored: Scores) -> dict[str, list[int]]:
 
 
 def _visible(truth: Truth | None) -> float:
-    found = None if truth is None else truth.visible_fraction
-    return 1.0 if found is None else found
+    fraction = None if truth is None else truth.visible_fraction
+    return 1.0 if fraction is None else fraction
 
 
 def resampled(results: Results, view: View, system: System, seed: int) -> int:
@@ -195,7 +195,7 @@ def data(results: Results, size: Size) -> DataTable:
             for seed in size.seeds:
                 scored = run_scores(results, view, system, seed)
                 phase_of = {i: name for name, of in phases(scored).items() for i in of}
-                found = trace(results, view, system, seed)
+                scalars = trace(results, view, system, seed)
                 rows += [
                     (
                         interpretation,
@@ -204,10 +204,10 @@ def data(results: Results, size: Size) -> DataTable:
                         index + 1,
                         phase_of.get(index),
                         frame.error,
-                        found["n_eff"][index],
-                        found["resampling_passes"][index],
-                        found["resampled_particles"][index],
-                        found["regime"][index],
+                        scalars["n_eff"][index],
+                        scalars["resampling_passes"][index],
+                        scalars["resampled_particles"][index],
+                        scalars["regime"][index],
                     )
                     for index, frame in enumerate(scored.frames)
                 ]

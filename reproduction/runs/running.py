@@ -37,7 +37,7 @@ def cell_key(cell: Cell) -> str:
 def code_digest() -> str:
     """Digest the code that any experiment depends on: all here, and the papers' trackers'."""
     inside = pkgutil.iter_modules(reproduction.__path__, f"{reproduction.__name__}.")
-    folders = {found.name for found in inside if found.ispkg}
+    folders = {module.name for module in inside if module.ispkg}
     return source_digest(
         frozenset({*folders, *_OF_EVERY_RUN, experiment.__name__, shared.__name__})
     )
