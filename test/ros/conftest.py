@@ -21,6 +21,7 @@ from pathlib import Path
 
 import pytest
 from built_messages import TF2, VISION, build, missing
+from loaded_python import Forked, LoadedPython
 
 try:
     import rclpy
@@ -173,17 +174,31 @@ def other_bench(ros_domain):
     yield from _bench(ros_domain)
 
 
+def settings(**environment: str) -> dict[str, str]:
+    """Return the environment of a child process, which imports the package from here."""
+    paths = filter(None, [str(ROOT), os.environ.get("PYTHONPATH")])
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths), **environment}
+
+
 class Process:
     """A child process whose output is kept in a file."""
 
     def __init__(self, command: list[str], log: Path, **environment: str) -> None:
         self.log = log
-        paths = filter(None, [str(ROOT), os.environ.get("PYTHONPATH")])
-        settings = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), **environment}
+        self.popen: subprocess.Popen | Forked
         with log.open("w") as output:
             self.popen = subprocess.Popen(
-                command, stdout=output, stderr=subprocess.STDOUT, env=settings
+                command, stdout=output, stderr=subprocess.STDOUT, env=settings(**environment)
             )
+
+    @classmethod
+    def forked(cls, python: LoadedPython, code: str, arguments: list[str], log: Path) -> Process:
+        """Run `python -c CODE ARGUMENTS` where ROS and the package are loaded."""
+        process = cls.__new__(cls)
+        process.log = log
+        with log.open("w") as output:
+            process.popen = python.run(code, arguments, settings(), output)
+        return process
 
     @property
     def output(self) -> str:
@@ -216,16 +231,33 @@ class Process:
             self.popen.wait()
 
 
-@pytest.fixture
-def start_process(ros_domain, tmp_path):
-    """Return a function that runs a command (after this Python) until the test ends."""
+@pytest.fixture(scope="session")
+def loaded_python(ros_domain, hangups):
+    """The process that the others are forked from."""
     if rclpy is None:
         pytest.skip(NO_ROS)
+    python = LoadedPython(settings())
+    yield python
+    python.close()
+
+
+@pytest.fixture
+def start_process(loaded_python, tmp_path):
+    """Return a function that runs a command (after this Python) until the test ends.
+
+    `-c CODE` runs in a fork that has the package loaded; `fresh=True` or an environment of its own
+    starts a Python for it.
+    """
     started: list[Process] = []
 
-    def start(*arguments: str, **environment: str) -> Process:
+    def start(*arguments: str, fresh: bool = False, **environment: str) -> Process:
         log = tmp_path / f"process{len(started)}.log"
-        started.append(Process([sys.executable, *arguments], log, **environment))
+        option, *words = arguments
+        if option == "-c" and not fresh and not environment:
+            code, *words = words
+            started.append(Process.forked(loaded_python, code, words, log))
+        else:
+            started.append(Process([sys.executable, *arguments], log, **environment))
         return started[-1]
 
     yield start
@@ -237,13 +269,13 @@ def start_process(ros_domain, tmp_path):
 def start_node(start_process):
     """Return a function that runs the executable of a variant: `start_node("apf", "-p", ...)`."""
 
-    def start(variant: str, *ros_arguments: str, **environment: str) -> Process:
+    def start(variant: str, *ros_arguments: str, fresh=False, **environment: str) -> Process:
         code = (
             "from vehicle_pf_tracker.ros.executables import main;"
             f"raise SystemExit(main({variant!r}))"
         )
         words = ["--ros-args", *ros_arguments] if ros_arguments else []
-        return start_process("-c", code, *words, **environment)
+        return start_process("-c", code, *words, fresh=fresh, **environment)
 
     return start
 
