@@ -54,9 +54,10 @@ ifdef PYTEST_ARGS
 test: .venv/installed
 	$(RUN) $(PYTEST_ARGS)
 else
-# What takes a few seconds or less, without coverage.
+# What takes a few seconds or less, without coverage. On cores that three parts share, threads of OpenCV's
+# would spin for each other; test_thread_counts.py sets its own numbers, and test-all takes the machine's.
 test: .venv/installed kernels  ## the fast tests, or PYTEST_ARGS="test/core …"
-	$(MAKE) --no-print-directory --jobs=3 --keep-going $(PARTS)
+	OPENCV_FOR_THREADS_NUM=1 $(MAKE) --no-print-directory --jobs=3 --keep-going $(PARTS)
 endif
 
 # Everything, with branch coverage; the slow tests try every way to install, colcon's too.
