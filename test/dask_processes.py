@@ -6,6 +6,7 @@
 import os
 import subprocess
 import sys
+import time
 from contextlib import ExitStack, contextmanager
 
 import pytest
@@ -57,3 +58,12 @@ def workers(address, folder, count):
         with distributed.Client(address, timeout=WAIT, set_as_default=False) as client:
             client.wait_for_workers(count, timeout=WAIT)
         yield children
+
+
+def wait_until_missed(address):
+    """Wait until the scheduler knows of no worker."""
+    deadline = time.monotonic() + WAIT
+    with distributed.Client(address, timeout=WAIT, set_as_default=False) as client:
+        while client.nthreads():
+            assert time.monotonic() < deadline, "the scheduler still has workers"
+            time.sleep(0.02)

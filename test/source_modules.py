@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -46,6 +47,12 @@ def read_modules(source: Path) -> dict[str, Module]:
         tree = ast.parse(path.read_text(encoding="utf-8"), str(path))
         modules[name] = Module(name, path, tree, list(imports_of(tree, package)))
     return modules
+
+
+@functools.cache
+def own_modules() -> dict[str, Module]:
+    """Parse the package, once for all tests that read it."""
+    return read_modules(SOURCE)
 
 
 def imports_of(tree: ast.Module, package: tuple[str, ...]) -> Iterator[Import]:

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from source_modules import SOURCE, Module, made_up, read_modules
+from source_modules import Module, made_up, own_modules
 from test_walls import ROS
 
 INTERNALS = "ros.rclpy_internals"
@@ -63,7 +63,7 @@ def is_private(name: str) -> bool:
 
 @pytest.fixture(scope="module")
 def modules() -> dict[str, Module]:
-    return read_modules(SOURCE)
+    return own_modules()
 
 
 def test_private_parts_of_rclpy_are_named_in_one_module(modules):

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from dask_processes import scheduler, workers
+from dask_processes import scheduler, wait_until_missed, workers
 from evaluation_samples import here, make_plan, results, silent, system, write_recordings
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -18,10 +18,17 @@ from vehicle_pf_tracker.workers import cluster
 from vehicle_pf_tracker.workers.cluster import call_if_alike, fingerprint, run_on_cluster
 
 
-@pytest.fixture
-def address(tmp_path):
-    with scheduler(tmp_path / "scheduler") as (found, _):
+@pytest.fixture(scope="module")
+def running_scheduler(tmp_path_factory):
+    with scheduler(tmp_path_factory.mktemp("cluster") / "scheduler") as (found, _):
         yield found
+
+
+@pytest.fixture
+def address(running_scheduler):
+    """A scheduler without workers, as it has to be again before the next test."""
+    yield running_scheduler
+    wait_until_missed(running_scheduler)
 
 
 @pytest.fixture
