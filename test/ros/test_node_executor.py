@@ -136,6 +136,55 @@ def test_a_timer_runs_while_messages_flow(served):
         served.hear_one()
 
 
+def test_a_timer_needs_no_wait_for_everything(served, clock):
+    ticks = []
+    served.hear_one()
+    timer = served.node.create_timer(0.01, lambda: ticks.append(1))
+    assert not served.waits_for_all()
+    assert ticks == [1]
+    timer.cancel()
+    time.sleep(0.02)
+    rclpy_internals.run_timer(timer)
+    served.node.destroy_timer(timer)
+    rclpy_internals.run_timer(timer)
+    assert ticks == [1]
+
+
+def test_services_are_left_out_between_looks_for_requests(served, clock, monkeypatch):
+    looks = []
+    wait = rclpy_internals.EntityWait.wait
+
+    def record(self, seconds, *, for_requests):
+        looks.append(for_requests)
+        return wait(self, seconds, for_requests=for_requests)
+
+    monkeypatch.setattr(rclpy_internals.EntityWait, "wait", record)
+    served.hear_one()
+    served.hear_one()
+    looks.clear()
+    served.hear_one()
+    assert not any(looks)
+    clock[0] += node_executor.REQUESTS_EVERY
+    served.hear_one()
+    assert looks[-1]
+    # Once a request came, each wait is for the next one, too.
+    served.client.call_async(Trigger.Request())
+    clock[0] += node_executor.REQUESTS_EVERY
+    served.spin_until(lambda: served.asked)
+    looks.clear()
+    served.hear_one()
+    assert all(looks)
+
+
+def test_a_request_ends_a_silence_between_messages(served, clock):
+    served.hear_one()
+    served.hear_one()
+    served.client.call_async(Trigger.Request())
+    served.executor.spin_once()  # for messages alone
+    served.executor.spin_once()
+    assert served.asked == 1
+
+
 def test_everything_is_looked_at_once_in_a_while(served, clock):
     served.hear_one()
     clock[0] += node_executor.LOOK_EVERY

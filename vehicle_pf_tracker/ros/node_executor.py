@@ -5,7 +5,8 @@
 
 For each callback, rclpy's own puts every entity of all nodes into a new wait set, and then into
 another, since its task wakes the executor: a managed node has over a dozen services and two dozen
-event handlers. That costs more than all that a node does with an image besides tracking.
+event handlers. That costs more than all that a node does with an image besides tracking, and a
+process of several nodes pays for those of all with each image.
 
 rclpy's executor of events costs as little, but its 7.1.6 fails on callbacks that take a message's
 info (SystemError), from which dropped images are counted; and without a time-out it returns at
@@ -18,12 +19,22 @@ import time
 
 from rclpy.context import Context
 from rclpy.executors import Executor, SingleThreadedExecutor
+from rclpy.node import Node
 
-from vehicle_pf_tracker.ros.rclpy_internals import EntityWait, can_wait_for_entities, run_callback
+from vehicle_pf_tracker.ros.rclpy_internals import (
+    EntityWait,
+    ReadyEntities,
+    can_wait_for_entities,
+    run_callback,
+    run_timer,
+)
 
 LOOK_EVERY = 0.5
 """Longest time in s that an event, or the end of the process, waits while messages flow. To wait
 for everything costs about half a millisecond, of which one image more or less is not seen."""
+REQUESTS_EVERY = 0.1
+"""Longest time in s that a first request waits while messages flow: not felt by who asks. A node
+has 13 services, and to wait for those of eight nodes costs more than to wait for their images."""
 
 
 def node_executor() -> Executor:
@@ -32,10 +43,11 @@ def node_executor() -> Executor:
 
 
 class MessageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
-    """A single thread that waits for messages, timers and requests alone while messages flow.
+    """A single thread that waits for messages and timers alone while messages flow.
 
-    Every `LOOK_EVERY` s, and after a silence as long, it waits for everything, as its base does.
-    The callbacks of subscriptions have to be plain functions, no coroutines.
+    Requests are looked for every `REQUESTS_EVERY` s, and with each message once one came. Every
+    `LOOK_EVERY` s, and after a silence as long, it waits for everything, as its base does. The
+    callbacks of subscriptions and timers have to be plain functions, no coroutines.
 
     Parameters
     ----------
@@ -44,10 +56,28 @@ class MessageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
     """
 
     def __init__(self, *, context: Context | None = None) -> None:
+        # Before the base, which may call `wake`.
+        self._wait: EntityWait | None = None
         super().__init__(context=context)
-        self._wait = EntityWait(self.context)
         self._is_flowing = False
         self._look_at = 0.0
+        self._requests_at = 0.0
+        self._asked_until = 0.0
+
+    def wake(self) -> None:
+        """Note that entities were made or destroyed, as nodes say by it."""
+        self._wait = None
+        super().wake()
+
+    def add_node(self, node: Node) -> bool:
+        """Run the callbacks of a node."""
+        self._wait = None
+        return bool(super().add_node(node))
+
+    def remove_node(self, node: Node) -> None:
+        """Leave the callbacks of a node to others."""
+        self._wait = None
+        super().remove_node(node)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait for callbacks and run them; without a timeout it may return without any."""
@@ -60,9 +90,29 @@ class MessageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
         if now >= self._look_at:
             self._look_at = now + LOOK_EVERY
             super().spin_once(0.0)
-        messages, has_others = self._wait.wait(self.get_nodes(), LOOK_EVERY)
-        for subscription in messages:
+        for_requests = now >= self._requests_at
+        ready = self._run_ready(for_requests=for_requests)
+        if ready.has_requests:
+            self._asked_until = now + LOOK_EVERY
+        is_silent = not any(ready)
+        if for_requests:
+            self._is_flowing = not is_silent
+            if now >= self._asked_until:
+                self._requests_at = now + REQUESTS_EVERY
+        elif is_silent:
+            self._requests_at = now
+
+    def _run_ready(self, *, for_requests: bool) -> ReadyEntities:
+        """Wait, and run what is ready: messages and timers, and one request."""
+        if self._wait is None:
+            self._wait = EntityWait(self.context, self.get_nodes())
+        longest = LOOK_EVERY if for_requests else REQUESTS_EVERY
+        ready = self._wait.wait(longest, for_requests=for_requests)
+        for subscription in ready.subscriptions:
             run_callback(subscription)
-        if has_others:  # one at a time: images wait for it no longer than for rclpy's own executor
+        for timer in ready.timers:
+            run_timer(timer)
+        if ready.has_requests:
+            # One at a time: images wait for it no longer than for rclpy's own executor.
             super().spin_once(0.0)
-        self._is_flowing = bool(messages) or has_others
+        return ready

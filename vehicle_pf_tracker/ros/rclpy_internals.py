@@ -10,8 +10,8 @@ Tried with rclpy 7.1.6 (Jazzy) and 9.1.2 (Kilted).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar
 
 import rclpy.impl.implementation_singleton
 from rclpy.context import Context
@@ -19,6 +19,7 @@ from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
 from rclpy.service import Service
 from rclpy.subscription import Subscription
+from rclpy.timer import Timer
 
 _compiled: Any = getattr(rclpy.impl.implementation_singleton, "rclpy_implementation", None)
 
@@ -54,6 +55,8 @@ def state_machine(node: LifecycleNode) -> Any | None:
     return machine if hasattr(machine, "current_state") else None
 
 
+EntityT = TypeVar("EntityT")
+
 _InvalidHandle: type[Exception] = getattr(_compiled, "InvalidHandle", RuntimeError)
 _WAIT_METHODS = (
     "add_service",
@@ -64,14 +67,37 @@ _WAIT_METHODS = (
     "wait",
 )
 """Methods of rclpy's compiled wait set that `EntityWait` calls."""
+_TIMER_METHODS = ("call_timer", "is_timer_ready")
+"""Methods of rclpy's compiled timers that `run_timer` calls."""
 
 
 def can_wait_for_entities() -> bool:
-    """Return whether `EntityWait` and `run_callback` work with this rclpy."""
+    """Return whether `EntityWait`, `run_callback` and `run_timer` work with this rclpy."""
     wait_set = getattr(_compiled, "WaitSet", None)
+    timer = getattr(_compiled, "Timer", None)
     take = getattr(getattr(_compiled, "Subscription", None), "take_message", None)
     has_kinds = hasattr(getattr(Subscription, "CallbackType", None), "MessageOnly")
-    return take is not None and has_kinds and all(hasattr(wait_set, name) for name in _WAIT_METHODS)
+    has_methods = all(hasattr(wait_set, name) for name in _WAIT_METHODS)
+    has_methods &= all(hasattr(timer, name) for name in _TIMER_METHODS)
+    return take is not None and has_kinds and has_methods
+
+
+class ReadyEntities(NamedTuple):
+    """Entities that are ready.
+
+    Attributes
+    ----------
+    subscriptions : list of Subscription
+        Those with a message, in the order of the nodes.
+    timers : list of Timer
+        Those that are due.
+    has_requests : bool
+        True where a service has a request.
+    """
+
+    subscriptions: list[Subscription]
+    timers: list[Timer]
+    has_requests: bool
 
 
 class EntityWait:
@@ -81,45 +107,57 @@ class EntityWait:
     ----------
     context : Context
         That of the nodes.
+    nodes : sequence of Node
+        As they are now: once entities were made or destroyed, another `EntityWait` is needed.
     """
 
-    def __init__(self, context: Context) -> None:
-        self._context = context
-        self._counts: tuple[int, int, int] | None = None
-        self._wait_set: Any = None
+    def __init__(self, context: Context, nodes: Sequence[Node]) -> None:
+        self._subscriptions = {one.handle: one for node in nodes for one in node.subscriptions}
+        self._timers = {one.handle: one for node in nodes for one in node.timers}
+        self._services = [one.handle for node in nodes for one in node.services]
+        counts = len(self._subscriptions), 0, len(self._timers), 0, len(self._services), 0
+        # Without any entity there is nothing to wait for, which rcl takes for a mistake.
+        self._wait_set = _compiled.WaitSet(*counts, context.handle) if any(counts) else None
 
-    def wait(self, nodes: Sequence[Node], seconds: float) -> tuple[list[Subscription], bool]:
-        """Wait until something is ready.
-
-        Returns
-        -------
-        list of Subscription, bool
-            Those that are ready; and whether timers or services are.
-        """
-        subscriptions = [one for node in nodes for one in node.subscriptions]
-        timers = [one for node in nodes for one in node.timers]
-        services = [one for node in nodes for one in node.services]
-        counts = len(subscriptions), len(timers), len(services)
-        if not any(counts):
-            return [], False
-        if counts != self._counts:
-            self._counts = counts
-            self._wait_set = _compiled.WaitSet(
-                counts[0], 0, counts[1], 0, counts[2], 0, self._context.handle
-            )
+    def wait(self, seconds: float, *, for_requests: bool) -> ReadyEntities:
+        """Wait until something is ready; services are left out unless `for_requests`."""
         wait_set = self._wait_set
+        if wait_set is None:
+            return ReadyEntities([], [], has_requests=False)
         wait_set.clear_entities()  # rcl takes those out that are not ready
-        for subscription in subscriptions:
-            wait_set.add_subscription(subscription.handle)
-        for timer in timers:
-            wait_set.add_timer(timer.handle)
-        for service in services:
-            wait_set.add_service(service.handle)
+        for subscription in self._subscriptions:
+            wait_set.add_subscription(subscription)
+        for timer in self._timers:
+            wait_set.add_timer(timer)
+        if for_requests:
+            for service in self._services:
+                wait_set.add_service(service)
         wait_set.wait(round(seconds * 1e9))
-        ready = wait_set.get_ready_entities("subscription")
-        has_others = wait_set.get_ready_entities("timer") or wait_set.get_ready_entities("service")
-        messages = [one for one in subscriptions if one.handle.pointer in ready] if ready else []
-        return messages, bool(has_others)
+        has_requests = for_requests and bool(wait_set.get_ready_entities("service"))
+        return ReadyEntities(
+            _ready(self._subscriptions, wait_set.get_ready_entities("subscription")),
+            _ready(self._timers, wait_set.get_ready_entities("timer")),
+            has_requests,
+        )
+
+
+def _ready(entities: Mapping[Any, EntityT], pointers: Sequence[int]) -> list[EntityT]:
+    """Return the entities, by their handles, that rcl lists as ready."""
+    if not pointers:
+        return []
+    return [one for handle, one in entities.items() if handle.pointer in pointers]
+
+
+def run_timer(timer: Timer) -> None:
+    """Call back a timer that is due; rcl lists those too that were cancelled meanwhile."""
+    try:
+        with timer.handle:
+            if not timer.handle.is_timer_ready():
+                return
+            timer.handle.call_timer()
+    except _InvalidHandle:  # a callback before has destroyed it
+        return
+    timer.callback()
 
 
 def run_callback(subscription: Subscription) -> None:
