@@ -10,8 +10,8 @@ Tried with rclpy 7.1.6 (Jazzy) and 9.1.2 (Kilted).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple, TypeVar
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import rclpy.impl.implementation_singleton
 from rclpy.context import Context
@@ -54,8 +54,6 @@ def state_machine(node: LifecycleNode) -> Any | None:
     machine = getattr(node, "_state_machine", None)
     return machine if hasattr(machine, "current_state") else None
 
-
-EntityT = TypeVar("EntityT")
 
 _InvalidHandle: type[Exception] = getattr(_compiled, "InvalidHandle", RuntimeError)
 _WAIT_METHODS = (
@@ -112,8 +110,13 @@ class EntityWait:
     """
 
     def __init__(self, context: Context, nodes: Sequence[Node]) -> None:
-        self._subscriptions = {one.handle: one for node in nodes for one in node.subscriptions}
-        self._timers = {one.handle: one for node in nodes for one in node.timers}
+        # By what rcl lists ready ones by.
+        self._subscriptions = {
+            one.handle.pointer: one for node in nodes for one in node.subscriptions
+        }
+        self._timers = {one.handle.pointer: one for node in nodes for one in node.timers}
+        self._subscription_handles = [one.handle for one in self._subscriptions.values()]
+        self._timer_handles = [one.handle for one in self._timers.values()]
         self._services = [one.handle for node in nodes for one in node.services]
         counts = len(self._subscriptions), 0, len(self._timers), 0, len(self._services), 0
         # Without any entity there is nothing to wait for, which rcl takes for a mistake.
@@ -125,9 +128,9 @@ class EntityWait:
         if wait_set is None:
             return ReadyEntities([], [], has_requests=False)
         wait_set.clear_entities()  # rcl takes those out that are not ready
-        for subscription in self._subscriptions:
+        for subscription in self._subscription_handles:
             wait_set.add_subscription(subscription)
-        for timer in self._timers:
+        for timer in self._timer_handles:
             wait_set.add_timer(timer)
         if for_requests:
             for service in self._services:
@@ -135,17 +138,10 @@ class EntityWait:
         wait_set.wait(round(seconds * 1e9))
         has_requests = for_requests and bool(wait_set.get_ready_entities("service"))
         return ReadyEntities(
-            _ready(self._subscriptions, wait_set.get_ready_entities("subscription")),
-            _ready(self._timers, wait_set.get_ready_entities("timer")),
+            [self._subscriptions[one] for one in wait_set.get_ready_entities("subscription")],
+            [self._timers[one] for one in wait_set.get_ready_entities("timer")],
             has_requests,
         )
-
-
-def _ready(entities: Mapping[Any, EntityT], pointers: Sequence[int]) -> list[EntityT]:
-    """Return the entities, by their handles, that rcl lists as ready."""
-    if not pointers:
-        return []
-    return [one for handle, one in entities.items() if handle.pointer in pointers]
 
 
 def run_timer(timer: Timer) -> None:

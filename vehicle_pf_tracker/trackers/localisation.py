@@ -33,6 +33,8 @@ class Localisation:
     ----------
     parameters : RoadParameters
         Mapping to the road in use.
+    has_road : bool
+        True where a mapping to the road is asked for; read with each image.
     road : RoadEstimate or None
         Last position on the road; None where there is none, for the reason `objection`.
     objection : str
@@ -46,20 +48,17 @@ class Localisation:
         self._lens = parameters.lens
         self._pose = parameters.pose
         self.parameters = parameters
+        self.has_road = parameters.is_set
         self._follower: RoadFollower | None = None
         self.road: RoadEstimate | None = None
         self.objection = ""
         self._take_plane()
 
-    @property
-    def has_road(self) -> bool:
-        """True where a mapping to the road is asked for."""
-        return self.parameters.is_set
-
     def reconfigure(self, parameters: RoadParameters) -> None:
         """Take another mapping to the road; lens and pose that came from outside are kept."""
         before = self.parameters
         self.parameters = parameters
+        self.has_road = parameters.is_set
         # A lens of another source is another lens.
         if not (before.from_camera_info and parameters.from_camera_info):
             self._lens = parameters.lens
