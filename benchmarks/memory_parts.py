@@ -34,17 +34,25 @@ def parts() -> Sequence[tuple[str, Callable[[], object]]]:
     """Return what a node of `apf` loads, in its order; what is not installed is left out."""
     modules = ("numpy", "cv2", "rclpy.node", "llvmlite.binding")
     loads = [(f"`{name}`", importer(name)) for name in modules if has(name)]
-    return [*loads, ("kernels and step of `apf`", step)]
+    last = [("kernels and step of `apf`", step), ("LLVM's pages, given back", give_back)]
+    return [*loads, *last]
 
 
 def step() -> None:
     """Load or compile the kernels of `apf`, and step it."""
-    # Not at the top: what these import belongs to the rows that come before.
+    # Not at the top: what these import belongs to this row.
     from vehicle_pf_tracker.trackers.registry import VARIANTS  # noqa: PLC0415
     from vehicle_pf_tracker.trackers.rehearsal import rehearse  # noqa: PLC0415
 
     variant = VARIANTS["apf"]
     rehearse(variant, variant.parameters())
+
+
+def give_back() -> None:
+    """Give back what a node gives back once its kernels are linked."""
+    from vehicle_pf_tracker.ros.library_memory import give_back_library  # noqa: PLC0415
+
+    give_back_library("libllvmlite")
 
 
 def has(name: str) -> bool:

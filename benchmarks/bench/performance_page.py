@@ -41,8 +41,9 @@ on real video.
 _MEMORY_PARTS = """
 `python -m benchmarks.memory_parts` prints what a node's memory is made of. Compiled kernels are
 linked by LLVM, without numba; a start that has to compile them imports numba, which keeps another
-100 MB until the next start. More than a half of a node's memory is code of libraries, which all
-nodes of a machine share.
+100 MB until the next start. Once they are linked, a node gives the pages of LLVM's library back,
+some 45 MB. All nodes of a machine share them, so that eight nodes save little more than one does.
+Half of what is left is code of libraries, shared as well.
 """
 _BANDWIDTH = """## Distance from memory bandwidth
 A kernel has to fetch the part of the image that its windows cover; no code is faster than memory

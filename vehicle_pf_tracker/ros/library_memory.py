@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 _SMAPS = Path("/proc/self/smaps")
-_AREA = re.compile(r"^([0-9a-f]+)-([0-9a-f]+) (\S+) .*/(.*)\n((?:\w+:.*\n)+)", re.MULTILINE)
-"""An area of a file there: addresses, permissions, file's name, and lines of sizes."""
+_AREA = r"^([0-9a-f]+)-([0-9a-f]+) (\S+) .*/{}.*\n((?:\w+:.*\n)+)"
+"""An area of a file there: addresses, permissions, and lines of sizes; to be given its name."""
 _SIZE = re.compile(r"(\w+): +(\d+) kB")
 
 
@@ -66,10 +66,10 @@ def give_back_library(name: str) -> int:
 
 def _unchanged_areas(name: str) -> Iterator[_Area]:
     """List the areas of a library that are as in its file; others would lose what they have."""
-    for match in _AREA.finditer(_SMAPS.read_text()):
-        start, end, permissions, file, lines = match.groups()
+    area = re.compile(_AREA.format(re.escape(name)), re.MULTILINE)
+    for match in area.finditer(_SMAPS.read_text()):
+        start, end, permissions, lines = match.groups()
         sizes = {key: int(size) for key, size in _SIZE.findall(lines)}
         # What the loader has changed, and then made read-only, is anonymous, or swapped out.
-        is_changed = "w" in permissions or sizes["Anonymous"] > 0 or sizes["Swap"] > 0
-        if file.startswith(name) and not is_changed:
+        if "w" not in permissions and not sizes["Anonymous"] and not sizes["Swap"]:
             yield _Area(int(start, 16), int(end, 16), sizes["Rss"])

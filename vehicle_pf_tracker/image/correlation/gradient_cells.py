@@ -11,6 +11,7 @@ magnitude of a gradient come from tables.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TypeAlias
 
 import numpy as np
@@ -37,13 +38,21 @@ zeros. It does not silence noise: a block of noise with a deviation of one level
 
 _STEPS = np.arange(-255, 256)
 """Differences of two grey levels."""
-_DX, _DY = np.meshgrid(_STEPS, _STEPS)
-DIRECTION_OF: npt.NDArray[np.uint8] = (
-    np.rint(np.arctan2(_DY, _DX) / (2 * np.pi) * DIRECTIONS).astype(int) % DIRECTIONS
-).astype(np.uint8)
-"""Direction by [dy + 255, dx + 255]."""
-MAGNITUDE_OF: npt.NDArray[np.float32] = np.hypot(_DX, _DY).astype(np.float32)
-"""Magnitude in grey levels by [dy + 255, dx + 255]."""
+
+
+@cache
+def direction_of() -> npt.NDArray[np.uint8]:
+    """Return the direction by [dy + 255, dx + 255]; made once, by those who need it."""
+    turns = np.arctan2(_STEPS[:, np.newaxis], _STEPS) / (2 * np.pi)
+    directions = (np.rint(turns * DIRECTIONS).astype(int) % DIRECTIONS).astype(np.uint8)
+    directions.flags.writeable = False
+    return directions
+
+
+@cache
+def _magnitude_of() -> npt.NDArray[np.float32]:
+    """Return the magnitude in grey levels by [dy + 255, dx + 255]."""
+    return np.hypot(_STEPS[:, np.newaxis], _STEPS).astype(np.float32)
 
 
 def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
@@ -75,8 +84,8 @@ def _direction_histograms(grey: Grey) -> npt.NDArray[np.float32]:
     # An 8-bit gradient has 511 x 511 values: two look-ups replace a root and an arctangent.
     at = dy * 511 + dx
     # The nearest direction alone; between cells, where positions are finer, shares are bilinear.
-    direction = DIRECTION_OF.ravel()[at]
-    magnitude = MAGNITUDE_OF.ravel()[at]
+    direction = direction_of().ravel()[at]
+    magnitude = _magnitude_of().ravel()[at]
     first_y, share_y = _cell_shares(grey.shape[0])
     first_x, share_x = _cell_shares(grey.shape[1])
     # One cell more on each side takes what falls beyond the border.

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.image.correlation.gradient_cells import (
-    DIRECTION_OF,
     DIRECTIONS,
     GRADIENT_CELL_PX,
     GRADIENT_CHANNELS,
@@ -18,6 +17,7 @@ from vehicle_pf_tracker.image.correlation.gradient_cells import (
     TRUNCATION,
     CellFeatures,
     Grey,
+    direction_of,
 )
 from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
 
@@ -29,9 +29,6 @@ _BYTES = "Array(uint8, 1, 'C', readonly=True)"
 """The table of directions, flat."""
 _CELLS = "float32[:, :, ::1]"
 """Channels of cells as they are written, (r, channels, c)."""
-
-_DIRECTION_OF = DIRECTION_OF.ravel()
-_DIRECTION_OF.flags.writeable = False
 
 
 @inlined
@@ -222,5 +219,5 @@ def _features(grey: Grey, direction_of: npt.NDArray[np.uint8], channels: int) ->
 
 def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
     """See `gradient_cells.gradient_cells`; `grey` is contiguous."""
-    features = _features(grey, _DIRECTION_OF, GRADIENT_CHANNELS + spare)
+    features = _features(grey, direction_of().ravel(), GRADIENT_CHANNELS + spare)
     return np.asarray(features.transpose(1, 0, 2))
