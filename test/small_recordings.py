@@ -5,34 +5,14 @@
 
 import cv2
 import numpy as np
+from drive import box_of, frame_of, stamp_of, truth_of
 from mcap.writer import CompressionType
 
-from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.recordings.bags import messages
 from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 
 COUNT = 12
 TARGET = "8,24,16,12"
-
-
-def stamp_of(index):
-    return 1_000_000_000 + index * 40_000_000
-
-
-def box_of(index):
-    return Box(8 + 2.0 * index, 24, 16, 12)
-
-
-def frame_of(index):
-    frame = np.random.default_rng(index).integers(90, 120, (64, 96, 3), np.uint8)
-    left = int(box_of(index).x)
-    frame[24:36, left : left + 16] = (200, 30, 30)
-    return frame
-
-
-def truth_of(index):
-    return Truth(stamp_of(index), box_of(index), Occlusion.NONE, 1.0)
 
 
 def record(folder, *, truths=range(COUNT), count=COUNT, compression=CompressionType.LZ4):

@@ -13,6 +13,13 @@ from typing import NamedTuple
 
 NAME = "vehicle_pf_tracker"
 SOURCE = Path(__file__).resolve().parents[1] / NAME
+MESSAGES = {
+    "builtin_interfaces", "diagnostic_msgs", "geometry_msgs", "lifecycle_msgs", "rcl_interfaces",
+    "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "tf2_msgs", "vision_msgs",
+    "visualization_msgs",
+}  # fmt: skip
+ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", *MESSAGES}
+"""Modules of ROS."""
 
 
 class Import(NamedTuple):

@@ -11,8 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from source_modules import Module, made_up, own_modules
-from test_walls import ROS
+from source_modules import ROS, Module, made_up, own_modules
 
 INTERNALS = "ros.rclpy_internals"
 """The one module that may name private parts of rclpy."""

@@ -9,7 +9,17 @@ import ast
 import sys
 
 import pytest
-from source_modules import NAME, Import, Module, covers, inside, made_up, own_modules
+from source_modules import (
+    MESSAGES,
+    NAME,
+    ROS,
+    Import,
+    Module,
+    covers,
+    inside,
+    made_up,
+    own_modules,
+)
 
 GROUND = {"core", "road", "parameters", "filtering", "image"}
 BELOW = {*GROUND, "detection", "trackers", "recordings", "scenes", "counting"}
@@ -36,12 +46,6 @@ MAY_IMPORT = {
 """The rooms below each room, from the ground up."""
 BESIDE = {"reproduction", "benchmarks", "laboratory", "tools"}
 """Packages of the repository that are not installed, so that nothing may import them."""
-MESSAGES = {
-    "builtin_interfaces", "diagnostic_msgs", "geometry_msgs", "lifecycle_msgs", "rcl_interfaces",
-    "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "tf2_msgs", "vision_msgs",
-    "visualization_msgs",
-}  # fmt: skip
-ROS = {"rclpy", "ament_index_python", "launch", "launch_ros", *MESSAGES}
 ON_A_ROBOT = {
     "rclpy",
     "launch",

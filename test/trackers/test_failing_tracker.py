@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from failing import ERROR, failing
-from street import Street
-from test_session import PERIOD_NS, error, session
+from session_samples import PERIOD_NS, session
+from street import Street, error
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError

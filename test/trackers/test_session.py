@@ -5,39 +5,19 @@ import contextlib
 
 import numpy as np
 import pytest
+from session_samples import APF, PERIOD_NS, configured, feed, positions, session
 from street import Street, error
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.clock import StampEvent
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.parameters.configuration import SessionParameters, TargetParameters
+from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.continuity import ODD_STAMP_PATIENCE, StrayImageError
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.papers.apf import ApfParameters
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.session import Session
-
-APF = VARIANTS["apf"]
-PERIOD_NS = 40_000_000
-
-
-def configured(box, **values):
-    target = TargetParameters(box.x, box.y, box.width, box.height)
-    return SessionParameters(target=target, **values)
-
-
-def session(box=None, **values):
-    settings = configured(box, **values) if box else SessionParameters(**values)
-    return Session(APF, ApfParameters(), settings)
-
-
-def feed(of, street, times, offset=0):
-    return [of.feed(street.frame(t), (t + offset + 1) * PERIOD_NS) for t in times]
-
-
-def positions(estimates):
-    return [e.position if e else None for e in estimates]
 
 
 def test_waits_until_there_is_a_target():

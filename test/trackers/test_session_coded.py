@@ -5,8 +5,8 @@
 
 import numpy as np
 import pytest
+from session_samples import PERIOD_NS, session
 from street import Street
-from test_session import PERIOD_NS, session
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.trackers.continuity import StrayImageError

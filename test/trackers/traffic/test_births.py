@@ -5,7 +5,7 @@
 
 import numpy as np
 import pytest
-from test_correction import BOX, SIZE, STILL
+from measured_vehicle import BOX, SIZE, STILL
 
 from vehicle_pf_tracker.trackers.traffic.births import first_gaussians
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge

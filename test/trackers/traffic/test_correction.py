@@ -5,6 +5,7 @@
 
 import numpy as np
 import pytest
+from measured_vehicle import BOX, SIZE, Vehicle
 from traffic_samples import changed, step_of, track_of
 
 from vehicle_pf_tracker.core.overlaps import overlaps
@@ -14,36 +15,11 @@ from vehicle_pf_tracker.trackers.traffic.detection_evidence import places_of
 from vehicle_pf_tracker.trackers.traffic.prediction import driven
 from vehicle_pf_tracker.trackers.traffic.report import estimates_of
 from vehicle_pf_tracker.trackers.traffic.returns import Returns
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge, Gaussians, Motion
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge, Motion
 
-SIZE = (320, 240)
-STILL, ROAD = Motion(0.001, 0.5, 400.0), Motion(0.002, 0.5, 768.0)
-BOX = np.array([100.0, 100, 140, 130])
+ROAD = Motion(0.002, 0.5, 768.0)
 PART = BOX - (0, 0, 0, 12)
 (PLACE,) = places_of(BOX[None], SIZE).tolist()
-
-
-def exactly(edges):
-    """Known well, under a far horizon."""
-    return Gaussians.around(edges[None], np.full((1, 4), 0.3), np.array([-1e4]), STILL)
-
-
-class Vehicle:
-    """A vehicle whose box has been measured often."""
-
-    def __init__(self, edges=BOX):
-        self.tracks = track_of(exactly(edges), matches=20, shown=1.0)
-        self.uncoverings = Returns()
-
-    def see(self, detection, *, noise=0.05):
-        """Be detected; True if that shows all of it."""
-        edges = np.array([detection], float)
-        self.tracks, whole = correct(self.tracks, edges, SIZE, noise, self.uncoverings)
-        return bool(whole[0])
-
-    @property
-    def edges(self):
-        return self.tracks.edges[0]
 
 
 @pytest.fixture

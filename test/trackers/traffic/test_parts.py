@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_correction import BOX, Vehicle, exactly
+from measured_vehicle import BOX, Vehicle, exactly
 from traffic_samples import together, track_of
 
 from vehicle_pf_tracker.trackers.traffic.parts import divided, inside_of, outgrown
