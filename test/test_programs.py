@@ -107,7 +107,7 @@ PROGRAMS = {
 }
 LIBRARIES = {
     "laboratory.fusion.case_lists", "laboratory.fusion.objective", "laboratory.fusion.options",
-    "laboratory.fusion.score_table", "laboratory.fusion.settings",
+    "laboratory.fusion.score_table", "laboratory.fusion.settings", "laboratory.traffic.decisions",
     "laboratory.__init__", "laboratory.fusion.__init__", "laboratory.traffic.__init__",
     "laboratory.__main__", "laboratory.covariance_coverage",
     "laboratory.coverage_picture", "laboratory.figure_files", "laboratory.result_store",

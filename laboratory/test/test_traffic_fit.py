@@ -5,7 +5,8 @@
 
 import pytest
 
-from laboratory.traffic.fit import FITTED_DECISIONS, Decision, best_for_others, read_clip, row
+from laboratory.traffic.decisions import FITTED_DECISIONS, Decision
+from laboratory.traffic.fit import best_for_others, read_clip, row
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED_THRESHOLDS
 

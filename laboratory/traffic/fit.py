@@ -5,7 +5,7 @@
 
     python -m laboratory.traffic.fit CAMERA=FOLDER... --boxes motion -o results/traffic_fit
 
-runs every decision of `FITTED_DECISIONS` (or those of ``--only``) at each of its values over all
+runs every decision of `decisions` (or those of ``--only``) at each of its values over all
 clips, which are folders in MOTChallenge's layout; clips of one camera have the same name before the
 equals sign. The score of a run is the mean of HOTA and IDF1. ``leave_one_camera_out.md`` has for
 each decision the value that is best for the other cameras, what it scores on the one left out, and
@@ -16,16 +16,14 @@ what the decision is worth: the shipped value's score less that without it. Runs
 from __future__ import annotations
 
 import argparse
-import importlib
 import statistics
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from laboratory.result_store import ResultStore
+from laboratory.traffic.decisions import FITTED_DECISIONS, Decision
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.evaluation.tables import NO_SCORE, markdown
@@ -35,75 +33,9 @@ from vehicle_pf_tracker.evaluation.traffic.sequence import TrafficSequence, read
 from vehicle_pf_tracker.results.output_files import write_text
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 
-_PACKAGE = "vehicle_pf_tracker"
-
-
-@dataclass(frozen=True, slots=True)
-class Decision:
-    """One constant that decides something.
-
-    Attributes
-    ----------
-    place : str
-        Module, in the package, and name: ``detection.blobs:_PIECE``; a field of an object after a
-        dot.
-    values : tuple of float
-        Values to try beside the shipped one.
-    without : float or None
-        Value by which nothing is decided; None where there is none.
-    """
-
-    place: str
-    values: tuple[float, ...]
-    without: float | None = None
-
-    def get(self) -> float:
-        """Return the shipped value."""
-        owner, name = self._owner()
-        return float(getattr(owner, name))
-
-    @contextmanager
-    def at(self, value: float) -> Iterator[None]:
-        """Decide by another value for a while."""
-        owner, name = self._owner()
-        shipped = getattr(owner, name)
-        # Past the freezing of tables of constants, which only a laboratory may do.
-        object.__setattr__(owner, name, type(shipped)(value))
-        try:
-            yield
-        finally:
-            object.__setattr__(owner, name, shipped)
-
-    def _owner(self) -> tuple[object, str]:
-        module, _, path = self.place.partition(":")
-        owner: object = importlib.import_module(f"{_PACKAGE}.{module}")
-        *parents, name = path.split(".")
-        for parent in parents:
-            owner = getattr(owner, parent)
-        return owner, name
-
-
-_MOTION = "detection.motion_thresholds:SHIPPED_THRESHOLDS"
-FITTED_DECISIONS: tuple[Decision, ...] = (
-    Decision(f"{_MOTION}.colour_threshold", (24.0, 42.0)),
-    Decision(f"{_MOTION}.patience", (2.0, 8.0), 0.0),
-    Decision(f"{_MOTION}.shadow", (0.5, 0.7), 1.0),
-    Decision(f"{_MOTION}.apart", (0.5, 2.0), 1e9),
-    Decision("detection.blobs:_LEAST_PART", (0.1, 0.2)),
-    Decision("detection.blobs:_PIECE", (0.7, 0.9), 1e9),
-    Decision("detection.blobs:_SPECK", (-3.0, -6.0), -1e9),
-    Decision("trackers.traffic.births:_THIN", (0.3, 0.7), 0.0),
-    Decision("trackers.traffic.correction:_WHOLE", (0.75, 0.95), 0.0),
-    Decision("trackers.traffic.correction:_FOLLOWED", (0.15, 0.4)),
-    Decision("trackers.traffic.existence:_SCORE_DOUBT", (0.3, 0.7), 0.0),
-    Decision("trackers.traffic.existence:_MISSED", (0.15, 0.5)),
-    Decision("trackers.traffic.existence:_REACH", (0.25, 0.75), 0.0),
-    Decision("trackers.traffic.existence:_REST", (0.15, 0.5), 1e9),
-    Decision("trackers.traffic.existence:_STRAIGHT_SHAPE", (14.0, 22.0), 7.0),
-    Decision("trackers.traffic.parts:_INSIDE", (0.55, 0.85), 1e9),
-    Decision("trackers.traffic.pixel_hold:_HELD_SHARE", (0.2, 0.45)),
-)
-"""Values that are tried, by parameter: a factor of about 1.4 apart, as fine as a clip can tell."""
+HEADER = ["decision", "shipped", "by the other cameras", "shipped scores", "left out", "worth"]
+"""Headings; *by the other cameras* has the values that are best for them, in the order of the
+cameras, *left out* the mean of what each scores on the camera that it has not seen."""
 
 
 class Clip(NamedTuple):
@@ -123,7 +55,7 @@ def main() -> int:
     parser.add_argument("-o", "--out", type=Path, required=True)
     args = parser.parse_args()
     clips = [read_clip(text, args.boxes) for text in args.clips]
-    decisions = [one for one in FITTED_DECISIONS if not args.only or one.place in args.only]
+    decisions = [each for each in FITTED_DECISIONS if not args.only or each.place in args.only]
     if not decisions:
         raise InputError(f"--only names no decision: {', '.join(args.only)}")
     store = ResultStore(args.out / "runs.jsonl")
@@ -156,7 +88,7 @@ def scores_of(
     """Run all clips at every value: mean scores of each camera, by value; the shipped one first."""
     shipped = decision.get()
     without = () if decision.without is None else (decision.without,)
-    found: dict[float, dict[str, float]] = {}
+    by_value: dict[float, dict[str, float]] = {}
     # Shipped first: `row` takes the first value for it.
     for value in dict.fromkeys((shipped, *decision.values, *without)):
         cameras: dict[str, list[float]] = {}
@@ -173,13 +105,8 @@ def scores_of(
             result = store[key]
             # HOTA weighs detection and association alike, IDF1 how long identities are kept.
             cameras.setdefault(clip.camera, []).append((result["HOTA"] + result["IDF1"]) / 2)
-        found[value] = {camera: statistics.fmean(each) for camera, each in cameras.items()}
-    return found
-
-
-HEADER = ["decision", "shipped", "by the other cameras", "shipped scores", "left out", "worth"]
-"""Headings; *by the other cameras* has the values that are best for them, in the order of the
-cameras, *left out* the mean of what each scores on the camera that it has not seen."""
+        by_value[value] = {camera: statistics.fmean(each) for camera, each in cameras.items()}
+    return by_value
 
 
 def row(decision: Decision, scores: Mapping[float, Mapping[str, float]]) -> list[str]:
