@@ -40,7 +40,7 @@ def test_a_library_whose_pages_were_given_back_works_on():
 
 
 def test_a_system_without_a_list_of_pages_gives_nothing_back(monkeypatch, tmp_path):
-    monkeypatch.setattr(library_memory, "_SMAPS", tmp_path / "smaps")
+    monkeypatch.setattr(library_memory, "SMAPS", tmp_path / "smaps")
     assert library_memory.give_back_library("_multiarray_umath") == 0
 
 
@@ -59,7 +59,7 @@ def test_what_the_loader_changed_is_kept(monkeypatch, tmp_path):
             for area, (anonymous, swapped) in areas.items()
         )
     )
-    monkeypatch.setattr(library_memory, "_SMAPS", smaps)
-    found = list(library_memory._unchanged_areas("libone"))
+    monkeypatch.setattr(library_memory, "SMAPS", smaps)
+    found = list(library_memory.unchanged_areas("libone"))
     assert found == [(0x1000, 0x2000, 4)]
-    assert not list(library_memory._unchanged_areas("libother"))
+    assert not list(library_memory.unchanged_areas("libother"))

@@ -17,13 +17,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-_SMAPS = Path("/proc/self/smaps")
+SMAPS = Path("/proc/self/smaps")
+"""Areas of this process's address space, each with the file that it is of, and its sizes."""
 _AREA = r"^([0-9a-f]+)-([0-9a-f]+) (\S+) .*/{}.*\n((?:\w+:.*\n)+)"
 """An area of a file there: addresses, permissions, and lines of sizes; to be given its name."""
 _SIZE = re.compile(r"(\w+): +(\d+) kB")
 
 
-class _Area(NamedTuple):
+class Area(NamedTuple):
     """Part of the address space.
 
     Attributes
@@ -54,22 +55,22 @@ def give_back_library(name: str) -> int:
     """
     advise = getattr(ctypes.CDLL(None), "madvise", None)
     advice = getattr(mmap, "MADV_DONTNEED", None)
-    if advise is None or advice is None or not _SMAPS.exists():
+    if advise is None or advice is None or not SMAPS.exists():
         return 0
     given = 0
-    for area in _unchanged_areas(name):
+    for area in unchanged_areas(name):
         size = ctypes.c_size_t(area.end - area.start)
         if advise(ctypes.c_void_p(area.start), size, advice) == 0:
             given += area.resident
     return given
 
 
-def _unchanged_areas(name: str) -> Iterator[_Area]:
+def unchanged_areas(name: str) -> Iterator[Area]:
     """List the areas of a library that are as in its file; others would lose what they have."""
     area = re.compile(_AREA.format(re.escape(name)), re.MULTILINE)
-    for match in area.finditer(_SMAPS.read_text()):
+    for match in area.finditer(SMAPS.read_text()):
         start, end, permissions, lines = match.groups()
         sizes = {key: int(size) for key, size in _SIZE.findall(lines)}
         # What the loader has changed, and then made read-only, is anonymous, or swapped out.
         if "w" not in permissions and not sizes["Anonymous"] and not sizes["Swap"]:
-            yield _Area(int(start, 16), int(end, 16), sizes["Rss"])
+            yield Area(int(start, 16), int(end, 16), sizes["Rss"])
