@@ -25,7 +25,9 @@ def rooms_graph(source: Path) -> dict[str, set[str]]:
         Folder of the package.
     """
     modules = {_name(path, source): path for path in sorted(source.rglob("*.py"))}
-    graph: dict[str, set[str]] = {_room(name): set() for name in modules if "." in name}
+    # A folder that holds folders alone, and says in its `__init__` what is in them, is no room.
+    inside = [name for name in modules if "." in name and not name.endswith(".__init__")]
+    graph: dict[str, set[str]] = {_room(name): set() for name in inside}
     for name, path in modules.items():
         room = _room(name)
         for target in _imports(path):

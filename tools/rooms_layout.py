@@ -22,7 +22,7 @@ Bend = tuple[str, str, int]
 Entry = str | Bend
 """Entry of a row: a room, or a bend of an arrow that goes on to a lower row."""
 
-BOX_WIDTH = 132.0  # px; the longest name, 16 letters, fits at the font's size
+BOX_WIDTH = 150.0  # px; the longest name, 19 letters, fits at the font's size
 BOX_HEIGHT = 30.0  # px; twice the letters'
 BEND_WIDTH = 26.0  # px between an arrow and its neighbours
 GAP = 18.0  # px between entries of a row

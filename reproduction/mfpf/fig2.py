@@ -30,7 +30,7 @@ _SMALL = 0.01
 """Difference of a frequency from its weight that is not seen in a filter of 200 particles: two of
 them."""
 _SIGMA_V = 0.15
-"""Deviation of P2's equation 10 (interpretation 31), that of MFPF in `mfpf_systems`."""
+"""Deviation of P2's equation 10 (interpretation 31), that of MFPF in `systems`."""
 _PRINTED = "multinomial"
 """The scheme of the paper's list (i) to (iii)."""
 

@@ -31,6 +31,13 @@ def test_an_import_is_an_arrow_between_rooms(tmp_path):
     }  # fmt: skip
 
 
+def test_a_folder_of_folders_is_no_room(tmp_path):
+    (tmp_path / "image").mkdir()
+    (tmp_path / "image" / "__init__.py").touch()
+    graph = made_up(tmp_path, image__motion__flow="import numpy")
+    assert graph == {"image/motion": set()}
+
+
 def test_an_arrow_that_follows_from_others_is_left_out():
     graph = {"a": {"b", "c"}, "b": {"c"}, "c": set(), "d": {"c"}}
     assert reduced(graph) == {"a": {"b"}, "b": {"c"}, "c": set(), "d": {"c"}}
