@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections import Counter as Tally
 from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 from vehicle_pf_tracker.counting.count_signs import Sign
 from vehicle_pf_tracker.counting.crossing import Crossing
@@ -16,8 +16,9 @@ from vehicle_pf_tracker.counting.foot_point import FootPoint
 from vehicle_pf_tracker.counting.line_watch import LineEdge, LineWatch
 from vehicle_pf_tracker.counting.plausibility import Life, Plausibility
 from vehicle_pf_tracker.counting.recent_path import RecentPath
-from vehicle_pf_tracker.counting.sign_tally import PlacedSign, SignTally
+from vehicle_pf_tracker.counting.sign_tally import SignTally
 from vehicle_pf_tracker.counting.trust import OF_BLOBS, OF_BOXES
+from vehicle_pf_tracker.counting.watched_vehicle import Passages, WatchedVehicle
 from vehicle_pf_tracker.counting.zone_watch import ZONE_ENTRY, ZONE_EXIT, ZoneEdge, ZoneWatch
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
 from vehicle_pf_tracker.road.plane import RoadPlane
@@ -27,79 +28,8 @@ _REMEMBERED_NS = 600 * 10**9
 """Time in ns that a vehicle which is not among the estimates is remembered: the longest that a
 tracker keeps the number of a lost one for."""
 
-_PROMISING = 4
-"""Detections of a track that was never confirmed by which it may have been a vehicle: by chance
-false alarms follow each other twice or three times."""
-
 COUNTED_MODES = (TrackMode.TRACKING, TrackMode.OCCLUDED)
 """Modes of vehicles that count."""
-
-
-_Passages = list[tuple[str, str, FootPoint]]
-"""Lines and zones that a vehicle has passed: name, direction, and the point and time."""
-
-
-@dataclass(slots=True)
-class _Vehicle:
-    """Memory of one vehicle."""
-
-    lines: list[LineWatch]
-    zones: list[ZoneWatch]
-    path: RecentPath
-    last_ns: int
-    life: Life
-    is_confirmed: bool = False
-    label: str = ""
-    waiting: list[Crossing] = field(default_factory=list)
-    counted: set[tuple[str, str]] = field(default_factory=set)
-
-    def follow(self, foot: FootPoint) -> _Passages:
-        """Follow it to its next point, and return what it has passed on the way."""
-        self.path.add(foot)
-        lines = [
-            (line.line.name, *at) for line in self.lines for at in line.follow(foot, self.path)
-        ]
-        zones = [
-            (zone.zone.name, *at) for zone in self.zones for at in zone.follow(foot, self.path)
-        ]
-        return lines + zones
-
-    def missed(self, *, has_ended: bool) -> list[PlacedSign]:
-        """Return signs of crossings that do not count, and may be true."""
-        if not self.is_confirmed:
-            # Until it has ended it may be confirmed yet, and then its crossings count.
-            if not has_ended or self.life.detected < _PROMISING:
-                return []
-            places = [(one.place, one.direction) for one in self.waiting]
-            return [(*at, self.label, Sign.UNCONFIRMED) for at in places]
-        found = [(line.line.name, line.missed(has_ended=has_ended)) for line in self.lines]
-        return [(name, one[0], self.label, one[1]) for name, one in found if one is not None]
-
-    def join(self, other: _Vehicle) -> _Passages:
-        """Go on as the track that it turned out to be after it was hidden.
-
-        Returns what it has passed in between.
-        """
-        lines = [
-            (line.line.name, *at)
-            for own, line in zip(self.lines, other.lines, strict=True)
-            for at in line.resume(own)
-        ]
-        zones = [
-            (zone.zone.name, *at)
-            for own, zone in zip(self.zones, other.zones, strict=True)
-            for at in zone.resume(own)
-        ]
-        # The later track goes on, as its watches know the present sides; `resume` has given them
-        # the memory of this one.
-        self.lines = other.lines
-        self.zones = other.zones
-        self.path = self.life.path = other.path
-        # What both tracks passed is one crossing: this vehicle has counted it already.
-        self.waiting = [
-            one for one in other.waiting if (one.place, one.direction) not in self.counted
-        ]
-        return lines + zones
 
 
 class Counter:
@@ -140,7 +70,7 @@ class Counter:
         # Crossings by place, direction and class; a Counter of the standard library, not this one.
         self.totals: Tally[tuple[str, str, str]] = Tally()
         self.plane = plane
-        self.vehicles: dict[int, _Vehicle] = {}  # by their tracks
+        self.vehicles: dict[int, WatchedVehicle] = {}  # by their tracks
         self._plausibility = Plausibility()
         self._occupancy = {zone.name: 0 for zone in plan.zones}
         self._last_ns: int | None = None
@@ -315,11 +245,11 @@ class Counter:
         self._signs.add((one.place, one.direction, one.label, sign))
         return replace(one, doubt=doubt)
 
-    def _made(self, first: FootPoint) -> _Vehicle:
+    def _made(self, first: FootPoint) -> WatchedVehicle:
         lines = [LineWatch(edge) for edge in self._lines]
         zones = [ZoneWatch(edge) for edge in self._zones]
         path = RecentPath(self.plane)
-        return _Vehicle(lines, zones, path, first.stamp_ns, Life(first, first, path))
+        return WatchedVehicle(lines, zones, path, first.stamp_ns, Life(first, first, path))
 
     def _drop_old(self, stamp_ns: int) -> None:
         old = [
@@ -332,7 +262,7 @@ class Counter:
             self._signs.keep(identity)
 
 
-def _crossings(passages: _Passages, path: RecentPath, estimate: TrackEstimate) -> list[Crossing]:
+def _crossings(passages: Passages, path: RecentPath, estimate: TrackEstimate) -> list[Crossing]:
     """Return the crossings of a vehicle that has this path up to now."""
     if not passages:
         return []
