@@ -232,6 +232,16 @@ def test_a_miss_counts_by_the_time_that_it_stands_for_until_it_is_independent(ra
     assert lost == pytest.approx(min(price, -np.log(0.5)), rel=0.01)
 
 
+@pytest.mark.parametrize(("rate", "taken"), [(30.0, 0.5), (24.0, 0.5), (12.0, 1.0), (2.0, 3.0)])
+def test_a_score_counts_against_a_track_by_the_time_that_it_stands_for(rate, taken):
+    experience = Experience()
+    step = step_of(SIZE, period=1 / rate)
+    candidates = replace(seen(experience.detections, (100, 100, 40, 30)), gains=np.array([-5.0]))
+    one, _ = believed(track(1, 100.0), candidates, ONLY, np.zeros(1), experience, step)
+    assert one.beliefs.log_odds[0] == pytest.approx(-taken)
+    assert one.beliefs.doubt[0] == pytest.approx(taken)
+
+
 def missed(undetected, *, seen=()):
     """Evidence that confirmed vehicles in sight lose in a frame, undetected for so long."""
     tracks = together(

@@ -28,8 +28,9 @@ _MOST = 3.0
 """Log odds, one in twenty, that one detection adds at most by its score, and by where it is: no
 single one proves a vehicle."""
 _SCORE_DOUBT = 0.5
-"""Log odds that one score takes off at most, so that a detector which knows little about a vehicle
-does not hide it for ever; and that are taken off each, in confirming by scores alone."""
+"""Log odds that one score of dense images takes off at most, so that a detector which knows little
+about a vehicle does not hide it for ever; and that are taken off each, in confirming by scores
+alone."""
 _PROVEN = 4.0
 """Sum of the log odds of scores that stands for a drive: one in 55, two detections at least."""
 _MISSED = 0.3
@@ -111,7 +112,7 @@ def believed(
     edges = candidates.edges[columns]
     # 1. Learn from what had vanished, before the absence ends.
     tracks = _seen(note_found(tracks, experience), edges)
-    tracks = _weighed(tracks, candidates, columns, fits)
+    tracks = _weighed(tracks, candidates, columns, fits, step)
     # 2. All evidence makes it ripe, a drive or sure scores prove it.
     beliefs = tracks.beliefs
     lengths = beliefs.ways.lengths(tracks.edges)
@@ -135,13 +136,18 @@ def believed(
     return tracks, np.asarray(~tracks.confirmed & is_ripe & proven)
 
 
-def _weighed(tracks: Tracks, candidates: Candidates, columns: Integers, fits: Array) -> Tracks:
+def _weighed(
+    tracks: Tracks, candidates: Candidates, columns: Integers, fits: Array, step: Step
+) -> Tracks:
     """Add what scores, places and ways of the detections tell; see `believed`."""
     beliefs = tracks.beliefs
     log_odds = candidates.log_odds[columns]
     # The usual odds of a score count once, at the birth: a new track gains by likelihood ratios.
     gains = np.where(tracks.confirmed, log_odds, candidates.gains[columns])
-    gains = np.clip(gains, -_SCORE_DOUBT, _MOST)
+    # Scores of one spot repeat from image to image, and a second of them says as much at any rate:
+    # of fewer each takes off more, but no more than one may add.
+    most_doubt = min(_SCORE_DOUBT * step.sparsity, _MOST)
+    gains = np.clip(gains, -most_doubt, _MOST)
     ways = beliefs.ways.added(candidates.edges[columns])
     proof = np.where(ways.lengths(tracks.edges) < _STANDS, candidates.sure[columns], log_odds)
     proof = np.clip(proof - _SCORE_DOUBT, -_SCORE_DOUBT, _MOST)
