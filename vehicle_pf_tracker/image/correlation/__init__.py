@@ -8,7 +8,7 @@ In the order of its use:
 - `canonical_patch`: surroundings of the target, resampled so that it has a canonical size, by
   `affine_sampling`
 - `gradient_cells`: the patch as cells of oriented gradients
-- `spectra`: their Fourier transform
+- `spectra`: their Fourier transform, with `row_waves`
 - `correlation_filter`: learning from them, and response to the next ones
 - `map_search`: best value of a map, such as the response, close to given positions
 """

@@ -25,9 +25,10 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.correlation.gradient_cells import CellFeatures
+from vehicle_pf_tracker.image.correlation.row_waves import Spectrum
 from vehicle_pf_tracker.image.correlation.spectra import (
+    BY_NUMPY,
     PartialFourier,
-    Spectrum,
     frequencies,
     upsampled,
 )
@@ -88,12 +89,18 @@ class CorrelationFilter:
         First ADMM penalty: the larger, the smoother the filter and the less a step changes it.
     first : Schedule
         Steps on the first image.
+
+    Attributes
+    ----------
+    waves : RowWaves
+        Implementation of a part of the Fourier transforms; all have the same bits.
     """
 
     def __init__(
         self, cells: int, target: Array, penalty: float, first: Schedule = FIRST_IMAGE
     ) -> None:
         self.penalty = penalty
+        self.waves = BY_NUMPY
         self._first = first
         offsets = np.arange(cells) - cells // 2
         sigma = _LABEL_SIGMA * float(np.sqrt(target.prod()))
@@ -120,7 +127,7 @@ class CorrelationFilter:
 
     def spectrum(self, features: CellFeatures) -> Spectrum:
         """Half spectrum of cells (channels, n, n), faded out towards the border."""
-        return self._faded.spectrum_of(features)
+        return self._faded.spectrum_of(features, self.waves)
 
     def train(self, spectrum: Spectrum, stiffness: float) -> None:
         """Learn from one image in whose middle the target is.
@@ -171,8 +178,8 @@ class CorrelationFilter:
             if step:
                 multiplier += right
             # There and back through the cells of the target: what is outside becomes zero.
-            cells = self._target.cells_of(multiplier)
-            confined = self._target.spectrum_of(cells)
+            cells = self._target.cells_of(multiplier, self.waves)
+            confined = self._target.spectrum_of(cells, self.waves)
         self._wide_weights = None
         self.weights = FilterWeights(cells, cells.transpose(1, 0, 2) * self._fading, confined)
 
@@ -203,14 +210,14 @@ class CorrelationFilter:
 
     def wide_spectrum(self, features: CellFeatures) -> Spectrum:
         """Half spectrum of the cells (channels, m, m) of a larger patch, m even and above n."""
-        return self._wide(features.shape[1])[0].spectrum_of(features)
+        return self._wide(features.shape[1])[0].spectrum_of(features, self.waves)
 
     def respond_wide(self, spectrum: Spectrum) -> Response:
         """Respond to the cells of a larger patch."""
         if self._wide_weights is None:
             # Transformed when first asked for: a wide search happens in few frames.
             target = self._wide(spectrum.shape[1])[1]
-            self._wide_weights = target.spectrum_of(self._trained.target)
+            self._wide_weights = target.spectrum_of(self._trained.target, self.waves)
         return self._response(spectrum, self._wide_weights)
 
     @property

@@ -19,15 +19,11 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.products import product
 from vehicle_pf_tracker.image.correlation.gradient_cells import CellFeatures
+from vehicle_pf_tracker.image.correlation.row_waves import RowWaves, Spectrum
 
-Spectrum: TypeAlias = npt.NDArray[np.complex64]
-"""Half spectrum of cells, (channels, n, n // 2 + 1); its rows have the `frequencies`.
-
-Channels come first: a sum over them adds whole spectra. On the way to it and back stand the
-coefficients of cosines and sines along y, as matrix products with real numbers take half the time
-of those with complex ones.
-"""
 _Matrix: TypeAlias = npt.NDArray[np.float32]
+BY_NUMPY = RowWaves()
+"""Exchange of rows and waves where no compiled one is given."""
 
 
 class PartialFourier:
@@ -56,22 +52,14 @@ class PartialFourier:
         self._from_columns = _pairs(x, cells, weights[columns, np.newaxis])
         self._to_columns = _to_columns(x, cells)
 
-    def cells_of(self, spectrum: Spectrum) -> CellFeatures:
+    def cells_of(self, spectrum: Spectrum, waves: RowWaves = BY_NUMPY) -> CellFeatures:
         """Cells of the part, (channels, rows, columns)."""
         # Through the rows first: the part has few of them, and what follows is that much less.
-        return product(product(self._to_rows, _coefficients(spectrum)), self._to_columns)
+        return product(product(self._to_rows, waves.of(spectrum)), self._to_columns)
 
-    def spectrum_of(self, cells: CellFeatures) -> Spectrum:
+    def spectrum_of(self, cells: CellFeatures, waves: RowWaves = BY_NUMPY) -> Spectrum:
         """Half spectrum of the square from the cells of the part."""
-        pairs = product(product(self._from_rows, cells), self._from_columns)
-        spectrum = pairs.view(np.complex64)
-        half = len(self._from_rows) // 2
-        # A real row has cosines and sines; frequencies f and -f are their sum and difference.
-        cosines = spectrum[:, 2 : half + 1]
-        sines = 1j * spectrum[:, half + 1 :]
-        np.add(cosines, sines, out=spectrum[:, half + 1 :])
-        cosines -= sines
-        return spectrum
+        return waves.joined(product(product(self._from_rows, cells), self._from_columns))
 
 
 @functools.cache
@@ -87,7 +75,7 @@ def upsampled(spectrum: Spectrum, upsampling: int) -> _Matrix:
     Zero is in the middle. The highest frequency along x, which has no phase, is left out.
     """
     down, right = _fine_transforms(len(spectrum), upsampling)
-    return product(product(down, _coefficients(spectrum)), right)
+    return product(product(down, BY_NUMPY.of(spectrum)), right)
 
 
 def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
@@ -97,20 +85,6 @@ def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:
     down = np.exp(-2j * np.pi / cells * y * frequencies(cells))[:, np.newaxis]
     right = np.exp(-2j * np.pi / cells * x * np.arange(cells // 2 + 1))
     return np.asarray(spectrum * (down * right).astype(np.complex64))
-
-
-def _coefficients(spectrum: Spectrum) -> _Matrix:
-    """Coefficients of cosines and sines along y, real and imaginary parts by turns along x."""
-    half = spectrum.shape[-1] - 1
-    coefficients = np.empty(spectrum.shape, np.complex64)
-    low = spectrum[..., 2 : half + 1, :]
-    high = spectrum[..., half + 1 :, :]
-    # Written in place, once each: a copy of all would cost as much as the sums.
-    coefficients[..., :2, :] = spectrum[..., :2, :]
-    np.add(low, high, out=coefficients[..., 2 : half + 1, :])
-    sines = np.subtract(low, high, out=coefficients[..., half + 1 :, :])
-    sines *= np.complex64(1j)
-    return np.asarray(coefficients.view(np.float32))
 
 
 @functools.cache

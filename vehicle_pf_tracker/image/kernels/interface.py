@@ -15,6 +15,7 @@ import numpy as np
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.correlation import gradient_cells
+from vehicle_pf_tracker.image.correlation.row_waves import RowWaves
 from vehicle_pf_tracker.image.windows import mean_shift
 from vehicle_pf_tracker.image.windows.similarity import Histogram, Reference
 from vehicle_pf_tracker.image.windows.window import Coefficients, Positions, Window, WindowFeature
@@ -43,6 +44,7 @@ class Kernels:
     gradient_cells = staticmethod(gradient_cells.gradient_cells)
     kernel_similarity = staticmethod(mean_shift.kernel_similarity)
     mean_shift = staticmethod(mean_shift.mean_shift)
+    row_waves = RowWaves()
 
     def __init__(self, notices: Sequence[str] = ()) -> None:
         self.notices = notices

@@ -24,6 +24,7 @@ from vehicle_pf_tracker.image.kernels import (
     numba_mean_shift,
     numba_pixel_cells,
     numba_placing,
+    numba_row_waves,
     numba_windows,
 )
 from vehicle_pf_tracker.image.kernels.interface import Kernels
@@ -58,6 +59,7 @@ _MODULES = (
     numba_counts,
     numba_mean_shift,
     numba_cells,
+    numba_row_waves,
 )
 
 _LANES = 16
@@ -176,6 +178,7 @@ class NumbaKernels(Kernels):
     gradient_cells = staticmethod(gradient_cells)
     kernel_similarity = staticmethod(kernel_similarity)
     mean_shift = staticmethod(mean_shift)
+    row_waves = numba_row_waves.CompiledRowWaves()
 
     def __init__(self) -> None:
         super().__init__(kernel.notices())

@@ -30,7 +30,8 @@ from vehicle_pf_tracker.image.correlation.gradient_cells import (
     CellFeatures,
     Grey,
 )
-from vehicle_pf_tracker.image.correlation.spectra import Spectrum, shifted
+from vehicle_pf_tracker.image.correlation.row_waves import Spectrum
+from vehicle_pf_tracker.image.correlation.spectra import shifted
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.trackers.fusion.paint import Paint
 from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
@@ -161,7 +162,7 @@ class Appearance:
     Parameters
     ----------
     kernels : Kernels
-        Implementation that measures gradients and multiplies spectra.
+        Implementation that measures gradients and transforms spectra.
     size, learnt : (2,) arrays
         Width and height of the target in the first frame, and of the part that is learnt, px.
     penalty : float
@@ -175,17 +176,18 @@ class Appearance:
         self._side = _CELLS * GRADIENT_CELL_PX
         target = np.minimum(learnt * zoom, _LONGEST_IN_PATCH * self._side)
         self._box = target * (size / learnt)
-        self._kernels = kernels
         self.first_size = size
         self._filter = CorrelationFilter(_CELLS, target / GRADIENT_CELL_PX, penalty)
+        self.use_kernels(kernels)
         # Unknown until the first patch after the start (`has_level`).
         self.usual_response = 0.0
         self._least_usual = 0.0
         self._paint = Paint()
 
     def use_kernels(self, kernels: Kernels) -> None:
-        """Measure gradients and multiply spectra by another implementation from now on."""
+        """Measure gradients and transform spectra by another implementation from now on."""
         self._kernels = kernels
+        self._filter.waves = kernels.row_waves
 
     def patch(self, frame: Frame, position: Array, size: Array, *, wide: bool = False) -> Patch:
         """Cut the surroundings of a box of this centre and size (px) out of a frame."""
