@@ -93,6 +93,7 @@ def test_the_figure_has_a_line_for_plain_and_one_for_harder_cases(tmp_path):
     assert hard == [[0.85, 0]]
 
 
+@pytest.mark.slow
 def test_a_picture_may_have_a_row_that_is_not_full(tmp_path):
     short = scene_pictures.Picture("short", "turn", 0, (1, 2, 3, 4))
     scene_pictures.draw_pictures(tmp_path, [short])
