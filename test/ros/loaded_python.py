@@ -19,8 +19,10 @@ import socket
 import subprocess
 import sys
 import types
+import warnings
 from importlib import import_module
 from pathlib import Path
+from typing import TextIO
 
 MODULES = (
     "vehicle_pf_tracker.cli.main",
@@ -49,9 +51,10 @@ class Forked:
 
     def wait(self, timeout: float | None = None) -> int:
         """Wait for the exit status."""
-        if self._status(timeout) is None:
+        status = self._status(timeout)
+        if status is None:
             raise subprocess.TimeoutExpired("fork", timeout or 0.0)
-        return self.returncode
+        return status
 
     def terminate(self) -> None:
         """Ask it to end, if it runs."""
@@ -82,7 +85,9 @@ class LoadedPython:
             command = [sys.executable, __file__, str(other.fileno())]
             self._process = subprocess.Popen(command, env=environment, pass_fds=[other.fileno()])
 
-    def run(self, code: str, arguments: list[str], environment: dict[str, str], log) -> Forked:
+    def run(
+        self, code: str, arguments: list[str], environment: dict[str, str], log: TextIO
+    ) -> Forked:
         """Run `python -c CODE ARGUMENTS`; what it prints goes to the open file `log`."""
         reports, write = os.pipe()
         request = [code, arguments, environment, str(Path.cwd())]
@@ -139,7 +144,10 @@ def _main() -> None:
     requests = socket.socket(fileno=int(sys.argv[1]))
     for name in MODULES:
         import_module(name)
-    request = _next_in_a_fork(requests)
+    with warnings.catch_warnings():
+        # Python 3.12 warns of a fork beside threads: here those of BLAS, which it ends for a fork.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        request = _next_in_a_fork(requests)
     if request is not None:
         code, arguments = request
         sys.argv = ["-c", *arguments]
