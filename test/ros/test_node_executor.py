@@ -211,6 +211,35 @@ def test_a_subscription_that_a_callback_destroys_is_not_called(served):
     served.hear_one()
 
 
+def test_an_entity_that_another_thread_destroys_ends_nothing(served, monkeypatch):
+    other = served.node.create_subscription(Header, "other", served.hear, 1)
+    served.hear_one()
+    # As between the moments in which the thread destroys it and says so.
+    monkeypatch.setattr(served.executor, "wake", lambda: None)
+    served.node.destroy_subscription(other)
+    served.hear_one()
+
+
+def test_a_change_while_entities_are_listed_is_listed_the_next_time(served, monkeypatch):
+    listed = served.executor.get_nodes
+
+    def listed_as_one_is_made():
+        nodes = listed()
+        monkeypatch.undo()
+        served.node.create_subscription(Header, "late", served.hear, 1)
+        return nodes
+
+    served.hear_one()
+    publisher = served.bench.node.create_publisher(Header, "late", 1)
+    monkeypatch.setattr(served.executor, "get_nodes", listed_as_one_is_made)
+    served.executor.wake()
+    served.hear_one()
+    served.bench.wait_for(publisher.get_subscription_count)
+    before = len(served.heard)
+    publisher.publish(Header())
+    served.spin_until(lambda: len(served.heard) > before)
+
+
 def test_a_node_can_be_removed_while_messages_flow(served):
     served.hear_one()
     served.executor.remove_node(served.node)

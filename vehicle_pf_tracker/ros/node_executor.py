@@ -23,6 +23,7 @@ from rclpy.node import Node
 
 from vehicle_pf_tracker.ros.rclpy_internals import (
     EntityWait,
+    InvalidHandle,
     ReadyEntities,
     can_wait_for_entities,
     run_callback,
@@ -58,6 +59,7 @@ class MessageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
     def __init__(self, *, context: Context | None = None) -> None:
         # Before the base, which may call `wake`.
         self._wait: EntityWait | None = None
+        self._has_changed = True
         super().__init__(context=context)
         self._is_flowing = False
         self._look_at = 0.0
@@ -65,18 +67,18 @@ class MessageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
         self._asked_until = 0.0
 
     def wake(self) -> None:
-        """Note that entities were made or destroyed, as nodes say by it."""
-        self._wait = None
+        """Note that entities were made or destroyed, as nodes say by it, from any thread."""
+        self._has_changed = True
         super().wake()
 
     def add_node(self, node: Node) -> bool:
         """Run the callbacks of a node."""
-        self._wait = None
+        self._has_changed = True
         return bool(super().add_node(node))
 
     def remove_node(self, node: Node) -> None:
         """Leave the callbacks of a node to others."""
-        self._wait = None
+        self._has_changed = True
         super().remove_node(node)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
@@ -104,10 +106,8 @@ class MessageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
 
     def _run_ready(self, *, for_requests: bool) -> ReadyEntities:
         """Wait, and run what is ready: messages and timers, and one request."""
-        if self._wait is None:
-            self._wait = EntityWait(self.context, self.get_nodes())
         longest = LOOK_EVERY if for_requests else REQUESTS_EVERY
-        ready = self._wait.wait(longest, for_requests=for_requests)
+        ready = self._ready(longest, for_requests=for_requests)
         for subscription in ready.subscriptions:
             run_callback(subscription)
         for timer in ready.timers:
@@ -116,3 +116,14 @@ class MessageExecutor(SingleThreadedExecutor):  # type: ignore[misc]
             # One at a time: images wait for it no longer than for rclpy's own executor.
             super().spin_once(0.0)
         return ready
+
+    def _ready(self, seconds: float, *, for_requests: bool) -> ReadyEntities:
+        try:
+            if self._wait is None or self._has_changed:
+                # Before they are listed: what changes meanwhile is listed the next time.
+                self._has_changed = False
+                self._wait = EntityWait(self.context, self.get_nodes())
+            return self._wait.wait(seconds, for_requests=for_requests)
+        except InvalidHandle:  # another thread has destroyed one, and says so after that
+            self._has_changed = True
+            return ReadyEntities([], [], has_requests=False)

@@ -55,7 +55,7 @@ def state_machine(node: LifecycleNode) -> Any | None:
     return machine if hasattr(machine, "current_state") else None
 
 
-_InvalidHandle: type[Exception] = getattr(_compiled, "InvalidHandle", RuntimeError)
+InvalidHandle: type[Exception] = getattr(_compiled, "InvalidHandle", RuntimeError)
 _WAIT_METHODS = (
     "add_service",
     "add_subscription",
@@ -151,7 +151,7 @@ def run_timer(timer: Timer) -> None:
             if not timer.handle.is_timer_ready():
                 return
             timer.handle.call_timer()
-    except _InvalidHandle:  # a callback before has destroyed it
+    except InvalidHandle:  # a callback before has destroyed it
         return
     timer.callback()
 
@@ -161,7 +161,7 @@ def run_callback(subscription: Subscription) -> None:
     try:
         with subscription.handle:
             taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-    except _InvalidHandle:  # a callback before has destroyed it
+    except InvalidHandle:  # a callback before has destroyed it
         return
     if taken is None:
         return
