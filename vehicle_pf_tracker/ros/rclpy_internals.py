@@ -56,6 +56,7 @@ def state_machine(node: LifecycleNode) -> Any | None:
 
 
 InvalidHandle: type[Exception] = getattr(_compiled, "InvalidHandle", RuntimeError)
+_RCLError: type[Exception] = getattr(_compiled, "RCLError", RuntimeError)
 _WAIT_METHODS = (
     "add_service",
     "add_subscription",
@@ -123,18 +124,27 @@ class EntityWait:
         self._wait_set = _compiled.WaitSet(*counts, context.handle) if any(counts) else None
 
     def wait(self, seconds: float, *, for_requests: bool) -> ReadyEntities:
-        """Wait until something is ready; services are left out unless `for_requests`."""
+        """Wait until something is ready; services are left out unless `for_requests`.
+
+        Raises
+        ------
+        InvalidHandle
+            One of the entities was destroyed.
+        """
         wait_set = self._wait_set
         if wait_set is None:
             return ReadyEntities([], [], has_requests=False)
         wait_set.clear_entities()  # rcl takes those out that are not ready
-        for subscription in self._subscription_handles:
-            wait_set.add_subscription(subscription)
-        for timer in self._timer_handles:
-            wait_set.add_timer(timer)
-        if for_requests:
-            for service in self._services:
-                wait_set.add_service(service)
+        try:
+            for subscription in self._subscription_handles:
+                wait_set.add_subscription(subscription)
+            for timer in self._timer_handles:
+                wait_set.add_timer(timer)
+            if for_requests:
+                for service in self._services:
+                    wait_set.add_service(service)
+        except _RCLError as error:
+            raise InvalidHandle(str(error)) from error
         wait_set.wait(round(seconds * 1e9))
         has_requests = for_requests and bool(wait_set.get_ready_entities("service"))
         return ReadyEntities(
