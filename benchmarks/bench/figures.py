@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.bench.results import Results
 from benchmarks.bench.targets import STEPS
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES
 
 
 def steps_figure(results: Results) -> Figure:

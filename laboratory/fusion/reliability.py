@@ -24,7 +24,7 @@ from laboratory.fusion.options import make_parser, parsed, report_progress
 from laboratory.fusion.score_table import score_table
 from laboratory.stress import Reliability, Result, run_battery, variant_system
 from vehicle_pf_tracker.cli.main import exit_status
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES
 from vehicle_pf_tracker.evaluation.tables import markdown
 from vehicle_pf_tracker.results.output_files import write_text
 

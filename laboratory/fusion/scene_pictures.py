@@ -26,7 +26,7 @@ from laboratory.scenes import make_scene
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import frame_size
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.results.output_files import make_folder, replacing
 from vehicle_pf_tracker.scenes.scene import SceneFrame

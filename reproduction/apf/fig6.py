@@ -17,8 +17,8 @@ from reproduction.apf.systems import APF_RIVALS, INTERPRETATIONS, SIX_SYSTEMS
 from reproduction.drawing.bands import BANDS_NOTE, draw_band, legend_of, log_errors
 from reproduction.drawing.shading import shade_occlusions
 from reproduction.numbers import median_and_range
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES
 from vehicle_pf_tracker.evaluation.occlusion_scores import SETTLING_FRAMES
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 _PLACE = "section IV, figure 6"

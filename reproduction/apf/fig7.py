@@ -14,7 +14,7 @@ from reproduction.apf import video3
 from reproduction.apf.systems import APF_RIVALS, INTERPRETATIONS, SIX_SYSTEMS
 from reproduction.drawing.shading import shade_occlusions
 from reproduction.numbers import counted, share
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 _PLACE = "section IV, figure 7"

@@ -12,7 +12,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vehicle_pf_tracker.evaluation.plots import Style
+from vehicle_pf_tracker.evaluation.line_styles import Style
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX, Scores
 
 _QUARTILES = 25, 50, 75

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES
 
 OCCLUSION_SHADES = {
     "total": "0.84",

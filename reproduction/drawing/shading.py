@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import Normal, Stroke
 
 from vehicle_pf_tracker.core.truth import Occlusion
-from vehicle_pf_tracker.evaluation.plots import stretches
+from vehicle_pf_tracker.evaluation.occlusion_stretches import stretches
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 _SHADES = {Occlusion.PARTIAL: ("0.93", "partly hidden"), Occlusion.TOTAL: ("0.78", "hidden")}

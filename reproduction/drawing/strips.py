@@ -19,7 +19,7 @@ from matplotlib.patheffects import Normal, Stroke
 from reproduction.runs.cells import SceneChoice
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES, Style
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES, Style
 from vehicle_pf_tracker.evaluation.scores import Scores
 
 _VIEW = 260, 150

@@ -15,7 +15,7 @@ from reproduction.drawing.bands import BANDS_NOTE, draw_band, legend_of, log_err
 from reproduction.drawing.shading import shade_occlusions
 from reproduction.mfpf import systems as mfpf
 from reproduction.mfpf.systems import FOUR_SYSTEMS, MFPF, RIVALRIES, SINGLE_FEATURES
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES
 
 _PLACE = "section V, figures 5b to 15b"
 

@@ -17,7 +17,7 @@ from reproduction.mfpf import systems as mfpf
 from reproduction.mfpf.case_plots import draw_by_case
 from reproduction.mfpf.systems import FEATURE_NAMES, INTERPRETATIONS, MFPF
 from reproduction.numbers import counted, mean_and_spread, share
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES
 
 _PLACE = "section V, figures 5a to 15a"
 _RECOVERING = "case4", "case5"

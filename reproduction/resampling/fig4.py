@@ -15,7 +15,7 @@ from reproduction.drawing.bands import BANDS_NOTE, draw_band, legend_of, log_err
 from reproduction.drawing.shading import shade_occlusions
 from reproduction.numbers import median_and_range
 from reproduction.resampling import systems as resampling
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES
 
 _PLACE = "section VI, figure 4"
 _LOW = 15.0

@@ -15,7 +15,7 @@ from reproduction import experiment as ex
 from reproduction.drawing.shading import shade_occlusions
 from reproduction.numbers import median_and_range
 from reproduction.resampling import systems as resampling
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES, Style
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES, Style
 
 _PLACE = "section VI, figure 5"
 _MOST_PASSES = 20

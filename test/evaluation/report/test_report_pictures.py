@@ -6,9 +6,6 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from vehicle_pf_tracker.core.box import Box
-from vehicle_pf_tracker.core.truth import Occlusion, Truth
-from vehicle_pf_tracker.evaluation.plots import stretches
 from vehicle_pf_tracker.evaluation.report.figures import (
     FIGURE_COLOURS,
     LEAST_ERROR,
@@ -16,19 +13,6 @@ from vehicle_pf_tracker.evaluation.report.figures import (
     draw_errors,
     svg_element,
 )
-
-BOX = Box(100, 60, 20, 10)
-
-
-def truths(text):
-    """Truth from frame 1 on, by a letter each: n none, p partial, t total, - unknown."""
-    kinds = {"n": Occlusion.NONE, "p": Occlusion.PARTIAL, "t": Occlusion.TOTAL}
-    return {n: Truth(n, BOX, kinds[c]) for n, c in enumerate(text, start=1) if c != "-"}
-
-
-def test_stretches_of_one_kind():
-    assert stretches(truths("npttpn"), {Occlusion.TOTAL}) == [(3, 4)]
-    assert stretches(truths("npttpn"), {Occlusion.PARTIAL}) == [(2, 2), (5, 5)]
 
 
 def test_an_error_panel_draws_the_median_within_its_band():

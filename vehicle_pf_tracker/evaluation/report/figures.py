@@ -21,7 +21,8 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.evaluation.curves import Curve
 from vehicle_pf_tracker.evaluation.evaluation_folder import safe_name
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES, stretches
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES
+from vehicle_pf_tracker.evaluation.occlusion_stretches import stretches
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation, ScoredRun
 from vehicle_pf_tracker.evaluation.scores import CLOSE_PX

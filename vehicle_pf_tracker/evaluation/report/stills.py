@@ -23,7 +23,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.evaluation.evaluation_folder import Source
-from vehicle_pf_tracker.evaluation.plots import LINE_STYLES
+from vehicle_pf_tracker.evaluation.line_styles import LINE_STYLES
 from vehicle_pf_tracker.evaluation.report.aggregates import Aggregates
 from vehicle_pf_tracker.evaluation.report.figures import styled
 from vehicle_pf_tracker.evaluation.report.scored_runs import ScoredEvaluation
@@ -43,7 +43,7 @@ _WIDTH = 480
 _QUALITY = 80
 """Quality of JPEG: a choice between blocks around the drawn edges and the size of the page."""
 _TRUTH = (255, 255, 255)
-"""Colour of the true box: white, which no system has (`plots.LINE_STYLES`)."""
+"""Colour of the true box: white, which no system has (`line_styles.LINE_STYLES`)."""
 
 
 @dataclass(frozen=True, slots=True)
