@@ -7,8 +7,8 @@
 - `stress/`: difficult cases made of recordings, for every tracker (`python -m laboratory stress`)
 - `faults/`: faults given to nodes and commands (`python -m laboratory faults`)
 - `scenes/`: synthetic scenes that only these programs and the papers' experiments need
+- `uncertainty/`: fit of the covariances, and how often their ellipses hold the truth
 - `count_trust`: fit of how far a count can be trusted
-- `uncertainty`: fit of the covariances, with `covariance_coverage` and `coverage_picture`
 - `road_speed`, `target_contrast`: errors of speeds, and contrast of true and of thrown boxes
 - `readme_table`: README's table
 - `notes/`: what was tried and measured

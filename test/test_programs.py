@@ -109,8 +109,10 @@ LIBRARIES = {
     "laboratory.fusion.case_lists", "laboratory.fusion.objective", "laboratory.fusion.options",
     "laboratory.fusion.score_table", "laboratory.fusion.settings", "laboratory.traffic.decisions",
     "laboratory.__init__", "laboratory.fusion.__init__", "laboratory.traffic.__init__",
-    "laboratory.__main__", "laboratory.covariance_coverage",
-    "laboratory.coverage_picture", "laboratory.figure_files", "laboratory.result_store",
+    "laboratory.__main__", "laboratory.figure_files", "laboratory.result_store",
+    "laboratory.uncertainty.__init__", "laboratory.uncertainty.coverage",
+    "laboratory.uncertainty.fit", "laboratory.uncertainty.picture", "laboratory.uncertainty.runs",
+    "laboratory.uncertainty.table_module", "laboratory.uncertainty.tracking",
     "benchmarks.versus", "benchmarks.versus_worker",
 }  # fmt: skip
 """Modules that the programs import, and what .ci/run starts."""
@@ -210,13 +212,14 @@ def test_covariances_are_fitted_and_reported(tmp_path):
 
 
 def test_every_program_is_tried():
-    folders = "benchmarks", "laboratory", "laboratory.fusion", "laboratory.traffic"
+    rooms = ("fusion", "traffic", "uncertainty")
+    folders = "benchmarks", "laboratory", *(f"laboratory.{room}" for room in rooms)
     there = {
         f"{folder}.{path.stem}"
         for folder in folders
         for path in (ROOT / folder.replace(".", "/")).glob("*.py")
     }
-    assert {*PROGRAMS, "laboratory.uncertainty"} == there - LIBRARIES
+    assert {*PROGRAMS, "laboratory.uncertainty.__main__"} == there - LIBRARIES
 
 
 def test_every_experiment_is_reproduced(tmp_path):

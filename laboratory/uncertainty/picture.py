@@ -17,7 +17,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from laboratory.covariance_coverage import INSIDE_95, Runs
+from laboratory.uncertainty.runs import INSIDE_95, Runs
 from vehicle_pf_tracker.results.output_files import replacing
 from vehicle_pf_tracker.trackers.uncertainty_table import CALIBRATIONS
 

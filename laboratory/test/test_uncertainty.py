@@ -10,18 +10,11 @@ import pytest
 
 pytest.importorskip("scipy", reason="the extra evaluation is not installed")
 
-from laboratory.covariance_coverage import (
-    COVERAGE_COLUMNS,
-    INSIDE_95,
-    Runs,
-    fit,
-    fitted_table,
-    runs_of,
-)
-from laboratory.coverage_picture import draw
-from laboratory.road_speed import roads_of, settings_of
-from laboratory.scenes.road import RoadSceneParameters, camera_of
-from laboratory.uncertainty import rows_of
+from laboratory.uncertainty.fit import fit
+from laboratory.uncertainty.picture import draw
+from laboratory.uncertainty.runs import INSIDE_95, RUN_COLUMNS, Runs, runs_of
+from laboratory.uncertainty.table_module import fitted_table
+from laboratory.uncertainty.tracking import rows_of
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.configuration import SessionParameters
 from vehicle_pf_tracker.parameters.table import from_mapping
@@ -36,7 +29,7 @@ def test_runs_have_the_covariances_of_the_node(tmp_path):
     frames = list(make_scene("bridge", seed=1).frames())[:75]
     variant = VARIANTS["apf"]
     table = np.array(list(rows_of(variant, frames, 4)))
-    assert table.shape == (75, len(COVERAGE_COLUMNS))
+    assert table.shape == (75, len(RUN_COLUMNS))
     np.save(tmp_path / "apf.bridge.4.npy", table)
     squares, areas = Runs([tmp_path / "apf.bridge.4.npy"]).calibrated(CALIBRATIONS["apf"])
 
@@ -60,8 +53,8 @@ def test_runs_have_the_covariances_of_the_node(tmp_path):
 def made(folder: Path, name: str, seed: int) -> Path:
     """Run of errors from a known spread: 2 clouds while visible, growing while hidden."""
     rng = np.random.default_rng(seed)
-    table = np.zeros((800, len(COVERAGE_COLUMNS)))
-    column = {name: index for index, name in enumerate(COVERAGE_COLUMNS)}
+    table = np.zeros((800, len(RUN_COLUMNS)))
+    column = {name: index for index, name in enumerate(RUN_COLUMNS)}
     table[:, column["stamp"]] = np.arange(800) * 0.1
     table[:, column["xx"]] = table[:, column["yy"]] = rng.uniform(1, 9, 800)
     table[:, [column["width"], column["height"]]] = 20.0
@@ -104,22 +97,3 @@ def test_the_picture_is_drawn_without_runs_of_the_scene_that_it_shows(tmp_path):
 def test_folders_without_runs(tmp_path):
     with pytest.raises(InputError, match="has no runs"):
         runs_of(tmp_path)
-
-
-@pytest.mark.parametrize("mount", ["gantry", "mast"])
-def test_the_roads_of_a_scene_are_those_of_its_camera(mount):
-    camera = camera_of(RoadSceneParameters(mount=mount, lens="barrel"), 3)
-    roads = roads_of(camera, 3)
-    points = np.array([[0.0, 30.0], [2.0, 60.0]])
-    pixels = camera.plane.to_image(points)
-    exact = roads["camera"].plane(roads["camera"].lens, roads["camera"].pose)
-    assert exact.to_road(pixels) == pytest.approx(points, abs=1e-6)
-    read = roads["pairs"].plane(roads["pairs"].lens, None)
-    assert read.to_road(pixels) == pytest.approx(points, abs=0.8)
-    assert not np.allclose(read.to_road(pixels), points, atol=1e-3)
-
-
-def test_scenes_take_turns():
-    scenes = [settings_of(50.0, number) for number in range(12)]
-    kinds = {(one.vehicle, one.heading, one.mount, one.lens) for one in scenes}
-    assert len(kinds) == 12
