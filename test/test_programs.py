@@ -107,7 +107,9 @@ PROGRAMS = {
 }
 LIBRARIES = {
     "laboratory.fusion.case_lists", "laboratory.fusion.objective", "laboratory.fusion.options",
-    "laboratory.fusion.score_table", "laboratory.fusion.settings", "laboratory.traffic.decisions",
+    "laboratory.fusion.score_table", "laboratory.fusion.settings",
+    "laboratory.traffic.camera_clips", "laboratory.traffic.decision_table",
+    "laboratory.traffic.decisions", "laboratory.traffic.trials",
     "laboratory.__init__", "laboratory.fusion.__init__", "laboratory.traffic.__init__",
     "laboratory.__main__", "laboratory.figure_files", "laboratory.result_store",
     "laboratory.uncertainty.__init__", "laboratory.uncertainty.coverage",

@@ -5,8 +5,9 @@
 
 import pytest
 
+from laboratory.traffic.camera_clips import read_clip
+from laboratory.traffic.decision_table import best_for_others, row
 from laboratory.traffic.decisions import FITTED_DECISIONS, Decision
-from laboratory.traffic.fit import best_for_others, read_clip, row
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED_THRESHOLDS
 

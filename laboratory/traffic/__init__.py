@@ -5,10 +5,12 @@
 
 Each is run by its name, as `python -m laboratory.traffic.fit`:
 
-- `fit`: its `decisions` and those of its detectors, judged on cameras left out
+- `fit`: its decisions and those of its detectors, judged on cameras left out
 - `score`: files of tracks against truth, beside baselines
 - `perturbed`: it and the baselines on detections made worse
 - `spread`: what changes of no meaning do to its scores
 - `clips`: the identity of single vehicles with truth
 - `occluders`: whether it says rightly who hides a vehicle
+
+What `fit` tries are `decisions`, in `trials` over `camera_clips`; the `decision_table` judges them.
 """
