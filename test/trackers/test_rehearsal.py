@@ -15,7 +15,7 @@ from vehicle_pf_tracker.trackers.rehearsal import rehearse
 
 PROGRAM = """
 import sys
-from vehicle_pf_tracker.image.kernels.kernel import kernels_of
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import kernels_of
 from vehicle_pf_tracker.trackers.registry import VARIANTS
 from vehicle_pf_tracker.trackers.rehearsal import rehearse
 variant = VARIANTS[sys.argv[1]]

@@ -10,7 +10,5 @@ modules of compiled functions: `numba_placing` (part of a frame that windows cov
 `numba_edges` and `numba_counts` (edge points), `numba_mean_shift`, `numba_cells` (oriented
 gradients) and `numba_row_waves` (a part of Fourier transforms), with types from `numba_types`.
 
-A `kernel` is compiled when it is first called (`compilation`, by numba).
-Its `object_code` is kept on disk (`kernel_store`), and `linking` makes a function of it in later
-processes, whose first `arguments` are checked.
+`toolchain/` compiles each kernel when it is first called, and keeps it for later processes.
 """

@@ -156,5 +156,5 @@ def load_numba() -> Kernels:
 def _are_kept() -> bool:
     """Tell whether kernels were compiled before, by this numba for this processor."""
     # Imported late: llvmlite comes with numba.
-    kept: bool = importlib.import_module(f"{__package__}.kernel_store").has_any()
+    kept: bool = importlib.import_module(f"{__package__}.toolchain.kernel_store").has_any()
     return kept

@@ -19,7 +19,7 @@ from vehicle_pf_tracker.image.correlation.gradient_cells import (
     Grey,
     direction_of,
 )
-from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import compiled, inlined
 
 _UNSIGNED = DIRECTIONS // 2
 """Directions of gradients whose sign does not count."""

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle_pf_tracker.image.kernels.kernel import compiled
 from vehicle_pf_tracker.image.kernels.numba_similarity import overlap
 from vehicle_pf_tracker.image.kernels.numba_types import COUNTS, SCALE, Counts, Pixels, Reals, Scale
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import compiled
 
 
 @compiled("float64[::1]", COUNTS, "int64[::1]", SCALE)

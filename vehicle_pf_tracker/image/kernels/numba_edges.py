@@ -11,7 +11,6 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_gradients import IMAGES, Images, Strengths
 from vehicle_pf_tracker.image.kernels.numba_placing import extent_of
 from vehicle_pf_tracker.image.kernels.numba_types import (
@@ -23,6 +22,7 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Rectangles,
     Table,
 )
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import compiled, inlined
 from vehicle_pf_tracker.image.windows.gradients import DIRECTION_BINS
 
 Points: TypeAlias = tuple[Strengths, Table, Strengths]

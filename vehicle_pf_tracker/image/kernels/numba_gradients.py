@@ -10,7 +10,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.image.kernels.kernel import compiled
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import compiled
 from vehicle_pf_tracker.image.windows.window import Grey
 
 Slopes: TypeAlias = npt.NDArray[np.int16]

@@ -16,7 +16,6 @@ import numpy as np
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.correlation.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.kernels import (
-    kernel,
     numba_cells,
     numba_counts,
     numba_edges,
@@ -36,6 +35,7 @@ from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
     pair_cells,
 )
 from vehicle_pf_tracker.image.kernels.numba_types import Cells, Counts, Pixels, Reals, Table
+from vehicle_pf_tracker.image.kernels.toolchain import kernel
 from vehicle_pf_tracker.image.windows.colour import CHANNEL_BINS, JointColour, RgbMarginals
 from vehicle_pf_tracker.image.windows.gradients import DIRECTION_BINS, GradientDirections
 from vehicle_pf_tracker.image.windows.similarity import Histogram, Reference

@@ -12,7 +12,6 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_types import (
     CELL_PLANES,
     REALS,
@@ -21,6 +20,7 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Pixels,
     Reals,
 )
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import compiled, inlined
 from vehicle_pf_tracker.image.windows.mean_shift import epanechnikov
 from vehicle_pf_tracker.image.windows.window import Window
 

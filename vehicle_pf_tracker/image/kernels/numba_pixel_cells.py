@@ -14,7 +14,6 @@ import math
 import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.kernels.kernel import compiled
 from vehicle_pf_tracker.image.kernels.numba_types import (
     BIN_TABLE,
     CELL_PLANES,
@@ -23,6 +22,7 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Cells,
     Table,
 )
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import compiled
 from vehicle_pf_tracker.image.windows.similarity import Histogram
 from vehicle_pf_tracker.image.windows.window import Grey
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_types import (
     EXTENT,
     PAIR,
@@ -16,6 +15,7 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Extent,
     Pixels,
 )
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import compiled, inlined
 from vehicle_pf_tracker.image.windows.window import Positions
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from vehicle_pf_tracker.image.correlation.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.correlation.row_waves import RowWaves, Spectrum
-from vehicle_pf_tracker.image.kernels.kernel import compiled
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import compiled
 
 _PAIRS = "float32[:, :, ::1]"
 """Real and imaginary parts by turns along x, (channels, n, n + 2)."""

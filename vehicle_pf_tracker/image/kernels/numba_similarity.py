@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
-from vehicle_pf_tracker.image.kernels.kernel import inlined
 from vehicle_pf_tracker.image.kernels.numba_types import Counts, Reals
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import inlined
 
 
 @inlined

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle_pf_tracker.image.kernels.kernel import inlined
 from vehicle_pf_tracker.image.kernels.numba_similarity import overlap
 from vehicle_pf_tracker.image.kernels.numba_types import (
     Cells,
@@ -24,6 +23,7 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Reals,
     Scale,
 )
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import inlined
 
 # Costs, roughly in cycles; they decide about the way to a result, and not about the result.
 _PIXEL = 4

@@ -12,7 +12,6 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
 from vehicle_pf_tracker.image.kernels.numba_pixel_cells import joint_cells
 from vehicle_pf_tracker.image.kernels.numba_placing import extent_of, place_windows
 from vehicle_pf_tracker.image.kernels.numba_similarity import overlap
@@ -33,6 +32,7 @@ from vehicle_pf_tracker.image.kernels.numba_types import (
     Scale,
     Table,
 )
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import compiled, inlined
 from vehicle_pf_tracker.image.windows.window import Positions
 
 

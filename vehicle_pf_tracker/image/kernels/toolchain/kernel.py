@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from types import FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
-from vehicle_pf_tracker.image.kernels.arguments import ArrayForm, check
+from vehicle_pf_tracker.image.kernels.toolchain.arguments import ArrayForm, check
 
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 

@@ -10,9 +10,9 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.kernels.arguments import ArrayForm, check
-from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined, notices
-from vehicle_pf_tracker.image.kernels.object_code import ObjectCode, from_bytes, to_bytes
+from vehicle_pf_tracker.image.kernels.toolchain.arguments import ArrayForm, check
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import compiled, inlined, notices
+from vehicle_pf_tracker.image.kernels.toolchain.object_code import ObjectCode, from_bytes, to_bytes
 
 REALS = ArrayForm(0, None, np.dtype("<f8"), 1, is_packed=True, is_written=False)
 COUNTS = ArrayForm(2, 0, np.dtype("<i4"), 2, is_packed=False, is_written=True)
@@ -61,7 +61,7 @@ def module():
 
 def test_code_follows_from_the_texts_numbers_and_types(module, monkeypatch):
     texts = {}
-    name = "vehicle_pf_tracker.image.kernels.kernel.inspect.getsource"
+    name = "vehicle_pf_tracker.image.kernels.toolchain.kernel.inspect.getsource"
     monkeypatch.setattr(name, lambda module: texts[module.__name__])
     texts[module.__name__] = "text"
     before = module.twice.source
@@ -81,7 +81,7 @@ def test_a_change_of_a_part_in_another_module_counts(module, monkeypatch):
     exec("def half(number): return number", vars(other))
     monkeypatch.setitem(sys.modules, other.__name__, other)
     texts = {module.__name__: "text", other.__name__: "text"}
-    name = "vehicle_pf_tracker.image.kernels.kernel.inspect.getsource"
+    name = "vehicle_pf_tracker.image.kernels.toolchain.kernel.inspect.getsource"
     monkeypatch.setattr(name, lambda module: texts[module.__name__])
     module.half = inlined(other.half)
     before = module.twice.source
@@ -91,14 +91,14 @@ def test_a_change_of_a_part_in_another_module_counts(module, monkeypatch):
 
 @pytest.fixture
 def without_notices(monkeypatch):
-    monkeypatch.setattr("vehicle_pf_tracker.image.kernels.kernel._notices", [])
+    monkeypatch.setattr("vehicle_pf_tracker.image.kernels.toolchain.kernel._notices", [])
 
 
 def test_a_numba_whose_code_cannot_be_taken_or_linked_is_told_of(
     module, monkeypatch, without_notices
 ):
     pytest.importorskip("numba", reason="numba is not installed")
-    room = "vehicle_pf_tracker.image.kernels"
+    room = "vehicle_pf_tracker.image.kernels.toolchain"
     linking = pytest.importorskip(f"{room}.linking")
     monkeypatch.setattr(f"{room}.kernel_store.read", lambda *key: CODE)
 

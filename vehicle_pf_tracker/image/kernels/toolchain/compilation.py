@@ -19,8 +19,8 @@ from typing import Any
 import numba
 import numpy as np
 
-from vehicle_pf_tracker.image.kernels.arguments import ArrayForm
-from vehicle_pf_tracker.image.kernels.object_code import ObjectCode
+from vehicle_pf_tracker.image.kernels.toolchain.arguments import ArrayForm
+from vehicle_pf_tracker.image.kernels.toolchain.object_code import ObjectCode
 
 _FASTMATH = {"reassoc", "contract"}
 """Sums may be reordered, so that loops are vectorised, and products fused into them."""

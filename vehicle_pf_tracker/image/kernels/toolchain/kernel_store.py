@@ -19,7 +19,7 @@ from pathlib import Path
 import llvmlite.binding as llvm
 import numpy as np
 
-from vehicle_pf_tracker.image.kernels.object_code import ObjectCode, from_bytes, to_bytes
+from vehicle_pf_tracker.image.kernels.toolchain.object_code import ObjectCode, from_bytes, to_bytes
 
 _MADE_BY = ("compilation.py", "object_code.py", "arguments.py")
 """Modules whose change makes other object code, or another file of it."""
@@ -92,7 +92,8 @@ def has_any() -> bool:
 
 def _folders() -> Iterator[Path]:
     """List the folders to look in and to write to, the first one first."""
-    here = Path(__file__).parent
+    # The room of the kernels, which stand beside this one.
+    here = Path(__file__).parents[1]
     # Two installations that share a folder would else remove each other's as older ones.
     own = hashlib.sha256(os.fsencode(here)).hexdigest()[:_DIGITS]
     chosen = os.environ.get("NUMBA_CACHE_DIR")

@@ -12,20 +12,20 @@ from pathlib import Path
 import pytest
 
 import vehicle_pf_tracker
-from vehicle_pf_tracker.image.kernels.object_code import ObjectCode
+from vehicle_pf_tracker.image.kernels.toolchain.object_code import ObjectCode
 
 kernel_store = pytest.importorskip(
-    "vehicle_pf_tracker.image.kernels.kernel_store", reason="numba is not installed"
+    "vehicle_pf_tracker.image.kernels.toolchain.kernel_store", reason="numba is not installed"
 )
 
 PROGRAM = """
 import sys
-from vehicle_pf_tracker.image.kernels import kernel
+from vehicle_pf_tracker.image.kernels.toolchain import kernel
 from vehicle_pf_tracker.image.kernels.numba_twice import twice
 print(twice(4), "compiled" if "numba" in sys.modules else "linked", *kernel.notices())
 """
 TWICE = """
-from vehicle_pf_tracker.image.kernels.kernel import compiled, inlined
+from vehicle_pf_tracker.image.kernels.toolchain.kernel import compiled, inlined
 
 FACTOR = 2
 

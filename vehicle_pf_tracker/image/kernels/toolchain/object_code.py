@@ -9,7 +9,7 @@ import hashlib
 import json
 from typing import NamedTuple
 
-from vehicle_pf_tracker.image.kernels.arguments import ArrayForm, form_from_json
+from vehicle_pf_tracker.image.kernels.toolchain.arguments import ArrayForm, form_from_json
 
 _SUM_BYTES = hashlib.sha256().digest_size
 """Length of the sum that a file begins with."""

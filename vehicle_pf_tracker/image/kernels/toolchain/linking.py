@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 import llvmlite.binding as llvm
 import numpy as np
 
-from vehicle_pf_tracker.image.kernels.object_code import ObjectCode
+from vehicle_pf_tracker.image.kernels.toolchain.object_code import ObjectCode
 
 
 class LinkError(RuntimeError):
