@@ -76,13 +76,6 @@ def behind_a_sign(returning):
         yield tracker.step(picture) if time else tracker.start(picture, box)
 
 
-def test_a_hidden_vehicle_does_not_fall_behind_by_what_responds_on_the_occluder():
-    estimates = list(behind_a_sign(painted((60, 60, 0))))
-    off = [e.position[0] - (44 + 2 * time) for time, e in enumerate(estimates)]
-    assert {e.mode for e in estimates[45:60]} == {Mode.OCCLUDED}
-    assert np.abs(off[45:60]).max() < 1
-
-
 def test_what_comes_out_in_another_paint_is_another_vehicle():
     same = list(behind_a_sign(painted((60, 60, 0))))[-10:]
     blue = list(behind_a_sign(painted((20, 40, 60))))[-10:]

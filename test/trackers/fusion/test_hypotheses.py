@@ -8,13 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.trackers.fusion.hypotheses import (
-    ACROSS_LANES,
-    FASTEST_GROWTH,
-    Hypotheses,
-    hidden_hypotheses,
-)
-from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion
+from vehicle_pf_tracker.trackers.fusion.hypotheses import FASTEST_GROWTH, Hypotheses
 
 
 def hypotheses(visible, weights, positions=None):
@@ -90,17 +84,6 @@ def test_noise_of_driving_has_the_deviations_asked_for():
     assert predicted.velocities.std(axis=0) == pytest.approx([1.0, 1.0], rel=0.03)
     # Positions vary by their own noise, 3 * 2, and by the velocity's, 4 * 1.
     assert predicted.positions.std(axis=0) == pytest.approx(np.hypot([6.0, 6.0], 4.0), rel=0.03)
-
-
-def test_hidden_hypotheses_spread_around_the_fitted_path():
-    path = PerspectiveMotion(np.array([50.0, 20.0]), np.array([2.0, 1.0]), 0.0)
-    rng = np.random.default_rng(0)
-    hidden = hidden_hypotheses(rng, path, 3.0, 60, 40.0, 0.005)
-    for _ in range(40):
-        hidden = hidden.predicted(rng, 1.0, (0.0, 0.2), ACROSS_LANES)
-    assert hidden.mean == pytest.approx([136, 63])
-    assert hidden.mean_velocity == pytest.approx([2, 1])
-    assert hidden.spread > 20
 
 
 def test_resampling_waits_until_few_carry_the_weight():

@@ -153,9 +153,6 @@ class Hypotheses(NamedTuple):
             growths = np.minimum(np.maximum(growths, -FASTEST_GROWTH), FASTEST_GROWTH)
         noise = sample_normal(rng, count, 1.0)
         if across != 1.0:
-            # Nothing calls the mean of hidden ones back: by that of so few draws it would be off by
-            # a tenth of the size after 40 frames.
-            noise -= noise.mean(axis=0)
             # One common heading: where the vehicle stands, those of single ones would be noise.
             noise = along_heading(noise, self.mean_velocity, across)
         velocities = velocities + noise * (sigmas[1] * root)
@@ -243,8 +240,6 @@ def hidden_hypotheses(
     # 1. Positions: the fitted path, with an error that grows since the last clear sighting.
     velocity = motion.velocity_at(age)
     draws = rng.normal(size=(2, count, 2))
-    # Of so few, the mean is off; the hypotheses shall spread around the fit.
-    draws -= draws.mean(axis=1, keepdims=True)
     spread = (_PREDICTION_SIGMA[0] + _PREDICTION_SIGMA[1] * age) * extent
     positions = motion.position_at(age) + draws[0] * spread
     # 2. Velocities: it may have braked as it was hidden, in proportion to its size; and the fit

@@ -207,12 +207,6 @@ def _weighed(state: State, climb: tuple[int, float], step: Step) -> tuple[State,
         best = max(results, key=lambda result: state.particles.evidence(result[2]))
     view, positions, ratios, scale = best
     particles = state.particles._replace(positions=positions).weighed(ratios)
-    # What answers close by mostly stands: moved to it in each frame, all would fall behind the
-    # vehicle. So hidden ones gather around their mean, which keeps to the prediction.
-    if not state.is_visible:
-        drift = state.particles.weights @ (positions - state.particles.positions)
-        positions = positions - (1 - particles.probability_visible) * drift
-        particles = particles._replace(positions=positions)
     # While hidden it stays the predicted one: taken over from clutter, it would drift.
     size = step.bounded(scale * state.size) if particles.probability_visible > 0.5 else state.size
     return state._replace(particles=particles, size=size), view
