@@ -6,9 +6,8 @@
 import csv
 import os
 import signal
-import subprocess
-import sys
 import time
+from tempfile import TemporaryFile
 
 import pytest
 from small_recordings import record
@@ -40,45 +39,60 @@ def has_begun(folder):
     return any(recordings) or any(images) or any(folder.glob(".*.mp4"))
 
 
-def signalled(folder, number, has_begun, *words, code=CODE, status=None):
-    """Run a command in `folder`, send it a signal when it has begun; return what it printed."""
-    process = subprocess.Popen(
-        [sys.executable, "-c", code, *words], stderr=subprocess.PIPE, text=True, cwd=folder,
-        env=unmeasured_environment(),
-    )  # fmt: skip
-    try:
-        deadline = time.monotonic() + 60
-        while not has_begun():
-            assert process.poll() is None, process.communicate()
-            assert time.monotonic() < deadline
-            time.sleep(0.002)
-        process.send_signal(number)
-        _, told = process.communicate(timeout=60)
-    finally:
-        process.kill()
-    assert "Traceback" not in told
-    assert process.returncode == (ENDINGS[number] if status is None else status)
-    return told
+@pytest.fixture
+def signalled(unmeasured_python, tmp_path):
+    """Return a function that runs a command in `tmp_path`, and sends it a signal when it has begun.
+
+    What it returns is what the command printed of errors.
+    """
+
+    def run(number, has_begun, *words, code=CODE, status=None):
+        with TemporaryFile("w+") as output, TemporaryFile("w+") as errors:
+            process = unmeasured_python.run(
+                code, words, unmeasured_environment(), output, errors, tmp_path
+            )
+            try:
+                deadline = time.monotonic() + 60
+                while not has_begun():
+                    assert process.poll() is None, errors.seek(0) or errors.read()
+                    assert time.monotonic() < deadline
+                    time.sleep(0.002)
+                process.send_signal(number)
+                process.wait(60)
+            finally:
+                process.kill()
+            errors.seek(0)
+            told = errors.read()
+        assert "Traceback" not in told
+        assert process.returncode == (ENDINGS[number] if status is None else status)
+        return told
+
+    return run
 
 
-def end_in_the_middle(folder, number, *words):
+@pytest.fixture
+def end_in_the_middle(signalled, tmp_path):
     """Send a signal when the command's hidden file has some data; return what is left."""
-    signalled(folder, number, lambda: has_begun(folder), *words)
-    return sorted(path.name for path in folder.iterdir())
+
+    def run(number, *words):
+        signalled(number, lambda: has_begun(tmp_path), *words)
+        return sorted(path.name for path in tmp_path.iterdir())
+
+    return run
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_scene_that_is_not_done_leaves_nothing(tmp_path, number):
-    assert end_in_the_middle(tmp_path, number, "synth", "highway", "rec") == []
+def test_a_scene_that_is_not_done_leaves_nothing(end_in_the_middle, number):
+    assert end_in_the_middle(number, "synth", "highway", "rec") == []
 
 
-def test_a_video_that_is_not_done_leaves_nothing(tmp_path):
-    assert end_in_the_middle(tmp_path, signal.SIGTERM, "synth", "highway", "a.mp4") == []
+def test_a_video_that_is_not_done_leaves_nothing(end_in_the_middle):
+    assert end_in_the_middle(signal.SIGTERM, "synth", "highway", "a.mp4") == []
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_an_import_that_is_not_done_leaves_nothing(tmp_path, clip, number):
-    assert end_in_the_middle(tmp_path, number, "import", str(clip), "rec") == []
+def test_an_import_that_is_not_done_leaves_nothing(end_in_the_middle, clip, number):
+    assert end_in_the_middle(number, "import", str(clip), "rec") == []
 
 
 STUCK = """
@@ -99,11 +113,13 @@ counted_vehicles.detector_maker = lambda *_: Stuck
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_network_that_never_returns_is_left_with_what_was_tracked(tmp_path, clip, number):
+def test_a_network_that_never_returns_is_left_with_what_was_tracked(
+    signalled, tmp_path, clip, number
+):
     (tmp_path / "net.onnx").touch()
     words = ["traffic", str(clip), "--model", "net.onnx", "-o", "out"]
     has_begun = (tmp_path / "stuck").exists
-    told = signalled(tmp_path, number, has_begun, *words, code=STUCK + CODE, status=128 + number)
+    told = signalled(number, has_begun, *words, code=STUCK + CODE, status=128 + number)
     assert "a signal ended the run after 40 of " in told
     with (tmp_path / "out" / "tracks.csv").open() as file:
         assert max(int(row["frame"]) for row in csv.DictReader(file)) == 40
@@ -136,11 +152,9 @@ cv2.VideoCapture = Stalled
     ("words", "table"),
     [(["run", "0", "--target", "2,40,30,20"], "estimates.csv"), (["traffic", "0"], "tracks.csv")],
 )
-def test_a_camera_that_stalls_is_left_with_what_was_tracked(tmp_path, words, table):
+def test_a_camera_that_stalls_is_left_with_what_was_tracked(signalled, tmp_path, words, table):
     stuck = tmp_path / "stuck"
-    signalled(
-        tmp_path, signal.SIGINT, stuck.exists, *words, "-o", "out", code=STALLED + CODE, status=0
-    )
+    signalled(signal.SIGINT, stuck.exists, *words, "-o", "out", code=STALLED + CODE, status=0)
     with (tmp_path / "out" / table).open() as file:
         assert max(int(row["frame"]) for row in csv.DictReader(file)) == 40
     assert (tmp_path / "out" / "run.json").is_file()
@@ -179,12 +193,12 @@ def estimates(folder):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_what_was_ended_goes_on_and_comes_out_the_same(tmp_path, number):
+def test_what_was_ended_goes_on_and_comes_out_the_same(signalled, tmp_path, number):
     record(tmp_path / "bag")
     words = ["evaluate", str(tmp_path / "bag"), "--variants", "pf,ms", "--seeds", "60"]
     words += ["--workers", "2", "-o"]
     ended, whole = tmp_path / "ended", tmp_path / "whole"
-    told = signalled(tmp_path, number, lambda: len(estimates(ended)) >= 5, *words, str(ended))
+    told = signalled(number, lambda: len(estimates(ended)) >= 5, *words, str(ended))
     assert ("interrupted; run the same command to resume" in told) == (number == signal.SIGINT)
     before = {
         path: path.stat().st_mtime_ns for path in ended.glob("cells/*/*/seed-*/estimates.csv")

@@ -35,6 +35,15 @@ TIMEOUT = 120.0
 """Bound of every wait for a state, s: generous, since only a failure waits so long."""
 PATIENCE = 20.0
 """Time after which a process that does not end is killed, s."""
+LOADED = (
+    "vehicle_pf_tracker.cli.main",
+    "vehicle_pf_tracker.ros.executables",
+    "vehicle_pf_tracker.ros.node.tracker_node",
+    "vehicle_pf_tracker.ros.process",
+    "vehicle_pf_tracker.ros.traffic.traffic_node",
+    "vehicle_pf_tracker.trackers.papers.apf",
+)
+"""Modules that processes are forked with."""
 NO_ROS = "rclpy is not installed (pip install '.[ros]')"
 
 
@@ -197,7 +206,7 @@ class Process:
         process = cls.__new__(cls)
         process.log = log
         with log.open("w") as output:
-            process.popen = python.run(code, arguments, settings(), output)
+            process.popen = python.run(code, arguments, settings(), output, output)
         return process
 
     @property
@@ -236,7 +245,7 @@ def loaded_python(ros_domain, hangups):
     """The process that the others are forked from."""
     if rclpy is None:
         pytest.skip(NO_ROS)
-    python = LoadedPython(settings())
+    python = LoadedPython(LOADED, settings())
     yield python
     python.close()
 

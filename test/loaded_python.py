@@ -1,11 +1,11 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""A Python that has loaded ROS and the package, and runs each `-c CODE` in a fork of its own.
+"""A Python that has loaded some modules, and runs each `-c CODE` in a fork of its own.
 
-Loading both takes more of a processor than most of what the tests then ask of a node. Nothing is
-shared but code: each fork has its own ROS context, threads, signals, environment and exit status.
-Run as a program, this module is that Python.
+To load the package, ROS or Dask takes more of a processor than most of what the tests then ask of
+a process. Nothing is shared but code: each fork has its own ROS context, threads, signals,
+environment, output and exit status. Run as a program, this module is that Python.
 """
 
 from __future__ import annotations
@@ -20,19 +20,11 @@ import subprocess
 import sys
 import types
 import warnings
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import TextIO
+from typing import IO, Any
 
-MODULES = (
-    "vehicle_pf_tracker.cli.main",
-    "vehicle_pf_tracker.ros.executables",
-    "vehicle_pf_tracker.ros.node.tracker_node",
-    "vehicle_pf_tracker.ros.process",
-    "vehicle_pf_tracker.ros.traffic.traffic_node",
-    "vehicle_pf_tracker.trackers.papers.apf",
-)
-"""Loaded before the forks; none of them starts a thread."""
 LARGEST = 1 << 17
 """Bytes of a request: code, arguments and environment."""
 
@@ -56,18 +48,19 @@ class Forked:
             raise subprocess.TimeoutExpired("fork", timeout or 0.0)
         return status
 
-    def terminate(self) -> None:
-        """Ask it to end, if it runs."""
-        self._send(signal.SIGTERM)
-
-    def kill(self) -> None:
-        """End it, if it runs."""
-        self._send(signal.SIGKILL)
-
-    def _send(self, number: int) -> None:
+    def send_signal(self, number: int) -> None:
+        """Send it a signal, if it runs."""
         if self.poll() is None:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(self.pid, number)
+
+    def terminate(self) -> None:
+        """Ask it to end, if it runs."""
+        self.send_signal(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """End it, if it runs."""
+        self.send_signal(signal.SIGKILL)
 
     def _status(self, timeout: float | None) -> int | None:
         if self.returncode is None and select.select([self._reports], [], [], timeout)[0]:
@@ -77,21 +70,36 @@ class Forked:
 
 
 class LoadedPython:
-    """The process that forks, from the side of the tests."""
+    """The process that forks, from the side of the tests.
 
-    def __init__(self, environment: dict[str, str]) -> None:
+    Parameters
+    ----------
+    modules : sequence of str
+        What it loads; none of them may start a thread.
+    environment : dict
+        Its own environment, in which they are loaded.
+    """
+
+    def __init__(self, modules: Sequence[str], environment: dict[str, str]) -> None:
         self._socket, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with other:
-            command = [sys.executable, __file__, str(other.fileno())]
+            command = [sys.executable, __file__, str(other.fileno()), *modules]
             self._process = subprocess.Popen(command, env=environment, pass_fds=[other.fileno()])
 
     def run(
-        self, code: str, arguments: list[str], environment: dict[str, str], log: TextIO
+        self,
+        code: str,
+        arguments: Sequence[str],
+        environment: dict[str, str],
+        output: IO[Any],
+        errors: IO[Any],
+        folder: Path | None = None,
     ) -> Forked:
-        """Run `python -c CODE ARGUMENTS`; what it prints goes to the open file `log`."""
+        """Run `python -c CODE ARGUMENTS` in `folder`, printing to two open files."""
         reports, write = os.pipe()
-        request = [code, arguments, environment, str(Path.cwd())]
-        socket.send_fds(self._socket, [json.dumps(request).encode()], [log.fileno(), write])
+        request = [code, [*arguments], environment, str(folder or Path.cwd())]
+        files = [output.fileno(), errors.fileno(), write]
+        socket.send_fds(self._socket, [json.dumps(request).encode()], files)
         os.close(write)
         return Forked(reports)
 
@@ -105,27 +113,28 @@ def _next_in_a_fork(requests: socket.socket) -> tuple[str, list[str]] | None:
     """Fork for each request; return its code and arguments in the fork, None at the end."""
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     while True:
-        data, files, _, _ = socket.recv_fds(requests, LARGEST, 2)
+        data, files, _, _ = socket.recv_fds(requests, LARGEST, 3)
         if not data:
             with contextlib.suppress(ChildProcessError):
                 while True:
                     os.wait()
             return None
-        log, reports = files
+        output, errors, reports = files
         if os.fork() == 0:
             requests.close()
             _report(reports)
             signal.signal(signal.SIGINT, before)
-            os.dup2(log, 1)
-            os.dup2(log, 2)
-            os.close(log)
+            os.dup2(output, 1)
+            os.dup2(errors, 2)
+            os.close(output)
+            os.close(errors)
             code, arguments, environment, folder = json.loads(data)
             os.environ.clear()
             os.environ.update(environment)
             os.chdir(folder)
             return code, arguments
-        os.close(log)
-        os.close(reports)
+        for file in files:
+            os.close(file)
 
 
 def _report(reports: int) -> None:
@@ -142,7 +151,7 @@ def _report(reports: int) -> None:
 
 def _main() -> None:
     requests = socket.socket(fileno=int(sys.argv[1]))
-    for name in MODULES:
+    for name in sys.argv[2:]:
         import_module(name)
     with warnings.catch_warnings():
         # Python 3.12 warns of a fork beside threads: here those of BLAS, which it ends for a fork.
