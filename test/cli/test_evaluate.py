@@ -10,12 +10,13 @@ from vehicle_pf_tracker.cli.main import main
 from vehicle_pf_tracker.evaluation.grid.running import run_cell
 
 
-@pytest.fixture
-def bags(tmp_path):
-    (tmp_path / "bags").mkdir()
+@pytest.fixture(scope="module")
+def bags(tmp_path_factory):
+    """Two recordings, which nobody changes."""
+    folder = tmp_path_factory.mktemp("bags")
     for name in ("one", "two"):
-        record(tmp_path / "bags" / name)
-    return tmp_path / "bags"
+        record(folder / name)
+    return folder
 
 
 def in_this_process(cells):
@@ -25,10 +26,14 @@ def in_this_process(cells):
 
 @pytest.fixture(autouse=True)
 def _quick(request, monkeypatch):
-    """Start no processes, but in the test that is about them."""
-    if request.function is not test_a_folder_of_recordings_is_evaluated:
+    """Start no processes, and keep no figure as SVG, but in the tests that are about them."""
+    whole = test_a_folder_of_recordings_is_evaluated
+    if request.function is not whole:
         name = "vehicle_pf_tracker.cli.evaluate.runner_of"
         monkeypatch.setattr(name, lambda request: in_this_process)
+    if request.function not in (whole, test_restarts_have_columns_of_their_own):
+        name = "vehicle_pf_tracker.evaluation.report.page.svg_element"
+        monkeypatch.setattr(name, lambda drawn, number: "<svg/>")
 
 
 def evaluate(out, *words):
