@@ -41,8 +41,11 @@ WEIGHED_EVERY = 10.0
 """Seconds from one look at the memory to the next: six points a minute show growth well."""
 LATE = 0.005
 """Seconds to listen before an image that is late: time for the some eight answers to one image."""
-LAST_ANSWERS = 2.0
-"""Seconds to wait for answers after the last image."""
+LAST_ANSWERS = 5.0
+"""Seconds without an answer, after the last image, that end the wait for others: nodes that are
+behind on a busy machine answer meanwhile."""
+SECOND_ANSWERS = 1.0
+"""Seconds in which a second answer to the last images would come."""
 _DEPTH, _LONG_DEPTH = 10, 100
 """Images that wait for a node: two thirds of a second of a camera, and more than any pause."""
 
@@ -159,10 +162,24 @@ class Soak:
             ledger.hear()
         self._numbers.hear()
 
+    @property
+    def _answered(self) -> int:
+        return sum(ledger.answered for ledger in self._ledgers.values())
+
+    @property
+    def _unanswered(self) -> int:
+        return sum(ledger.unanswered for ledger in self._ledgers.values())
+
     def _hear_last(self) -> None:
+        heard = self._answered
         deadline = time.monotonic() + LAST_ANSWERS
-        while time.monotonic() < deadline:
+        while self._unanswered and time.monotonic() < deadline:
             self._hear(0.02)
+            if self._answered > heard:
+                heard = self._answered
+                deadline = time.monotonic() + LAST_ANSWERS
+        # No second answers follow.
+        self._hear(SECOND_ANSWERS)
         self._numbers.close()
 
 

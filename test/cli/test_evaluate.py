@@ -26,14 +26,10 @@ def in_this_process(cells):
 
 @pytest.fixture(autouse=True)
 def _quick(request, monkeypatch):
-    """Start no processes, and keep no figure as SVG, but in the tests that are about them."""
-    whole = test_a_folder_of_recordings_is_evaluated
-    if request.function is not whole:
+    """Start no processes, but in the test that is about them."""
+    if request.function is not test_a_folder_of_recordings_is_evaluated:
         name = "vehicle_pf_tracker.cli.evaluate.runner_of"
         monkeypatch.setattr(name, lambda request: in_this_process)
-    if request.function not in (whole, test_restarts_have_columns_of_their_own):
-        name = "vehicle_pf_tracker.evaluation.report.page.svg_element"
-        monkeypatch.setattr(name, lambda drawn, number: "<svg/>")
 
 
 def evaluate(out, *words):

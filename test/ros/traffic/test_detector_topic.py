@@ -229,7 +229,8 @@ def test_the_memory_of_a_flood_is_freed(bench, vision, start_node, monkeypatch):
     reliable = "qos_overrides./image.subscription.reliability:=reliable"
     words = ["detector.kind:=topic", "detector.max_wait:=20.0", "queue_depth:=50", reliable]
     arguments = [word for one in words for word in ("-p", one)]
-    node = start_node("traffic", *arguments)
+    # Fresh: one that is forked has looked for vision_msgs without this path.
+    node = start_node("traffic", *arguments, fresh=True)
     node.wait_for_output("ready")
     camera = bench.publisher(Image, "image", QUEUE)
     detector = bench.publisher(vision.Detection2DArray, "detections", QUEUE)
