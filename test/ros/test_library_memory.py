@@ -63,3 +63,15 @@ def test_what_the_loader_changed_is_kept(monkeypatch, tmp_path):
     found = list(library_memory.unchanged_areas("libone"))
     assert found == [(0x1000, 0x2000, 4)]
     assert not list(library_memory.unchanged_areas("libother"))
+
+
+def test_what_a_system_does_not_say_is_taken_for_changed(monkeypatch, tmp_path):
+    smaps = tmp_path / "smaps"
+    smaps.write_text("1000-2000 r-xp 00000000 fe:00 1   /lib/libone.so\nRss: 4 kB\nSwap: 0 kB\n")
+    monkeypatch.setattr(library_memory, "SMAPS", smaps)
+    assert not list(library_memory.unchanged_areas("libone"))
+
+
+def test_a_list_of_pages_that_cannot_be_read_gives_nothing_back(monkeypatch, tmp_path):
+    monkeypatch.setattr(library_memory, "SMAPS", tmp_path)  # a folder, which no user can read
+    assert library_memory.give_back_library("_multiarray_umath") == 0

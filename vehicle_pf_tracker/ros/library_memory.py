@@ -53,12 +53,16 @@ def give_back_library(name: str) -> int:
     int
         Resident memory of these pages before, kB; 0 where the system cannot take them.
     """
-    advise = getattr(ctypes.CDLL(None), "madvise", None)
     advice = getattr(mmap, "MADV_DONTNEED", None)
-    if advise is None or advice is None or not SMAPS.exists():
+    try:
+        areas = list(unchanged_areas(name))
+    except OSError:  # no Linux, or a container that hides it
+        return 0
+    advise = getattr(ctypes.CDLL(None), "madvise", None)
+    if advise is None or advice is None:
         return 0
     given = 0
-    for area in unchanged_areas(name):
+    for area in areas:
         size = ctypes.c_size_t(area.end - area.start)
         if advise(ctypes.c_void_p(area.start), size, advice) == 0:
             given += area.resident
@@ -71,6 +75,8 @@ def unchanged_areas(name: str) -> Iterator[Area]:
     for match in area.finditer(SMAPS.read_text()):
         start, end, permissions, lines = match.groups()
         sizes = {key: int(size) for key, size in _SIZE.findall(lines)}
-        # What the loader has changed, and then made read-only, is anonymous, or swapped out.
-        if "w" not in permissions and not sizes["Anonymous"] and not sizes["Swap"]:
-            yield Area(int(start, 16), int(end, 16), sizes["Rss"])
+        # What the loader has changed, and then made read-only, is anonymous, or swapped out; where
+        # the system does not say, it may be.
+        changed = sizes.get("Anonymous", 1) + sizes.get("Swap", 1)
+        if "w" not in permissions and not changed:
+            yield Area(int(start, 16), int(end, 16), sizes.get("Rss", 0))
