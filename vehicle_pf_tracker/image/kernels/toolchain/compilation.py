@@ -21,6 +21,7 @@ import numpy as np
 
 from vehicle_pf_tracker.image.kernels.toolchain.arguments import ArrayForm
 from vehicle_pf_tracker.image.kernels.toolchain.object_code import ObjectCode
+from vehicle_pf_tracker.image.kernels.toolchain.whole_kernels import only_wholes
 
 _FASTMATH = {"reassoc", "contract"}
 """Sums may be reordered, so that loops are vectorised, and products fused into them."""
@@ -44,13 +45,10 @@ def compiled_by_numba(
         Tells the values of a module that stand for a function to be compiled; each has it as
         ``function``.
     """
-    namespaces: dict[str, dict[str, Any]] = {}
-    copy = _copied(function, is_part, namespaces)
-    # No C code calls the kernels, and a wrapper for it takes a twentieth of the compilation.
-    compiled: Callable[..., Any] = numba.njit(
-        [signature], fastmath=_FASTMATH, no_cfunc_wrapper=True
-    )(copy)
-    return compiled
+    with only_wholes():
+        compiled = _compiled(function, signature, is_part)
+    # Of a numba that names wrappers otherwise, there is no machine code of the whole either.
+    return compiled if _is_whole(compiled) else _compiled(function, signature, is_part)
 
 
 class OtherNumbaError(RuntimeError):
@@ -84,6 +82,27 @@ def object_code(compiled: Any) -> ObjectCode:
     called = tuple(name for name in symbols if not name.startswith("llvm."))
     return ObjectCode(
         code, names.llvm_cpython_wrapper_name, names.env_name, constants, arrays, called
+    )
+
+
+def _compiled(
+    function: FunctionType, signature: str, is_part: Callable[[Any], bool]
+) -> Callable[..., Any]:
+    """Compile a function; parameters as for `compiled_by_numba`."""
+    copy = _copied(function, is_part, {})
+    # No C code calls the kernels, and a wrapper for it takes a twentieth of the compilation.
+    compiled: Callable[..., Any] = numba.njit(
+        [signature], fastmath=_FASTMATH, no_cfunc_wrapper=True
+    )(copy)
+    return compiled
+
+
+def _is_whole(compiled: Any) -> bool:
+    """Test whether the wrapper that Python calls has machine code; so has Python itself."""
+    results = getattr(compiled, "overloads", {}).values()
+    return all(
+        result.library.get_pointer_to_function(result.fndesc.llvm_cpython_wrapper_name)
+        for result in results
     )
 
 

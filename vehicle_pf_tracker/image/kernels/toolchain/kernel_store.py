@@ -21,7 +21,7 @@ import numpy as np
 
 from vehicle_pf_tracker.image.kernels.toolchain.object_code import ObjectCode, from_bytes, to_bytes
 
-_MADE_BY = ("compilation.py", "object_code.py", "arguments.py")
+_MADE_BY = ("compilation.py", "whole_kernels.py", "object_code.py", "arguments.py")
 """Modules whose change makes other object code, or another file of it."""
 _DIGITS = 12
 """Digits of a sum in a file's name: some dozen files of a folder are told apart by far fewer."""
