@@ -254,7 +254,7 @@ def cuts(count):
 @pytest.mark.parametrize(
     ("frames", "detection", "roi", "why"),
     [
-        (still(10), "", "", "too few to learn what stands"),
+        (still(10), "", "", "too few to learn what stands, which takes 10 to 20 images"),
         (still(40), "", "", "nothing moves in them"),
         (cuts(90), "", "", "the camera moves"),
         (still(10), "99,-1,20,20,16,12,0.9", "", "det.txt has no box in them"),
@@ -269,9 +269,11 @@ def test_a_clip_without_vehicles_says_why(tmp_path, real, capsys, frames, detect
     words = ["--detections", str(tmp_path / "det.txt")] if detection else []
     words += ["--lines", str(tmp_path / "roi.yaml")] if roi else []
     assert main(["traffic", str(video), "-o", str(tmp_path / "out"), *words]) == 0
-    said = capsys.readouterr().out.splitlines()[0]
+    said, results = capsys.readouterr().out.splitlines()
     assert said.startswith(f"no vehicle was found in {len(frames)} frames: ")
     assert why in said
+    # A picture without vehicles shows no path.
+    assert results == f"results are in {tmp_path / 'out'}"
 
 
 def test_results_that_exist_are_told_before_a_network_is_loaded(run, capsys):

@@ -9,11 +9,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from failing import failing
+from traffic_samples import vehicle
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.counting.counter import Counter
 from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.following import counted_vehicles
 from vehicle_pf_tracker.following.traffic_following import TrafficRun
 from vehicle_pf_tracker.parameters.counting_plan import CountingLine, CountingPlan
 from vehicle_pf_tracker.recordings.bags.reader import StampedFrame
@@ -72,6 +74,15 @@ def test_a_stray_stamp_is_noted_with_its_frame(follow):
 def test_an_irregularity_that_lasts_is_noted_once(follow):
     run, _ = follow([5] * 300, detections=DRIVING)
     assert run.notices == ["frame 2: repeated stamp"]
+
+
+@pytest.mark.parametrize(("count", "words"), [(1, "1 vehicle"), (2, "2 vehicles")])
+def test_a_picture_tells_the_number_of_vehicles(follow, monkeypatch, count, words):
+    run, _ = follow([k * PERIOD_NS for k in range(2)])
+    run.session.found.images = 1
+    run.estimates = [vehicle(number, 160, 200) for number in range(count)]
+    monkeypatch.setattr(counted_vehicles, "frame_with_vehicles", lambda _, words, *rest: words)
+    assert run.drawn(FRAME, "0:00.0  ") == f"0:00.0  {words}"
 
 
 def test_very_many_notices_are_counted(follow):

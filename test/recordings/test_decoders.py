@@ -127,6 +127,21 @@ def test_what_is_no_video_is_said(tmp_path, content):
         open_source(path)
 
 
+def test_a_video_that_broke_off_is_told_from_what_is_none(tmp_path):
+    whole = encode(tmp_path / "v.mp4").read_bytes()
+    cut = tmp_path / "cut.mp4"
+    cut.write_bytes(whole[: whole.index(b"moov")])
+    empty = tmp_path / "empty.mp4"
+    empty.touch()
+    text = tmp_path / "text.mp4"
+    text.write_text("no video, and longer than a head")
+    for path, cause in ((cut, "; its end with the index .* missing"), (empty, "; it is empty")):
+        with pytest.raises(InputError, match=f"can be decoded{cause}"):
+            open_decoder(path)
+    with pytest.raises(InputError, match=r"can be decoded$"):
+        open_decoder(text)
+
+
 NAMES = [
     "2026-11-26T10:00:00.mp4",
     "cam:1.mp4",

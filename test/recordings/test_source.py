@@ -162,7 +162,7 @@ def test_frames_without_a_time_follow_at_the_rate(tmp_path, monkeypatch):
     state_times(monkeypatch, StatedTimes([0.0, math.nan, 200.0]))
     video.fps = 100.0
     assert [p.stamp_ns - START for p in video.frames()] == [0, 10_000_000, 200_000_000]
-    assert any("for 1 frames" in notice for notice in video.notices)
+    assert any("for 1 frame; it follows" in notice for notice in video.notices)
 
 
 def test_times_that_go_back_are_replaced_and_counted(tmp_path, monkeypatch):

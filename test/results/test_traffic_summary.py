@@ -139,7 +139,7 @@ def test_frames_of_another_size_begin_the_picture_anew(tmp_path):
 
 def test_the_road_is_blue_where_vehicles_drove_and_red_where_they_stood(tmp_path, monkeypatch):
     written = []
-    say = lambda _, words, *rest: written.append(words)  # noqa: E731
+    say = lambda _, words, *rest, **how: written.append(words)  # noqa: E731
     monkeypatch.setattr(drawing, "write_words", say)
     heat, ground = HeatPicture(), np.full((240, 320, 3), 90, np.uint8)
     heat.add(ground[:120], [estimate(9, "T", Box(0, 0, 300, 100))], 0, 0.04)

@@ -73,7 +73,7 @@ def test_a_trail_is_drawn_behind_a_vehicle_until_it_is_lost():
 
 def test_a_speed_is_written_where_the_road_is_known(monkeypatch):
     written = []
-    say = lambda _, words, *rest: written.append(words)  # noqa: E731
+    say = lambda _, words, *rest, **how: written.append(words)  # noqa: E731
     monkeypatch.setattr(drawing, "write_words", say)
     corners = ((0.0, 0.0), (320.0, 0.0), (320.0, 240.0), (0.0, 240.0))
     pairs = [Pair((x, y), (x / 10, y / 10)) for x, y in corners]
@@ -137,7 +137,7 @@ def written(monkeypatch, estimates, words=""):
     """Return the rectangles of the words that are written, by the words."""
     places = {}
 
-    def note(picture, words, corner, colour, width=1):
+    def note(picture, words, corner, colour, width=1, **how):
         scale, pen = 0.45 * width, max(1, round(width))
         (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, scale, pen)
         # With the dark edge around the letters.
@@ -179,7 +179,7 @@ def test_a_grid_can_be_read_in_4k():
 @pytest.mark.parametrize("corner", [(0.0, 5.0), (319.0, 5.0), (0.0, 239.0), (319.0, 239.0)])
 def test_the_name_of_a_line_at_the_border_is_whole(monkeypatch, corner):
     places = {}
-    note = lambda picture, words, at, colour, width=1: places.update({words: (at, width)})  # noqa: E731
+    note = lambda _, words, at, colour, width=1, **how: places.update({words: (at, width)})  # noqa: E731
     monkeypatch.setattr(drawing, "write_words", note)
     plan = CountingPlan((CountingLine("stop line", corner, (160.0, 120.0)),), ())
     frame_with_vehicles(BLACK, "", [], Counter(plan), Trails())
@@ -188,6 +188,14 @@ def test_the_name_of_a_line_at_the_border_is_whole(monkeypatch, corner):
     (across, _), _ = cv2.getTextSize(words, cv2.FONT_HERSHEY_SIMPLEX, 0.45 * width, pen)
     assert left >= pen and left + across + pen <= 320
     assert bottom - 10 * width >= 0 and bottom + pen <= 240
+
+
+def test_words_about_all_are_shaded_where_a_camera_has_its_own():
+    caption = np.full((240, 320, 3), 250, np.uint8)
+    picture = frame_with_vehicles(caption, "0:00.0", [], Counter(CountingPlan()), Trails())
+    # Between the letters, and beside the words.
+    assert (picture[:30, :100] == int(0.35 * 250)).all(axis=2).sum() > 300
+    assert (picture[:, 160:] == 250).all()
 
 
 @pytest.mark.parametrize(("size", "least"), [((180, 320), 9), ((360, 640), 16), ((720, 1280), 18)])

@@ -127,6 +127,8 @@ def run_one(request: Request) -> int:
         sentences += network_advice(request.command, folder, tracking.session.found)
     for sentence in sentences:
         print(sentence)
+    # Without vehicles the picture has the scene, and no path.
+    has_paths = has_paths and bool(tracking.summary.vehicles)
     print(f"results are in {folder}{f'; {PATHS_FILE} shows all paths' if has_paths else ''}")
     if pictures.has_video:
         print(f"the video is {request.video}")

@@ -31,7 +31,7 @@ from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 _LEARNING = "learning the background"
-"""Words for motion's first second, in which none is detected, however many vehicles drive."""
+"""Words for motion's first 10 to 20 images, in which it detects none, however many drive."""
 
 
 class CountedVehicles:
@@ -111,7 +111,8 @@ class CountedVehicles:
             vehicle.mode for vehicle in self.estimates if self.counter.is_vehicle(vehicle.label)
         )
         hidden = f", {modes[TrackMode.OCCLUDED]} hidden" if modes[TrackMode.OCCLUDED] else ""
-        count = f"{sum(modes[mode] for mode in COUNTED_MODES)} vehicles{hidden}"
+        total = sum(modes[mode] for mode in COUNTED_MODES)
+        count = f"{total} {'vehicle' if total == 1 else 'vehicles'}{hidden}"
         words = f"{head}{_LEARNING if self.is_learning else count}"
         return frame_with_vehicles(frame, words, self.estimates, self.counter, self.trails)
 

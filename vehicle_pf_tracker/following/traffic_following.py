@@ -162,7 +162,10 @@ class TrafficRun(CountedVehicles):
                 "--detections or --model"
             )
         elif not detected.images:
-            why = "they are too few to learn what stands, which takes a second; give a longer clip"
+            why = (
+                "they are too few to learn what stands, which takes 10 to 20 images; give a "
+                "longer clip, or a network with --model"
+            )
         elif not detected.boxes:
             why = {
                 MOTION_DETECTOR: "nothing moves in them",

@@ -34,6 +34,9 @@ memory where the last row comes first, as in uncompressed AVIs of Windows: the p
 _QUARTER_TURN = 90
 """Degrees; phones state rotations of whole quarters."""
 
+_MOST_BOXES = 10_000
+"""Boxes of an MP4 that are searched for its index: a fragment a second has two for over an hour."""
+
 _CODECS = {"AV01": "AV1", "HEV1": "HEVC", "HVC1": "HEVC", "VP09": "VP9"}
 """Common names of the four letters that files have."""
 
@@ -213,11 +216,35 @@ def open_decoder(source: Path | str) -> Decoder:
     # The codec is known even where its frames are not: it is what the user can do something about.
     codec = codec or other_codec
     if not codec:
-        raise InputError(f"{source} is not a video file that can be decoded")
+        raise InputError(f"{source} is not a video file that can be decoded{_cause(Path(name))}")
     raise InputError(
         f"no frame of the video {source} can be decoded: its codec is {_CODECS.get(codec, codec)}; "
         f"OpenCV {failure}, and PyAV {other_failure}"
     )
+
+
+def _cause(path: Path) -> str:
+    """Return what is wrong with a file that is no video, to be put behind a sentence."""
+    if not path.is_file():
+        return ""
+    size = path.stat().st_size
+    if not size:
+        return "; it is empty"
+    # An MP4 or MOV is a row of boxes: 4 bytes of length, big-endian, 4 of type, and content. Their
+    # index is written last, and without it no frame is found.
+    types: list[bytes] = []
+    at = 0
+    with path.open("rb") as file:
+        while at < size and len(types) < _MOST_BOXES:
+            file.seek(at)
+            head = file.read(16)
+            types.append(head[4:8])
+            length = int.from_bytes(head[:4], "big")
+            # 1 stands for a length of 8 bytes behind the type, 0 for the rest of the file.
+            at += (int.from_bytes(head[8:], "big") if length == 1 else length) or size
+    if types[0] == b"ftyp" and b"moov" not in types:
+        return "; its end with the index (moov) is missing: it broke off, or was not closed"
+    return ""
 
 
 def _tried(kind: Callable[[str], Decoder], name: str) -> tuple[str, str]:

@@ -132,9 +132,10 @@ class VideoFile(Footage):
         if self.frame_count is not None and read < self.frame_count:
             yield f"the video {self._path} states {self.frame_count} frames, {read} could be read"
         if untimed:
+            frames = "1 frame; it follows" if untimed == 1 else f"{untimed} frames; they follow"
             yield (
                 f"the video {self._path} states no time, or none after the frame before, for "
-                f"{untimed} frames; they follow at {self.fps:g} frames/s"
+                f"{frames} at {self.fps:g} frames/s"
             )
         if lost := sum(not 1 <= number <= read for number in self._truth):
             yield f"frames of the truth without an image: {lost}"

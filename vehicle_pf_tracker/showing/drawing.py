@@ -27,6 +27,9 @@ _SMALL = 2.0
 a line's width are illegible in a player's window."""
 _PART = 200.0
 """Height of a picture in widths of a letter's stroke at least: a line of words is a fourteenth."""
+_SHADE = 0.35
+"""Brightness that is left behind words in a corner, of the picture's: cameras write their names and
+clocks there, and letters upon letters are illegible. The picture can still be seen."""
 _DASH = 6
 """Length of a dash and of a gap, in line widths: the smallest boxes still have a few."""
 _LAST_PIXEL = 20_000
@@ -56,7 +59,13 @@ def letter_width(picture: Frame) -> float:
 
 
 def write_words(
-    picture: Frame, words: str, corner: tuple[int, int], colour: Colour, width: float = 1
+    picture: Frame,
+    words: str,
+    corner: tuple[int, int],
+    colour: Colour,
+    width: float = 1,
+    *,
+    shaded: bool = False,
 ) -> None:
     """Write words with a dark edge.
 
@@ -72,12 +81,20 @@ def write_words(
         Red, green, blue.
     width : float
         Width of the strokes, px; the letters grow with it.
+    shaded : bool
+        Darken the picture behind the words.
     """
     font = cv2.FONT_HERSHEY_SIMPLEX
     smooth = cv2.LINE_AA
     scale = _LETTER_SCALE * width
     pen = max(1, round(width))
     x, y = corner
+    if shaded:
+        (across, above), below = cv2.getTextSize(words, font, scale, pen)
+        edge = 2 * pen
+        rows = slice(max(y - above - edge, 0), max(y + below, 0))
+        columns = slice(max(x - edge, 0), max(x + across + edge, 0))
+        picture[rows, columns] = picture[rows, columns] * _SHADE
     # Not by a thicker stroke: in OpenCV 5 that makes the letters wider.
     for across, down in ((-pen, 0), (pen, 0), (0, -pen), (0, pen)):
         cv2.putText(picture, words, (x + across, y + down), font, scale, (0, 0, 0), pen, smooth)
@@ -87,7 +104,8 @@ def write_words(
 def write_line(picture: Frame, words: str, colour: Colour, row: int = 1) -> None:
     """Write words into a row at the upper left, counted from 1."""
     width = letter_width(picture)
-    write_words(picture, words, (round(5 * width), round(16 * width * row)), colour, width)
+    corner = round(5 * width), round(16 * width * row)
+    write_words(picture, words, corner, colour, width, shaded=True)
 
 
 def pixels_at(points: Array) -> list[tuple[int, int]]:
@@ -118,7 +136,8 @@ def draw_path(
 def write_labels(picture: Frame, labels: Iterable[Label], width: float = 0) -> None:
     """Write words around boxes, in the picture, where no others are; the first go first.
 
-    Strokes are `width` px wide or, with 0, as suits the picture.
+    `NEUTRAL` ones, which are of no vehicle, are shaded. Strokes are `width` px wide or, with 0, as
+    suits the picture.
     """
     width = width or letter_width(picture)
     taken = np.zeros((0, 4))
@@ -129,7 +148,7 @@ def write_labels(picture: Frame, labels: Iterable[Label], width: float = 0) -> N
         words, place = next(free, options[-4])
         taken = np.vstack([taken, place])
         corner = int(place[0]), round(float(place[3]) - 3 * width)
-        write_words(picture, words, corner, colour, width)
+        write_words(picture, words, corner, colour, width, shaded=colour == NEUTRAL)
 
 
 def _places(picture: Frame, words: str, box: Box, width: float) -> Array:

@@ -110,4 +110,4 @@ def _draw_bar(picture: Frame, row: int, words: str, colour: drawing.Colour, long
     bar[:] = ground + _opacity(times, longest) * (np.array(colour, float) - ground)
     corner = left + length + round(4 * unit), bottom
     text = f"{words}: 0 to {longest:.1f} s, log."
-    drawing.write_words(picture, text, corner, drawing.NEUTRAL, unit)
+    drawing.write_words(picture, text, corner, drawing.NEUTRAL, unit, shaded=True)
