@@ -65,6 +65,9 @@ PROGRAMS = {
         ("cost.md", "cost.json"),
         needs=("baselines",),
     ),
+    "benchmarks.first_answer": Program(
+        "--kinds floor --rounds 1", printed="| floor |", needs=("rclpy",)
+    ),
     "benchmarks.memory_parts": Program("", printed="| kernels and step of `apf` | +"),
     "laboratory.fusion.fit": Program(
         f"{BATTERY} {ONE_CASE} --budget 2 --cases 1", ("fit.json", "leave_one_camera_out.md")

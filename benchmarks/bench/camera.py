@@ -24,6 +24,8 @@ from vehicle_pf_tracker.ros.transport import image_transport
 
 _TIMEOUT = 20.0
 """Longest wait for a node, s: a cold start that compiles has ended before."""
+_COLD_TIMEOUT = 120.0
+"""Longest wait for the answer of a node that has to compile, s: ten times what it took here."""
 _DEPTH = 10
 """Images kept for a slow node, ROS's usual depth: what is lost then is lost for users too."""
 _HEARD = 1000
@@ -93,6 +95,24 @@ class Camera:
                 self.listen(0.1)
         # The answers to repeated images, which would be taken for those of the next ones.
         self.listen(0.5)
+
+    def first_answer(self, topic: str) -> float:
+        """Show images at the camera's rate until one is answered; steady time of the answer, s.
+
+        Raises
+        ------
+        InputError
+            If none is.
+        """
+        deadline = time.monotonic() + _COLD_TIMEOUT
+        while not self.answered[topic]:
+            due = time.monotonic() + 1 / FRAME_RATE
+            if due > deadline:
+                raise InputError(f"the node on {topic} answers no image")
+            self.show(topic)
+            while not self.answered[topic] and (left := due - time.monotonic()) > 0:
+                self._executor.spin_once(timeout_sec=left)
+        return time.monotonic()
 
     def show(self, topic: str) -> None:
         """Publish the next image of the drive there and back."""

@@ -61,9 +61,10 @@ Images of 640x480 come at 30 Hz from another process. `without_step` leaves out 
 longer than above. Start-up lasts until the node is ready. Its baselines are the node above
 (`warm`), a start with the OpenCV kernels (`numba`), and a warm start (`cold`: nothing compiled).
 Of a cold start of `apf` two seconds load numba and the package, the rest compiles its three
-kernels: nine tenths of that the one that compares windows of joint colours. About a third of
-compiling is LLVM's optimisation, the rest mostly numba's work in Python. Later starts link what was
-compiled, and load no numba.
+kernels: three quarters of that the one that compares windows of joint colours. About a third of
+compiling is LLVM's work, the rest numba's in Python: machine code is made of whole kernels, and not
+of each of their parts. Later starts link what was compiled, and load no numba.
+`python -m benchmarks.first_answer` prints the seconds from a start to the first answered image.
 """
 
 
