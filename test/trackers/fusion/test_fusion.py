@@ -24,6 +24,7 @@ from vehicle_pf_tracker.trackers.fusion import follow as follow_module
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion.hypotheses import HIDDEN_SCALES
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
+from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 from vehicle_pf_tracker.trackers.fusion.verdict import Hidden, Turning
@@ -285,6 +286,36 @@ def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
     assert stiffness(0.4, 0.95, outlines=True) == []
     assert stiffness(0.9, 1.0, whole=0.4) == []
     assert stiffness(0.4, 0.95, whole=0.4) == [pytest.approx(0.4 * 5.0, rel=0.02)]
+
+
+def test_a_turn_before_a_moving_camera_is_a_clear_sighting(monkeypatch):
+    """Else a doubt at its end would go back to where it began."""
+
+    def kept(response, share, *, reliable=True, outlines=False, whole=1.0):
+        """Response that the sighting of a frame is kept with."""
+        tracker, street = fusion(), Street(speed=2.0)
+        follow(tracker, street, range(8))
+        with monkeypatch.context() as patch:
+            patch.setattr(Foreground, "is_known", outlines)
+            patch.setattr(
+                observe,
+                "likeliest_peak",
+                lambda view, particles, extent: (particles.mean, response),
+            )
+            surface = tracker.state.surface._replace(share=share, is_reliable=reliable)
+            patch.setattr(SurfaceFlow, "judged", lambda *_: surface)
+            patch.setattr(visibility, "wholeness", lambda *_: whole)
+            patch.setattr(flow_evidence, "points_evidence", lambda *_: 0.0)
+            change(tracker, surface=surface)
+            tracker.step(street.frame(8))
+        return tracker.state.sightings.rows[-1, 5]
+
+    assert kept(0.9, 1.0) == 0.9
+    assert kept(0.6, 0.95) == CLEAR_RESPONSE
+    assert kept(0.6, 0.8) == 0.6
+    assert kept(0.6, 0.95, reliable=False) == 0.6
+    assert kept(0.6, 0.95, outlines=True) == 0.6
+    assert kept(0.6, 0.95, whole=0.4) == 0.6
 
 
 def test_of_a_vehicle_that_is_partly_hidden_nothing_is_learnt_and_its_size_is_predicted(

@@ -159,10 +159,23 @@ def _follow_peak(state: State, seen: Observation, step: Step) -> State:
     state = _centred(state, seen, step)
     if seen.tasks.follows_size and seen.response > SIZE_RESPONSE and _is_sure(state):
         state = _sized(state, seen, step)
+    response = _response_of_sighting(state, seen, step)
     sightings = state.sightings.added(
-        state.position, state.size, seen.response, returned=seen.was_hidden
+        state.position, state.size, response, returned=seen.was_hidden
     )
     return state._replace(sightings=sightings)
+
+
+def _response_of_sighting(state: State, seen: Observation, step: Step) -> float:
+    """Response that a sighting is kept with: before a moving camera a turn counts as clear."""
+    # The filter does not know the new side, but the surface moves with the vehicle as a whole. Else
+    # a doubt at the end of the turn would go back to where it began, half a second before.
+    response = seen.response
+    if step.memory.foreground.is_known or seen.was_hidden:  # outlines tell; or the share is old
+        return response
+    surface = state.surface
+    moves_along = surface.is_reliable and surface.share > _TURNING_SHARE
+    return max(response, CLEAR_RESPONSE) if moves_along and _is_sure(state) else response
 
 
 def _is_sure(state: State) -> bool:
