@@ -63,3 +63,9 @@ def test_one_that_is_wrong_does_not_move_it():
     for bottom in range(60, 160):
         wrong = wrong.added(np.array([[0.0, bottom - 20, 300.0 - bottom, bottom]]))
     assert row(-0.2, *right, wrong) == pytest.approx(0.1, abs=0.03)
+
+
+def test_of_sparse_images_fewer_boxes_tell():
+    growth = grown(24, range(60, 160, 12))
+    assert len(growth.told(HEIGHT)) == 0
+    assert len(growth.told(HEIGHT, sparsity=8.0)) == 1

@@ -19,6 +19,7 @@ from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.state import State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
+    ANY_SPEED,
     USUAL_ASPECT,
     Edge,
     Gaussians,
@@ -62,15 +63,31 @@ def begun_in(state: State, edges: Array, step: Step) -> State:
     """Begin tracks in boxes (K, 4) in px."""
     # A horizon below the box would have it drive on the sky.
     horizon = np.minimum(state.horizon.row, edges[:, Edge.BOTTOM] - 1)
-    gaussians = first_gaussians(edges, step.edge_noise, horizon, step.motion, step.size)
+    speeds = _possible_speeds(state, step)
+    noise = step.edge_noise
+    gaussians = first_gaussians(edges, noise, horizon, step.motion, step.size, speeds)
     # Tracks are numbered from birth, vehicles from confirmation: a serial orders ties.
     serials = state.last_serial + 1 + np.arange(len(edges))
     tracks = state.tracks.extended(Tracks.begun(gaussians, serials, np.zeros_like(edges)))
     return state._replace(tracks=tracks, last_serial=state.last_serial + len(edges))
 
 
+def _possible_speeds(state: State, step: Step) -> Array:
+    """Covariance (2, 2) of a new vehicle's speed across and along, in squares of `top_speed`."""
+    motion = step.motion
+    tracks = state.tracks
+    followed = tracks.drives.gaussians.take(tracks.confirmed & tracks.beliefs.has_driven)
+    speeds = followed.speeds(motion.focal)
+    return state.experience.speeds.spread(speeds, motion.top_speed, step.period)
+
+
 def first_gaussians(
-    edges: Array, noise: float, horizon: Array, motion: Motion, size: tuple[int, int]
+    edges: Array,
+    noise: float,
+    horizon: Array,
+    motion: Motion,
+    size: tuple[int, int],
+    speeds: Array = ANY_SPEED,
 ) -> Gaussians:
     """Make the states of vehicles from their first boxes, which borders of the image may cut.
 
@@ -86,6 +103,8 @@ def first_gaussians(
         Motion model of vehicles.
     size : (int, int)
         Width and height of the image.
+    speeds : (2, 2) array
+        Covariance of their speeds across and along the road, in squares of the motion's top speed.
     """
     # What is cut is completed by the usual aspect and made uncertain: measured as it is, a vehicle
     # that comes in would grow at every frame as if it drove towards the camera.
@@ -95,7 +114,7 @@ def first_gaussians(
     width, height = (edges[:, 2:] - edges[:, :2]).T
     _complete(whole, spread, cut, (Edge.TOP, Edge.BOTTOM), height, USUAL_ASPECT * width)
     _complete(whole, spread, cut, (Edge.LEFT, Edge.RIGHT), width, height / USUAL_ASPECT)
-    return Gaussians.around(whole, spread, horizon, motion)
+    return Gaussians.around(whole, spread, horizon, motion, speeds)
 
 
 def _complete(

@@ -54,9 +54,14 @@ def end(state: State, step: Step) -> State:
     never_drove |= ~drives(tracks, step, are_shapes=are_shapes)
     for row in np.flatnonzero(~goes_on & ~tracks.confirmed & never_drove).tolist():
         experience.detections.learn(tracks.beliefs.samples[row], False)
-    # 4. Vehicles teach the horizon once each, when all of their growth is known.
-    ended = tracks.drives.growths.take(tracks.confirmed & ~goes_on)
-    horizon = state.horizon.learnt(ended, step.size[1])
+    # 4. Vehicles teach the horizon once each, when all of their growth is known, and how fast new
+    # ones may be.
+    ends = tracks.confirmed & ~goes_on
+    grown = tracks.drives.growths.take(ends)
+    horizon = state.horizon.learnt(grown, step.size[1], step.sparsity)
+    drove = tracks.drives.gaussians.take(ends & tracks.beliefs.has_driven)
+    # Per second: the interval of images may change.
+    experience.speeds.learn(drove.speeds(step.motion.focal) / step.period)
     return state._replace(tracks=tracks.take(goes_on), horizon=horizon)
 
 

@@ -18,6 +18,7 @@ from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvid
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.returns import DetectionRate, Returns
+from vehicle_pf_tracker.trackers.traffic.speeds import Speeds
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Motion
 
@@ -46,12 +47,15 @@ class Experience:
         Shares of the vehicles, and of parts of vehicles, that vanished in plain sight and returned.
     rate : DetectionRate
         Share of the vehicles in plain sight that the detector finds.
+    speeds : Speeds
+        Speeds of vehicles that have left.
     """
 
     detections: DetectionEvidence = field(default_factory=DetectionEvidence)
     reappearances: Returns = field(default_factory=Returns)
     uncoverings: Returns = field(default_factory=Returns)
     rate: DetectionRate = field(default_factory=DetectionRate)
+    speeds: Speeds = field(default_factory=Speeds)
 
 
 class State(NamedTuple):

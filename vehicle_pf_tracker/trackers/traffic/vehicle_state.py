@@ -89,6 +89,10 @@ class Motion:
     focal: float
 
 
+ANY_SPEED = np.eye(2)
+"""Covariance of the speeds of new vehicles, in squares of `top_speed`: as fast in any direction."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Gaussians(Rows):
     """Gaussians over the place, size and velocity of N vehicles.
@@ -119,8 +123,15 @@ class Gaussians(Rows):
         return cls(mean, covariance, horizon, edges)
 
     @classmethod
-    def around(cls, edges: Array, deviations: Array, horizon: Array, motion: Motion) -> Gaussians:
-        """Make those of vehicles in their first boxes, of any speed.
+    def around(
+        cls,
+        edges: Array,
+        deviations: Array,
+        horizon: Array,
+        motion: Motion,
+        speeds: Array = ANY_SPEED,
+    ) -> Gaussians:
+        """Make those of vehicles in their first boxes.
 
         Parameters
         ----------
@@ -130,10 +141,11 @@ class Gaussians(Rows):
             Row of the horizon in px.
         motion : Motion
             Motion of vehicles.
+        speeds : (2, 2) array
+            Covariance of their speeds across and along the road, in squares of `top_speed`.
         """
         left, top, right, bottom = edges.T
-        # On the road a width is proportional to v, so that w / v is the unit of its speed, as far
-        # as it is known: zero within `top_speed`, either way.
+        # On the road a width is proportional to v, so that w / v is the unit of its speed.
         v = np.maximum(bottom - horizon, _LEAST)
         zero = np.zeros(len(edges))
         mean = columns((left + right) / 2, v, right - left, bottom - top, zero, zero)
@@ -143,11 +155,16 @@ class Gaussians(Rows):
         speed = (motion.top_speed * (right - left) / v) ** 2
         # A place on the road is (x / v, 1 / v): of the same length in m the second is shorter by
         # the focal length.
-        along = speed / motion.focal**2
+        lengths = np.array([[1.0, motion.focal], [motion.focal, motion.focal**2]])
         covariance = np.zeros((len(edges), 6, 6))
-        variances = columns(width / 4, by_bottom, width, height, speed, along)
-        covariance[:, range(6), range(6)] = variances
+        covariance[:, range(4), range(4)] = columns(width / 4, by_bottom, width, height)
+        covariance[:, ACROSS:, ACROSS:] = speed[:, np.newaxis, np.newaxis] / lengths * speeds
         return cls.of(mean, covariance, horizon)
+
+    def speeds(self, focal: float) -> Array:
+        """Speeds (N, 2) across and along the road, widths per nominal period."""
+        _, v, w, _, across, along = self.mean.T
+        return columns(across, along * focal) * (v / w)[:, np.newaxis]
 
     @property
     def edge_covariance(self) -> Array:
