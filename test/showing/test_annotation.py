@@ -9,6 +9,7 @@ import pytest
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.results.estimates import EstimateRow
+from vehicle_pf_tracker.showing import drawing
 from vehicle_pf_tracker.showing.contact_sheet import THUMB_WIDTH, ContactSheet
 from vehicle_pf_tracker.showing.target_drawing import (
     MODE_COLOURS,
@@ -55,6 +56,19 @@ def test_a_predicted_position_is_dashed():
 
 def test_a_lost_vehicle_has_no_box():
     assert not drawn(Mode.LOST).any()
+
+
+def test_words_of_two_vehicles_do_not_cover_each_other(monkeypatch):
+    bottoms = {}
+    note = lambda _, words, at, *rest, **how: bottoms.update({words: at[1]})  # noqa: E731
+    monkeypatch.setattr(drawing, "write_words", note)
+    states = []
+    for name, x in (("truck", 60.0), ("car", 90.0)):
+        row = EstimateRow.without(7, 0, "TRACKING")
+        states.append((Annotator(name), row, estimate(Mode.TRACKING, x)))
+    frame_with_targets(BLACK, None, states)
+    one, other = (bottoms[f"{name} TRACKING"] for name in ("truck", "car"))
+    assert abs(one - other) >= drawing.LETTER
 
 
 def test_particles_are_drawn_on_request():

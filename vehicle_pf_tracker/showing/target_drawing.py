@@ -17,6 +17,7 @@ from vehicle_pf_tracker.results.estimates import EstimateRow, clock_words
 from vehicle_pf_tracker.showing.drawing import (
     NEUTRAL,
     Colour,
+    Labels,
     draw_box,
     draw_path,
     line_width,
@@ -61,8 +62,14 @@ class Annotator:
         else:
             self._path.append(estimate.position)
 
-    def draw(self, picture: Frame, estimate: Estimate | None, words: str = "") -> bool:
-        """Draw a frame's estimate into `picture`, with `words` beside it.
+    def draw(
+        self,
+        picture: Frame,
+        estimate: Estimate | None,
+        words: str = "",
+        labels: Labels | None = None,
+    ) -> bool:
+        """Draw a frame's estimate into `picture`, with `words` beside it, or put into `labels`.
 
         A predicted position, under an occluder, is dashed; a lost target has neither box nor path,
         nor words. Returns whether anything was drawn.
@@ -78,18 +85,28 @@ class Annotator:
         is_predicted = estimate.mode is Mode.OCCLUDED
         draw_box(picture, estimate.box, colour, width, dashed=is_predicted)
         if label := words or self.name:
-            write_labels(picture, [(estimate.box, colour, (label,))])
+            own: Labels = [(estimate.box, colour, (label,))]
+            if labels is None:
+                write_labels(picture, own)
+            else:
+                labels += own
         return True
 
 
 def draw_target(
-    picture: Frame, annotator: Annotator, mode: str, estimate: Estimate | None, words: str, row: int
+    picture: Frame,
+    annotator: Annotator,
+    mode: str,
+    estimate: Estimate | None,
+    words: str,
+    row: int,
+    labels: Labels | None = None,
 ) -> bool:
     """Draw a target with its words: beside it, or into a row at the upper left where it has no box.
 
-    Returns whether the row was used.
+    Those beside it are put into `labels`, where these are given. Returns whether the row was used.
     """
-    if annotator.draw(picture, estimate, words):
+    if annotator.draw(picture, estimate, words, labels):
         return False
     write_line(picture, words, MODE_COLOURS.get(mode, NEUTRAL), row)
     return True
@@ -115,10 +132,13 @@ def frame_with_targets(
     picture: Frame = np.array(frame, order="C")
     number = 0
     line = 1 if elapsed_ns is None else 2
+    # Written together, so that they do not cover each other.
+    labels: Labels = []
     for annotator, row, estimate in states:
         words = estimate_words(annotator.name, row)
-        line += draw_target(picture, annotator, row.mode, estimate, words, line)
+        line += draw_target(picture, annotator, row.mode, estimate, words, line, labels)
         number = row.frame
+    write_labels(picture, labels)
     if elapsed_ns is not None:
         write_line(picture, f"{clock_words(elapsed_ns)}  frame {number}", NEUTRAL)
     return picture
