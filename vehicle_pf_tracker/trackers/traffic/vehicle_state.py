@@ -164,7 +164,7 @@ class Gaussians(Rows):
     def speeds(self, focal: float) -> Array:
         """Speeds (N, 2) across and along the road, widths per nominal period."""
         _, v, w, _, across, along = self.mean.T
-        return columns(across, along * focal) * (v / w)[:, np.newaxis]
+        return np.asarray(columns(across, along * focal) * (v / w)[:, np.newaxis])
 
     @property
     def edge_covariance(self) -> Array:
