@@ -1,8 +1,9 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""A browser for tests of pages, where one is installed."""
+"""A browser for tests of pages, where one is installed; workers that need no start."""
 
+import multiprocessing
 import shutil
 import subprocess
 
@@ -15,6 +16,17 @@ _OPTIONS = (
     # No page of ours needs another machine.
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
 )  # fmt: skip
+
+
+@pytest.fixture
+def forked_workers(monkeypatch):
+    """Fork worker processes from this one, where their start is not what is tested.
+
+    A start of Python that imports the package takes a second of a processor.
+    """
+    context = multiprocessing.get_context("fork")
+    name = "vehicle_pf_tracker.workers.processes.multiprocessing.get_context"
+    monkeypatch.setattr(name, lambda _method: context)
 
 
 @pytest.fixture

@@ -203,8 +203,7 @@ def test_speed_on_the_road_is_exact_in_perspective():
     assert counter.speed_kmh(2) is None  # nobody has this number
 
 
-@pytest.mark.parametrize("speed", [70.0, 120.0])
-@pytest.mark.parametrize("heading", ["coming", "going"])
+@pytest.mark.parametrize(("speed", "heading"), [(70.0, "coming"), (120.0, "going")])
 def test_speed_on_a_rendered_road_is_that_of_the_scene(speed, heading):
     """With the true boxes; they are as tight as the picture, not as the vehicle's wheels."""
     parameters = RoadSceneParameters(speed=speed, heading=heading)

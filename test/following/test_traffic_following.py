@@ -72,7 +72,7 @@ def test_a_stray_stamp_is_noted_with_its_frame(follow):
 
 
 def test_an_irregularity_that_lasts_is_noted_once(follow):
-    run, _ = follow([5] * 300, detections=DRIVING)
+    run, _ = follow([5] * 60, detections=DRIVING)
     assert run.notices == ["frame 2: repeated stamp"]
 
 

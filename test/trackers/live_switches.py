@@ -3,8 +3,9 @@
 
 """Program of `test_live_switches.py`: turns every switch of one variant while it tracks.
 
-Memory that is overwritten ends a process, so this one has nothing else to do. Its last line is
-``done`` and the number of switches that were turned.
+Memory that is overwritten ends a process, so this one has nothing else to do. Its words are the
+variant, and the numbers of bits of its histograms. Its last line is ``done`` and the number of
+switches that were turned.
 """
 
 from __future__ import annotations
@@ -26,10 +27,10 @@ LEARNT = ("reference", "references", "first_histogram", "first_histograms")
 """Attributes in which variants keep what they have learnt of the target."""
 
 
-def cases(table):
-    """Each switch from each value to each other one, at every number of bits."""
+def cases(table, all_bits):
+    """Each switch from each value to each other one, at each number of bits."""
     kernels = ("opencv", "numba") if find_spec("numba") else ("opencv",)
-    all_bits = range(1, 6) if BITS in table else [None]
+    all_bits = all_bits if BITS in table else [None]
     switches = [spec for spec in table.values() if spec.kind is bool or spec.choices]
     for spec, used in itertools.product(switches, kernels):
         values = [False, True] if spec.kind is bool else list(spec.choices)
@@ -82,7 +83,7 @@ def is_sound(estimate):
     )
 
 
-def main(name):
+def main(name, *all_bits):
     variant = VARIANTS[name]
     table = specs(variant.parameters)
 
@@ -93,7 +94,7 @@ def main(name):
         tracker = variant.tracker(made(values))
         return tracker, tracker.start(STREET.frame(time), STREET.box(time))
 
-    turned = list(cases(table))
+    turned = list(cases(table, all_bits))
     for before, after in turned:
         # A switch between the first two frames is a start with it, to the last bit ...
         fresh, _ = started(after, 0)
@@ -128,4 +129,4 @@ def main(name):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(sys.argv[1], *map(int, sys.argv[2:]))

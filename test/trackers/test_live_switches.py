@@ -19,16 +19,21 @@ from vehicle_pf_tracker.trackers.registry import VARIANTS
 PROGRAM = Path(__file__).parent / "live_switches.py"
 QUICK = ("apf", "adaptive", "mfpf")
 """One variant of each paper; all together take a minute of a processor."""
+FEWEST_AND_MOST = ("1", "5")
+"""Numbers of bits between which arrays differ most in size."""
 
 
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in VARIANTS],
+    ("name", "bits"),
+    [
+        *((name, FEWEST_AND_MOST) for name in QUICK),
+        *(pytest.param(name, "12345", marks=pytest.mark.slow) for name in VARIANTS),
+    ],
 )
-def test_a_switch_that_is_turned_while_tracking(name):
+def test_a_switch_that_is_turned_while_tracking(name, bits):
     search = os.pathsep.join([str(PROGRAM.parent), *sys.path])
     done = subprocess.run(
-        [sys.executable, str(PROGRAM), name],
+        [sys.executable, str(PROGRAM), name, *bits],
         env={**os.environ, "PYTHONPATH": search},
         capture_output=True,
         text=True,
