@@ -258,7 +258,12 @@ def cuts(count):
         (still(40), "", "", "nothing moves in them"),
         (cuts(90), "", "", "the camera moves"),
         (still(10), "99,-1,20,20,16,12,0.9", "", "det.txt has no box in them"),
-        (still(10), "5,-1,20,20,16,12,0.9", "", "detections (1) repeat too rarely"),
+        (
+            still(10),
+            "5,-1,20,20,16,12,0.9",
+            "",
+            "stand still with scores too low",
+        ),
         (still(10), "5,-1,20,20,16,12,0.9", "[[60, 0], [90, 0], [90, 90]]", "all 1 detections are"),
     ],
 )

@@ -69,6 +69,13 @@ def test_a_folder_of_broken_images_is_an_input_error(tmp_path):
         list(open_source(folder, fps=10).frames())
 
 
+def test_a_folder_of_images_of_another_format_says_what_to_do(tmp_path):
+    for number in (1, 2):
+        (tmp_path / f"{number:03}.bmp").touch()
+    with pytest.raises(InputError, match=r"has no images .*; convert its 2 images as .*bmp to png"):
+        open_source(tmp_path)
+
+
 def test_images_without_numbers_follow_their_names(tmp_path):
     folder = write_images(tmp_path / "a", ["b.png", "a.png", "c7.png"])
     brightness = [int(found.frame.mean()) for found in open_source(folder, fps=10).frames()]

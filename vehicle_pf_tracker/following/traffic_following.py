@@ -177,8 +177,9 @@ class TrafficRun(CountedVehicles):
             why = f"all {detected.boxes} detections are outside the regions of interest"
         else:
             why = (
-                f"detections ({inside}) repeat too rarely to be vehicles; give them with "
-                "--target, or a file of `pick` with --targets"
+                f"detections ({inside}) repeat too rarely to be vehicles, or stand still with "
+                "scores too low for that; give them with --target, or a file of `pick` with "
+                "--targets"
             )
         return [f"no vehicle was found in {frames} frames: {why}"]
 

@@ -34,6 +34,9 @@ from vehicle_pf_tracker.recordings.truth.labels import Images
 IMAGE_FORMATS = {".jpg": "jpeg", ".jpeg": "jpeg", ".png": "png"}
 """The image files that are read, and what a CompressedImage calls them."""
 
+_OTHERS = {".bmp", ".tif", ".tiff", ".ppm", ".pgm", ".webp", ".gif", ".jp2"}
+"""Endings of images that are not read: a CompressedImage has no name for most of them."""
+
 IMAGE_FOLDERS = ("img", "img1", "color", "images", ".")
 """Places of the images in a folder, the first that has any: OTB's and ours, MOTChallenge's, VOT's,
 CVAT's."""
@@ -176,11 +179,22 @@ def numbered_images(folder: Path, fps: float) -> dict[int, Path]:
 def _listed(folder: Path) -> list[Path]:
     paths = image_files(folder)
     if not paths:
-        raise InputError(f"the folder {folder} has no images img/000001.jpg, ... (jpg or png)")
+        raise InputError(
+            f"the folder {folder} has no images img/000001.jpg, ... (jpg or png){_others(folder)}"
+        )
     for path in paths:
         if not path.is_file():
             raise InputError(f"the image {path} is not a regular file")
     return paths
+
+
+def _others(folder: Path) -> str:
+    """Return that a folder has images of other formats, to be put behind a sentence."""
+    for name in IMAGE_FOLDERS:
+        paths = [path for path in (folder / name).glob("[!.]*") if path.suffix.lower() in _OTHERS]
+        if paths:
+            return f"; convert its {len(paths)} images as {paths[0].name} to png"
+    return ""
 
 
 def _stamps(named: NamedImages, stated: float | None) -> tuple[list[int], float]:
