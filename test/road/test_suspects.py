@@ -104,7 +104,7 @@ def test_points_in_line_are_named(place, pixel):
     one = "[0-9.,=]+"
     names = f"{one}, {one}, {one}"
     assert re.fullmatch(
-        f"read again, or replace one of, {names}: on one line, or the same point", said
+        f"read again or replace one of {names}, which are on one line or the same point", said
     )
     assert name(pairs[place]) in said
 

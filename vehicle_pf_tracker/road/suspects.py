@@ -108,7 +108,9 @@ def _of_impossible(pairs: Sequence[Pair], lens: Lens | None) -> str:
         for places in combinations(range(len(pairs)), 3):
             if _is_flat(points[list(places)]):
                 names = ", ".join(_named(pairs[place]) for place in places)
-                return f"read again, or replace one of, {names}: on one line, or the same point"
+                return (
+                    f"read again or replace one of {names}, which are on one line or the same point"
+                )
     exchanged = [
         f"{_named(pairs[one])} and {_named(pairs[other])}"
         for one, other in combinations(range(len(pairs)), 2)
