@@ -185,6 +185,54 @@ def test_a_url_that_is_no_file_stays_a_url():
         open_decoder("file:///nothing.mp4")
 
 
+@pytest.fixture
+def uncompressed(tmp_path, monkeypatch):
+    """Make an uncompressed AVI as Windows has them, and fail where OpenCV is to decode it.
+
+    Their height is positive, which says that the last row comes first; OpenCV 5.0.0 aborts then.
+    """
+
+    real = cv2.VideoCapture
+
+    class Opened:
+        # Not derived: Python's collector does not bear classes that are derived from OpenCV's.
+        def __init__(self, *arguments):
+            video = real(*arguments)
+            self.isOpened, self.get, self.release = video.isOpened, video.get, video.release
+
+        def read(self):
+            raise AssertionError("OpenCV would have aborted the process")
+
+    path = tmp_path / "v.avi"
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("rawvideo", rate=25)
+        stream.width, stream.height, stream.pix_fmt = 96, 64, "bgr24"
+        for index in range(COUNT):
+            container.mux(stream.encode(av.VideoFrame.from_ndarray(frame_of(index), "rgb24")))
+    content = path.read_bytes()
+    downwards = struct.pack("<ii", 96, -64)
+    assert content.count(downwards) == 1
+    path.write_bytes(content.replace(downwards, struct.pack("<ii", 96, 64)))
+    monkeypatch.setattr(cv2, "VideoCapture", Opened)
+    return path
+
+
+def test_what_opencv_crashes_on_pyav_decodes(uncompressed):
+    decoder = open_decoder(uncompressed)
+    frames = frames_of(decoder)
+    assert isinstance(decoder, AvDecoder)
+    assert len(frames) == COUNT
+    for index, (frame, _) in enumerate(frames):
+        # The header turned the rows over, and nothing else.
+        np.testing.assert_array_equal(frame[::-1], frame_of(index))
+
+
+def test_what_opencv_crashes_on_is_refused_without_pyav(uncompressed, monkeypatch):
+    monkeypatch.setitem(sys.modules, "av", None)
+    with pytest.raises(InputError, match=r"codec is uncompressed BGR; .*pip install .*\[video\]"):
+        open_decoder(uncompressed)
+
+
 def test_opencv_is_the_first(tmp_path):
     path = write_video(tmp_path / "v.avi", [frame_of(0)])
     assert isinstance(open_decoder(path), OpenCVDecoder)

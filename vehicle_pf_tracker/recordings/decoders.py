@@ -1,11 +1,11 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Decoders of videos: OpenCV's, and PyAV's for codecs that OpenCV's FFmpeg was built without.
+"""Decoders of videos: OpenCV's, and PyAV's for what OpenCV cannot decode.
 
 OpenCV's is the first because it is installed wherever the package is; AV1 is the commonest codec
-that its wheels lack. OpenCV's own complaints are kept off the terminal where an error says the same
-in one sentence.
+that its wheels lack, and uncompressed video is what it crashes on. OpenCV's own complaints are kept
+off the terminal where an error says the same in one sentence.
 """
 
 from __future__ import annotations
@@ -27,6 +27,10 @@ from vehicle_pf_tracker.recordings.recording_names import is_url
 
 _SILENT = 0
 """OpenCV's level at which it logs nothing."""
+_UNCONVERTED = int.from_bytes(b"BGR\x18", "little")
+"""OpenCV's number of the pixel format BGR24. It takes such frames as they are, and overruns its
+memory where the last row comes first, as in uncompressed AVIs of Windows: the process is aborted
+(OpenCV 5.0.0)."""
 _QUARTER_TURN = 90
 """Degrees; phones state rotations of whole quarters."""
 
@@ -113,9 +117,16 @@ class OpenCVDecoder:
         # Masked: a code may be negative, which has no bytes.
         letters = int(self._video.get(cv2.CAP_PROP_FOURCC)) & 0xFFFFFFFF
         self.codec = letters.to_bytes(4, "little").decode("latin-1").strip("\0 ").upper()
+        # Only FFmpeg states a format.
+        stated_format = int(self._video.get(cv2.CAP_PROP_CODEC_PIXEL_FORMAT))
+        self._crashes = has_ffmpeg and stated_format == _UNCONVERTED
+        if self._crashes:
+            self.codec = self.codec or "uncompressed BGR"
 
     def read(self) -> tuple[Frame, float] | None:
         """Return the next frame and its time; see `Decoder`."""
+        if self._crashes:
+            return None
         is_read, image = self._video.read()
         if not is_read:
             return None
