@@ -376,7 +376,7 @@ def test_one_that_was_given_by_hand_stays_and_teaches_nothing():
     assert one.sights.absences.vanished[0] == NOWHERE
 
 
-def evidence_of(fit, *, drives=True):
+def evidence_of(fit, *, drives=True, log_odds=0.0, are_shapes=False, experience=None):
     """Evidence that a detection which fits its confirmed vehicle so well adds by where it is."""
     one = track(1, 100.0, confirmed=True, has_driven=True)
     smooth = replace(STEP.motion, acceleration=0.001)
@@ -387,8 +387,9 @@ def evidence_of(fit, *, drives=True):
         gaussians = gaussians.driven(1.0, smooth).measured(box, np.full((1, 4), 0.5))
     one = replace(one, drives=replace(one.drives, gaussians=gaussians))
     candidates = seen(Experience().detections, (left, 100, 40, 30))
-    fits = fits_of_known(one, np.array([fit]))
-    one, _ = believed(one, candidates, ONLY, fits, Experience(), STEP)
+    candidates = replace(candidates, log_odds=np.array([log_odds]), are_shapes=are_shapes)
+    fits = fits_of_known(one, candidates, ONLY, np.array([fit]))
+    one, _ = believed(one, candidates, ONLY, fits, experience or Experience(), STEP)
     return float(one.beliefs.log_odds[0])
 
 
@@ -398,3 +399,21 @@ def test_a_detection_of_a_vehicle_counts_by_how_much_better_it_fits_than_a_false
 
 def test_where_a_vehicle_stands_any_false_alarm_there_would_fit():
     assert evidence_of(9.0, drives=False) == 0
+
+
+def test_no_fit_tells_where_the_detector_says_the_same_with_nothing_there():
+    assert evidence_of(9.0, log_odds=-4.9) == pytest.approx(3.0 - 0.5)
+    assert evidence_of(9.0, log_odds=-5.1) == pytest.approx(-0.5)
+    assert evidence_of(-2.0, log_odds=-5.1) == pytest.approx(-2.5)
+    # The score of a shape says how full it is.
+    assert evidence_of(9.0, log_odds=-5.1, are_shapes=True) == pytest.approx(3.0 - 0.5)
+
+
+@pytest.mark.parametrize(("log_odds", "teaches"), [(-2.9, True), (-3.1, False)])
+def test_a_vehicle_does_not_teach_that_what_the_detector_says_anyway_is_one(log_odds, teaches):
+    experience = Experience()
+    evidence_of(9.0, log_odds=log_odds, experience=experience)
+    evidence = experience.detections
+    evidence.look()
+    told = evidence.log_odds(np.array([SCORE]), np.array([0.5]), np.array([0]))
+    assert (told[0] > 0) == teaches

@@ -134,7 +134,7 @@ def _take(look: Look, pairs: Pairs) -> Look:
     # of its occluder, and a width that says nothing about the road.
     tracks = _shown(tracks, candidates, columns, whole, step)
     # 3. Whether it stands is judged by the corrected speed, and counts for the belief.
-    fits = fits_of_known(tracks, fits)
+    fits = fits_of_known(tracks, candidates, columns, fits)
     tracks, proven = believed(tracks, candidates, columns, fits, state.experience, step)
     state = state._replace(tracks=state.tracks.put(rows, tracks))
     # 4. Number last: a vehicle that is found again takes over its new track, whose row then goes,
