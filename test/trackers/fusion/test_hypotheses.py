@@ -86,6 +86,22 @@ def test_noise_of_driving_has_the_deviations_asked_for():
     assert predicted.positions.std(axis=0) == pytest.approx(np.hypot([6.0, 6.0], 4.0), rel=0.03)
 
 
+def test_noise_that_keeps_the_mean_moves_single_hypotheses_only():
+    still = hypotheses([0.0] * 50, [0.02] * 50)
+    moved = still.predicted(np.random.default_rng(0), 1.0, (0.0, 2.0), 0.3, keeps_mean=True)
+    assert moved.mean_velocity == pytest.approx(still.mean_velocity)
+    assert moved.velocities.std(axis=0).min() > 1
+
+
+@pytest.mark.parametrize(("visible", "share"), [(0.0, 0.0), (1.0, 1.0)])
+def test_hidden_hypotheses_climb_around_their_mean(visible, share):
+    before = hypotheses([visible] * 2, [0.5, 0.5], [[0.0, 0.0], [10.0, 0.0]])
+    better = np.array([[4.0, 0.0], [10.0, 2.0]])
+    after = before.climbed(better, np.zeros(2), keeps_mean=True)
+    assert after.mean == pytest.approx(before.mean + share * np.array([2.0, 1.0]))
+    assert before.climbed(better, np.zeros(2), keeps_mean=False).positions == pytest.approx(better)
+
+
 def test_resampling_waits_until_few_carry_the_weight():
     rng = np.random.default_rng(0)
     even = hypotheses([0.5] * 4, [0.25] * 4)

@@ -144,6 +144,18 @@ def test_of_a_vehicle_that_stood_nothing_is_behind():
     assert not hidden.is_behind(LAST - np.array([[30.0, 0.0]])).any()
 
 
+@pytest.mark.parametrize(
+    ("moving", "is_covered"),
+    [([], True), ([box(102, 60, 18, 10)], False), ([box(160, 60, 20, 12)], True)],
+    ids=["nothing", "the vehicle itself", "another ahead"],
+)
+def test_it_is_covered_where_nothing_moves_at_the_predicted_place(moving, is_covered):
+    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0, LAST).aged(1.0)
+    assert not hidden.is_covered
+    boxes = np.array(moving).reshape(-1, 2, 2)
+    assert hidden.observed(boxes, judged()).is_covered is is_covered
+
+
 def test_a_large_outline_in_view_may_be_several_vehicles_the_hidden_one_among_them():
     hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0, LAST).aged(1.0)
     merged = box(LAST[0] + 30.0, LAST[1], 45, 14)

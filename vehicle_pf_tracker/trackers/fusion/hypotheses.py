@@ -124,7 +124,13 @@ class Hypotheses(NamedTuple):
         return self._replace(positions=camera.apply(self.positions), velocities=velocities)
 
     def predicted(
-        self, rng: np.random.Generator, elapsed: float, sigmas: tuple[float, float], across: float
+        self,
+        rng: np.random.Generator,
+        elapsed: float,
+        sigmas: tuple[float, float],
+        across: float,
+        *,
+        keeps_mean: bool = False,
     ) -> Hypotheses:
         """Move on for `elapsed` frames at constant velocity on the road.
 
@@ -137,6 +143,8 @@ class Hypotheses(NamedTuple):
             Standard deviations of position (px) and velocity (px per frame), per frame.
         across : float
             Share of the velocity's noise across the heading.
+        keeps_mean : bool
+            The noise leaves their mean velocity as it is.
         """
         # Changes of independent frames add in variance.
         root = math.sqrt(elapsed)
@@ -152,6 +160,9 @@ class Hypotheses(NamedTuple):
             # wall.
             growths = np.minimum(np.maximum(growths, -FASTEST_GROWTH), FASTEST_GROWTH)
         noise = sample_normal(rng, count, 1.0)
+        # Of so few draws the mean alone would be off by a tenth of the size after 40 frames.
+        if keeps_mean:
+            noise -= noise.mean(axis=0)
         if across != 1.0:
             # One common heading: where the vehicle stands, those of single ones would be noise.
             noise = along_heading(noise, self.mean_velocity, across)
@@ -184,6 +195,19 @@ class Hypotheses(NamedTuple):
         total = seen + (1 - self.visible)  # in this order never below `seen`
         weights, _ = normalise(self.weights * total)
         return self._replace(visible=seen / total, weights=weights)
+
+    def climbed(self, positions: Array, log_ratios: Array, *, keeps_mean: bool) -> Hypotheses:
+        """Move to positions (N, 2), px, weighed by their log ratios (N,); see `weighed`.
+
+        With `keeps_mean` they gather around their mean, which moves only as far as the vehicle is
+        likely visible.
+        """
+        particles = self._replace(positions=positions).weighed(log_ratios)
+        if not keeps_mean:
+            return particles
+        drift = self.weights @ (positions - self.positions)
+        back = (1 - particles.probability_visible) * drift
+        return particles._replace(positions=positions - back)
 
     def weighed_alike(self, log_ratio: float) -> Hypotheses:
         """Take evidence on visibility that is the same for all hypotheses; weights stay."""

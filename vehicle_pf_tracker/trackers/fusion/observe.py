@@ -141,7 +141,9 @@ def _predicted(state: State, step: Step) -> tuple[State, Array]:
         grown = size * np.exp(float(particles.weights @ particles.growths) * elapsed)
         size = step.bounded(np.minimum(grown, LARGEST_GROWTH * state.whole.measured))
     across = 1.0 if visible else ACROSS_LANES
-    predicted = particles.predicted(step.rng, elapsed, sigmas, across).passed(elapsed)
+    covered = _is_covered(state)
+    predicted = particles.predicted(step.rng, elapsed, sigmas, across, keeps_mean=covered)
+    predicted = predicted.passed(elapsed)
     inside = predicted._replace(positions=step.inside(predicted.positions))
     return state._replace(particles=inside, size=size, frames=state.frames + 1), predicted.mean
 
@@ -206,7 +208,10 @@ def _weighed(state: State, climb: tuple[int, float], step: Step) -> tuple[State,
     if len(results) > 1:
         best = max(results, key=lambda result: state.particles.evidence(result[2]))
     view, positions, ratios, scale = best
-    particles = state.particles._replace(positions=positions).weighed(ratios)
+    # Where something moves at the predicted place it may be the vehicle, in doubt in full view, and
+    # they move to it; what answers on an occluder stands, and would hold them back.
+    covered = _is_covered(state)
+    particles = state.particles.climbed(positions, ratios, keeps_mean=covered)
     # While hidden it stays the predicted one: taken over from clutter, it would drift.
     size = step.bounded(scale * state.size) if particles.probability_visible > 0.5 else state.size
     return state._replace(particles=particles, size=size), view
@@ -238,6 +243,12 @@ def _way_of(state: State) -> Reappearance | None:
         case Hidden(outlines=outlines):
             return outlines.reappearance
     return None
+
+
+def _is_covered(state: State) -> bool:
+    """Test whether the vehicle is hidden behind something that stands."""
+    way = _way_of(state)
+    return way is not None and way.is_covered
 
 
 def _viewed(patch: Patch, step: Step) -> View:

@@ -119,6 +119,9 @@ class Reappearance(NamedTuple):
         Ages and bounding boxes of the outline, in the last looks.
     judged : tuple of Candidate
         The vehicle in it, in the last looks in which it drove on along the heading.
+    is_covered : bool
+        True where nothing moved in the middle of the predicted box in the last look: what covers
+        the vehicle is a part of the background.
     """
 
     last: Sighting
@@ -130,6 +133,7 @@ class Reappearance(NamedTuple):
     known: KnownOthers = KnownOthers()
     track: tuple[tuple[float, Array], ...] = ()
     judged: tuple[Candidate, ...] = ()
+    is_covered: bool = False
 
     @property
     def place(self) -> tuple[Array, Array]:
@@ -151,17 +155,19 @@ class Reappearance(NamedTuple):
         # none of them was there before.
         position, size = self.place
         is_large = areas(boxes) > _LEAST_AREA * size.prod()
+        # The middle half of the predicted box: only the vehicle's own rest may be seen there.
+        middle = np.stack([position - size / 4, position + size / 4])
+        is_there = _touch(boxes, middle[np.newaxis])
         is_other = ~self._on_heading(boxes) & is_large
         if self.others:
             is_other |= _touch(boxes, np.concatenate(self.others))
             known = self.known.seen(boxes, self.age)
         else:  # what is in view elsewhere when the vehicle is hidden is not the vehicle
-            # The middle half of the predicted box: only the vehicle's own rest may be seen there.
-            own = np.stack([position - size / 4, position + size / 4])
-            is_other |= ~_touch(boxes, own[np.newaxis])
+            is_other |= ~is_there
             known = KnownOthers.begun(boxes[is_other & self._is_single(boxes)], self.age)
         others = (*self.others[1 - _REMEMBERED :], boxes[is_other])
-        new = self._replace(others=others, known=known, rested=0)
+        is_covered = not (is_there & is_large).any()
+        new = self._replace(others=others, known=known, rested=0, is_covered=is_covered)
         return new._followed(boxes[~is_other], judge)
 
     def _is_single(self, boxes: Array) -> Mask:
