@@ -1,10 +1,11 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""A browser for tests of pages, where one is installed; workers that need no start."""
+"""A browser for pages where one is installed, forked workers, and an end to what hangs."""
 
 import multiprocessing
 import shutil
+import signal
 import subprocess
 
 import pytest
@@ -16,6 +17,20 @@ _OPTIONS = (
     # No page of ours needs another machine.
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
 )  # fmt: skip
+
+
+@pytest.fixture
+def no_hang():
+    """End a test that reads from a pipe that nobody writes to, or expands a file without end."""
+
+    def too_long(*_):
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, too_long)
+    signal.alarm(120)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
 
 
 @pytest.fixture

@@ -4,7 +4,6 @@
 """Parameter files that once hung, ended in a traceback, or hid what they said."""
 
 import os
-import signal
 
 import pytest
 
@@ -23,16 +22,7 @@ LONG = "1" * 4000  # as many digits as Python converts
 TOO_LONG = "1" * 5000
 
 
-@pytest.fixture(autouse=True)
-def _no_hang():
-    def too_long(*_):
-        raise TimeoutError
-
-    before = signal.signal(signal.SIGALRM, too_long)
-    signal.alarm(120)
-    yield
-    signal.alarm(0)
-    signal.signal(signal.SIGALRM, before)
+pytestmark = pytest.mark.usefixtures("no_hang")
 
 
 @pytest.mark.parametrize(

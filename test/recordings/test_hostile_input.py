@@ -5,7 +5,6 @@
 
 import json
 import os
-import signal
 
 import cv2
 import pytest
@@ -24,18 +23,7 @@ BOMB = "a: &a [x,x,x,x,x,x,x,x,x]\n" + "".join(
 )
 
 
-@pytest.fixture(autouse=True)
-def _no_hang():
-    """End a test that reads from a pipe that nobody writes to."""
-
-    def too_long(*_):
-        raise TimeoutError
-
-    before = signal.signal(signal.SIGALRM, too_long)
-    signal.alarm(120)
-    yield
-    signal.alarm(0)
-    signal.signal(signal.SIGALRM, before)
+pytestmark = pytest.mark.usefixtures("no_hang")
 
 
 @pytest.fixture
