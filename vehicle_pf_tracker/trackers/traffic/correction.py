@@ -41,7 +41,8 @@ rate of `_FOLLOWED`, the latest four count for two thirds."""
 _SHORT_FOR = 4
 """Detections in a row that are smaller from which a part is missing: fewer come by chance."""
 _COVERED_FOR = 30
-"""Detections in a row, one second of 30 Hz, after which a smaller box is all there is."""
+"""Detections in a row, one second of 30 Hz, after which a smaller box is all there is. By time four
+sparse clips gain 1.5 of IDF1 in the mean, but one of them loses .4, and one has a switch more."""
 _COME_BACK = 0.5
 """Share of missing parts that are seen again from which a place is one that covers vehicles: even
 odds."""
