@@ -191,6 +191,25 @@ class Foreground:
     def _boxes(self, small: SmallGrey) -> Array:
         return _pieces(_moving(small.image, self._whole)) / small.zoom
 
+    def changed(self, low: Array, high: Array, ago: int) -> float:
+        """Share of a part of the frame that has changed since `ago` frames before.
+
+        Zero where that one is not kept, or the part is outside.
+
+        Parameters
+        ----------
+        low, high : (2,) arrays
+            Left and upper, right and lower side of the part, px.
+        """
+        if ago >= len(self._latest):
+            return 0.0
+        small = self._latest[-1].small
+        left, top = np.floor(np.maximum(low * small.zoom, 0)).astype(int).tolist()
+        right, bottom = np.ceil(np.maximum(high * small.zoom, 0)).astype(int).tolist()
+        now = small.image[top:bottom, left:right]
+        before = self._latest[-1 - ago].small.image[top:bottom, left:right]
+        return float((cv2.absdiff(now, before) > _LEAST_CONTRAST).mean()) if now.size else 0.0
+
     def outline(self, centre: Array, size: Array, ago: int = 0) -> Outline | None:
         """Outline of what moves in a box of this centre and size, px, some frames `ago`.
 

@@ -76,6 +76,9 @@ and white_van is claimed in half of its hidden frames (laboratory/notes/fusion_t
 
 def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> State:
     """Follow a visible vehicle, or the prediction of a hidden one, by this frame's verdict."""
+    # The box becomes larger at once where a side has unfolded: that is no growth.
+    if isinstance(verdict, Turning) and isinstance(state.verdict, Visible):
+        state = state._replace(sightings=state.sightings.begun_anew())
     state = state._replace(verdict=verdict)
     match verdict:
         # Before the peak: a filter that does not know the new side has its peak anywhere.

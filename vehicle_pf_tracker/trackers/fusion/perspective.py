@@ -139,6 +139,10 @@ class Sightings(NamedTuple):
         rows[-1] = 0.0, *position.tolist(), *size.tolist(), response
         return self._replace(rows=rows, in_view=1 if returned else self.in_view + 1)
 
+    def begun_anew(self) -> Sightings:
+        """Leave out all: from now on another part of the vehicle is sighted."""
+        return Sightings(camera_stood=self.camera_stood)
+
     def proven(self) -> Sightings:
         """Leave out those since a return that was short: it may have been to another vehicle."""
         # The usual case first, which needs no look at the rows.
