@@ -1,9 +1,8 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""A browser for pages where one is installed, forked workers, and an end to what hangs."""
+"""A browser for pages where one is installed, and an end to what hangs."""
 
-import multiprocessing
 import shutil
 import signal
 import subprocess
@@ -31,17 +30,6 @@ def no_hang():
     yield
     signal.alarm(0)
     signal.signal(signal.SIGALRM, before)
-
-
-@pytest.fixture
-def forked_workers(monkeypatch):
-    """Fork worker processes from this one, where their start is not what is tested.
-
-    A start of Python that imports the package takes a second of a processor.
-    """
-    context = multiprocessing.get_context("fork")
-    name = "vehicle_pf_tracker.workers.processes.multiprocessing.get_context"
-    monkeypatch.setattr(name, lambda _method: context)
 
 
 @pytest.fixture

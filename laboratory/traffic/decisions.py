@@ -70,6 +70,7 @@ FITTED_DECISIONS: tuple[Decision, ...] = (
     Decision("trackers.traffic.births:_THIN", (0.3, 0.7), 0.0),
     Decision("trackers.traffic.correction:_WHOLE", (0.75, 0.95), 0.0),
     Decision("trackers.traffic.correction:_FOLLOWED", (0.15, 0.4)),
+    Decision("trackers.traffic.existence:_SAID_OF_NOTHING", (3.0, 8.0), 1e9),
     Decision("trackers.traffic.existence:_SCORE_DOUBT", (0.3, 0.7), 0.0),
     Decision("trackers.traffic.existence:_MISSED", (0.15, 0.5)),
     Decision("trackers.traffic.existence:_REACH", (0.25, 0.75), 0.0),

@@ -4,7 +4,6 @@
 """`run` and `traffic` over many sources, in processes here and on a cluster."""
 
 import csv
-import faulthandler
 import json
 import os
 import shutil
@@ -22,7 +21,6 @@ from vehicle_pf_tracker.workers import cluster
 
 OPENCV = ("--set", "kernels=opencv")
 PF = ("--variant", "pf", "--set", "num_particles=40", "--target", TARGET, *OPENCV)
-RUN_ONE = run_verb.run_one
 DECIDED_BY_THE_MACHINE = {"run.json", "source.json", "metrics.json"}
 
 
@@ -180,22 +178,21 @@ def test_traffic_counts_over_all_sources(videos, tmp_path, done, capsys):
 def killed(request):
     """Stand-in of `run_one` that a decoder ends in the middle of one of the sources."""
     if "north" in request.source:
-        faulthandler.disable()
         os.kill(os.getpid(), signal.SIGSEGV)
-    return RUN_ONE(request)
+    return run_verb.run_one(request)
 
 
 def test_a_decoder_that_ends_its_process_costs_its_source_only(
-    videos, tmp_path, forked_workers, monkeypatch, capsys
+    videos, tmp_path, monkeypatch, capsys
 ):
     out = tmp_path / "all"
-    with monkeypatch.context() as patch:
-        patch.setattr(run_verb, "run_one", killed)
-        assert follow("run", *videos, *PF, "--workers", 2, "-o", out) == 1
+    monkeypatch.setattr(run_verb, "run_one", killed)
+    assert follow("run", *videos, *PF, "--workers", 2, "-o", out) == 1
     (error,) = [line for line in capsys.readouterr().err.splitlines() if "SIGSEGV" in line]
     assert "north: its process was ended by SIGSEGV" in error
     for name in ("east", "west"):
         assert (out / name / "estimates.csv").exists()
+    monkeypatch.undo()
     assert follow("run", *videos, *PF, "--workers", 1, "-o", out) == 0
     assert "2 of 3 sources were done before" in capsys.readouterr().err
 

@@ -1,7 +1,6 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-import faulthandler
 import multiprocessing
 import os
 import signal
@@ -19,14 +18,13 @@ from vehicle_pf_tracker.workers.processes import run_in_processes, wait_or_kill
 def answer(task):
     """Answer, or end the process as a decoder does that writes where it may not."""
     if task in (2, 7):
-        faulthandler.disable()  # pytest's, which a fork has
         os.kill(os.getpid(), signal.SIGSEGV if task == 2 else signal.SIGKILL)
     if task == 3:
         os._exit(5)
     return str(task)
 
 
-def test_a_process_that_is_ended_costs_its_task_only(forked_workers):
+def test_a_process_that_is_ended_costs_its_task_only():
     found = dict(run_in_processes(answer, range(9), 2, lambda sentence: sentence))
     assert {task: result for task, result in found.items() if task not in (2, 3, 7)} == {
         task: str(task) for task in (0, 1, 4, 5, 6, 8)
@@ -52,9 +50,7 @@ def deaf_or_dying(task):
     return name
 
 
-def test_one_beside_it_that_takes_no_sigterm_is_not_waited_for(
-    forked_workers, tmp_path, monkeypatch
-):
+def test_one_beside_it_that_takes_no_sigterm_is_not_waited_for(tmp_path, monkeypatch):
     monkeypatch.setattr(processes, "PATIENCE", 1.0)
     before = multiprocessing.active_children()
     # The pool looks anew at all its processes after a result: one of those begun later could die

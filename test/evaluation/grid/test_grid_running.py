@@ -215,7 +215,7 @@ def lost(tmp_path):
     return path
 
 
-def test_restarts_are_a_second_run_beside_the_first(lost, forked_workers, tmp_path):
+def test_restarts_are_a_second_run_beside_the_first(lost, tmp_path):
     systems = [system("ms"), system("pf")]
     once = make_plan([lost], systems)
     again = replace(once, restart=5)

@@ -100,7 +100,7 @@ def test_what_is_no_evaluation_is_one_sentence(tmp_path, capsys):
     assert "evaluation.json" in capsys.readouterr().err
 
 
-def test_a_user_runs_two_parts_and_joins_them(forked_workers, tmp_path, capsys):
+def test_a_user_runs_two_parts_and_joins_them(tmp_path, capsys):
     recordings = write_recordings(tmp_path / "recordings")
     words = ["evaluate", *map(str, recordings), "--variants", "ms", "--seeds", "1"]
     for number in (1, 2):
