@@ -48,7 +48,7 @@ SECOND_ANSWERS = 1.0
 """Seconds in which a second answer to the last images would come."""
 _DEPTH, _LONG_DEPTH = 10, 100
 """Images that wait for a node: two thirds of a second of a camera, and more than any pause."""
-_MOST_WAITING = 50
+MOST_WAITING = 50
 """Reliable images without an answer from which the next one is held back: half of a long queue. On
 a machine that is too busy for the rate, a full queue would lose images by no fault of the node."""
 
@@ -178,7 +178,7 @@ class Soak:
 
     def _let_catch_up(self) -> None:
         deadline = time.monotonic() + LAST_ANSWERS
-        while max(ledger.unanswered for ledger in self._ledgers.values()) > _MOST_WAITING:
+        while max(ledger.unanswered for ledger in self._ledgers.values()) > MOST_WAITING:
             # Those that were lost have no answer: they are reported, and not waited for again.
             if time.monotonic() > deadline:
                 break

@@ -41,15 +41,46 @@ class Ledger:
     def close(self): ...
 
 
+class LateLedger(Ledger):
+    """Of a node that answers at every other look."""
+
+    unanswered = most = looks = 0
+
+    def note(self, image, *, is_good):
+        self.unanswered += 1
+        LateLedger.most = max(LateLedger.most, self.unanswered)
+
+    def hear(self):
+        self.looks += 1
+        self.unanswered = max(0, self.unanswered - self.looks % 2)
+
+
+REQUEST = SimpleNamespace(
+    nodes="traffic",
+    motion=True,
+    rate=1e6,
+    share=0.0,
+    minutes=1e-9,
+    every=1.0,
+    seed=0,
+    best_effort=False,
+)
+
+
+def test_images_are_held_back_before_the_queue_is_full(tmp_path, monkeypatch):
+    monkeypatch.setattr(soak, "_start", lambda *words: None)
+    monkeypatch.setattr(soak, "Ledger", LateLedger)
+    monkeypatch.setattr(soak, "MOST_WAITING", 5)
+    soak.Soak(NotingTester(), REQUEST, tmp_path).run()
+    assert LateLedger.most == 6
+
+
 def test_answers_are_heard_between_images_that_are_all_late(tmp_path, monkeypatch):
     monkeypatch.setattr(soak, "_start", lambda *words: None)
     monkeypatch.setattr(soak, "Ledger", Ledger)
     tester = NotingTester()
     # A million images a second: each is late as soon as the one before it is painted.
-    request = SimpleNamespace(
-        nodes="traffic", motion=True, rate=1e6, share=0.0, minutes=1e-9, every=1.0, seed=0
-    )
-    soak.Soak(tester, request, tmp_path).run()
+    soak.Soak(tester, REQUEST, tmp_path).run()
     images = tester.events.count("image")
     assert images > 50
     assert tester.events == [*["image", soak.LATE] * images, soak.SECOND_ANSWERS]
