@@ -11,11 +11,17 @@ import pytest
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
 _OPTIONS = (
-    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
     # No page of ours needs another machine.
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
-)  # fmt: skip
+)
 
 
 @pytest.fixture
@@ -41,9 +47,14 @@ def browse(tmp_path):
 
     def open_page(url, *, width=1280):
         command = [
-            found, *_OPTIONS, f"--user-data-dir={tmp_path / 'browser'}",
-            f"--window-size={width},1000", "--virtual-time-budget=5000", "--dump-dom", url,
-        ]  # fmt: skip
+            found,
+            *_OPTIONS,
+            f"--user-data-dir={tmp_path / 'browser'}",
+            f"--window-size={width},1000",
+            "--virtual-time-budget=5000",
+            "--dump-dom",
+            url,
+        ]
         done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
         return done.stdout
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import random
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -73,7 +73,7 @@ class Soak:
         has_detector = TRAFFIC_VARIANT.name in names and not request.motion
         self._tester = tester
         self._rate = request.rate
-        self._is_reliable = not request.best_effort
+        self._holds_back = not request.best_effort
         self._share = request.share
         self._random = random.Random(request.seed)
         self._scene = BridgeScene(total, request.every, request.rate)
@@ -104,7 +104,7 @@ class Soak:
         number = 0
         while not self._scene.traffic.is_over:
             number += 1
-            if self._is_reliable:
+            if self._holds_back:
                 self._let_catch_up()
             # 1. At times a faulty image before the good one.
             if self._random.random() < self._share:
@@ -177,21 +177,26 @@ class Soak:
         return sum(ledger.unanswered for ledger in self._ledgers.values())
 
     def _let_catch_up(self) -> None:
-        deadline = time.monotonic() + LAST_ANSWERS
-        while max(ledger.unanswered for ledger in self._ledgers.values()) > MOST_WAITING:
-            # Those that were lost have no answer: they are reported, and not waited for again.
-            if time.monotonic() > deadline:
-                break
-            self._hear(0.02)
+        self._hear_while(lambda: self._most_unanswered > MOST_WAITING)
+        # Images that were lost have no answer: they are reported, and waited for once.
+        self._holds_back = self._most_unanswered <= MOST_WAITING
 
-    def _hear_last(self) -> None:
+    @property
+    def _most_unanswered(self) -> int:
+        return max(ledger.unanswered for ledger in self._ledgers.values())
+
+    def _hear_while(self, waits: Callable[[], object]) -> None:
+        """Hear while there is something to wait for, until `LAST_ANSWERS` s bring no answer."""
         heard = self._answered
         deadline = time.monotonic() + LAST_ANSWERS
-        while self._unanswered and time.monotonic() < deadline:
+        while waits() and time.monotonic() < deadline:
             self._hear(0.02)
             if self._answered > heard:
                 heard = self._answered
                 deadline = time.monotonic() + LAST_ANSWERS
+
+    def _hear_last(self) -> None:
+        self._hear_while(lambda: self._unanswered)
         # No second answers follow.
         self._hear(SECOND_ANSWERS)
         self._numbers.close()

@@ -55,6 +55,15 @@ class LateLedger(Ledger):
         self.unanswered = max(0, self.unanswered - self.looks % 2)
 
 
+class LostLedger(Ledger):
+    """Of a node that gets no image."""
+
+    unanswered = 0
+
+    def note(self, image, *, is_good):
+        self.unanswered += 1
+
+
 REQUEST = SimpleNamespace(
     nodes="traffic",
     motion=True,
@@ -73,6 +82,19 @@ def test_images_are_held_back_before_the_queue_is_full(tmp_path, monkeypatch):
     monkeypatch.setattr(soak, "MOST_WAITING", 5)
     soak.Soak(NotingTester(), REQUEST, tmp_path).run()
     assert LateLedger.most == 6
+
+
+def test_images_that_were_lost_hold_the_next_ones_back_once(tmp_path, monkeypatch):
+    monkeypatch.setattr(soak, "_start", lambda *words: None)
+    monkeypatch.setattr(soak, "Ledger", LostLedger)
+    monkeypatch.setattr(soak, "MOST_WAITING", 5)
+    clock = iter(range(100_000))
+    monkeypatch.setattr(soak.time, "monotonic", lambda: float(next(clock)))
+    tester = NotingTester()
+    soak.Soak(tester, REQUEST, tmp_path).run()
+    looks = tester.events.count(0.02)
+    # Before the seventh image, and after the last one.
+    assert looks == 2 * (soak.LAST_ANSWERS - 1)
 
 
 def test_answers_are_heard_between_images_that_are_all_late(tmp_path, monkeypatch):

@@ -71,8 +71,8 @@ def _library_of_wholes(library: type[Any]) -> type[Any]:
     class Library(library):  # type: ignore[misc]
         @property
         def _is_part(self) -> bool:
-            functions = self._final_module.functions
-            return not any(one.name.startswith(_WRAPPER) for one in functions)
+            names = [function.name for function in self._final_module.functions]
+            return not any(name.startswith(_WRAPPER) for name in names)
 
         def _optimize_final_module(self) -> None:
             if not self._is_part:
