@@ -13,10 +13,11 @@ from __future__ import annotations
 import argparse
 import os
 import statistics
+import sys
 import tempfile
-import threading
 import time
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 from benchmarks.bench.camera import Camera
 from benchmarks.bench.processes import NodeProcess, floor_words, tracker_words
@@ -29,8 +30,8 @@ KINDS = ("floor", "warm", "cold")
 """Kinds of starts, the cheapest first: a warm one leaves nothing for the cold one behind."""
 
 
-def main() -> None:
-    """Print the table."""
+def main() -> int:
+    """Print the table; return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.first_answer", description=__doc__)
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
     parser.add_argument("--rounds", type=int, default=3, help="starts of each kind, in turns")
@@ -38,16 +39,27 @@ def main() -> None:
     # A domain of its own: nodes of another run on this machine are not heard.
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
-    if "warm" in args.kinds:
-        start("warm")  # not counted: it compiles, and keeps the kernels for those that are
-    times: dict[str, list[tuple[float, float]]] = {kind: [] for kind in args.kinds}
-    for _ in range(args.rounds):
-        for kind in args.kinds:
-            times[kind].append(start(kind))
+    try:
+        times = _measure(args.kinds, args.rounds)
+    except InputError as error:
+        print(f"first_answer: {error}", file=sys.stderr)
+        return 1
     print("| start | ready, s | first answer, s |\n| --- | ---: | ---: |")
     for kind, pairs in times.items():
         ready, answer = (statistics.median(seconds) for seconds in zip(*pairs, strict=True))
         print(f"| {kind} | {ready:.2f} | {answer:.2f} |")
+    return 0
+
+
+def _measure(kinds: Sequence[str], rounds: int) -> dict[str, list[tuple[float, float]]]:
+    """Start each kind in turns; seconds until ready and until the first answer, by kind."""
+    if "warm" in kinds:
+        start("warm")  # not counted: it compiles, and keeps the kernels for those that are
+    times: dict[str, list[tuple[float, float]]] = {kind: [] for kind in kinds}
+    for _ in range(rounds):
+        for kind in kinds:
+            times[kind].append(start(kind))
+    return times
 
 
 def start(kind: str) -> tuple[float, float]:
@@ -61,19 +73,15 @@ def start(kind: str) -> tuple[float, float]:
     with (
         tempfile.TemporaryDirectory() as empty,
         Camera({_IMAGE: _ANSWERS["floor" if kind == "floor" else "warm"]}) as camera,
+        ThreadPoolExecutor(1) as thread,
     ):
-        answered: list[float] = []
-        shows = threading.Thread(target=lambda: answered.append(camera.first_answer(_IMAGE)))
         began = time.monotonic()
-        shows.start()
+        answered = thread.submit(camera.first_answer, _IMAGE)
         # An empty cache: numba has to compile everything.
         environment = {"NUMBA_CACHE_DIR": empty} if kind == "cold" else {}
         with NodeProcess(_words(kind), environment):
             ready = time.monotonic() - began
-            shows.join()
-    if not answered:
-        raise InputError("the node answers no image")
-    return ready, answered[0] - began
+            return ready, answered.result() - began
 
 
 def _words(kind: str) -> Sequence[str]:
@@ -81,4 +89,4 @@ def _words(kind: str) -> Sequence[str]:
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())

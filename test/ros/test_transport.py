@@ -1,6 +1,9 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
+import itertools
+import socket
+import time
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -102,3 +105,22 @@ def test_too_little_shared_memory_is_told(monkeypatch):
         assert environment == {}
     assert "0.0 MB free" in notice
     assert "6.3 MB" in notice
+
+
+def test_a_node_announces_itself_often(start_node, ros_domain):
+    # Where Fast DDS would announce the tenth participant of the domain on this host.
+    port = 7400 + 250 * ros_domain + 10 + 2 * 9
+    heard = []
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as peer:
+        peer.bind(("127.0.0.1", port))
+        peer.settimeout(20)
+        start_node("ms")
+        # It begins with a burst of 0.1 s; the default is a pause of 3 s after it.
+        while not any(gap > 0.5 for gap in _gaps(heard)):
+            assert peer.recv(65536).startswith(b"RTPS")
+            heard.append(time.monotonic())
+    assert max(_gaps(heard)) < 2
+
+
+def _gaps(times):
+    return [after - before for before, after in itertools.pairwise(times)]

@@ -6,6 +6,11 @@
 The default segment of half a megabyte loses most of the images that best-effort subscribers are
 sent. The publisher's segment decides, and it can be set only before the process makes its first
 participant.
+
+The profile also makes its participants announce themselves every second instead of every 3 s. A
+participant of Fast DDS (2.14 and 3.6 alike) announces itself when it starts, and only then begins
+to read: the one answer of a participant that was there before comes within a millisecond, and a
+third of all starts lose it. Both then wait for the next announcement of the older one.
 """
 
 from __future__ import annotations
@@ -53,7 +58,7 @@ def segment_size(image_bytes: int, free_bytes: int) -> int | None:
 
 
 def profile(size: int) -> str:
-    """Write the XML profile with a shared-memory segment of `size` bytes and UDP beside it."""
+    """Write the XML profile: a shared-memory segment of `size` bytes, UDP beside it, discovery."""
     text = resources.files(__package__).joinpath("transport.xml").read_text(encoding="utf-8")
     return text.format(segment_size=size)
 
