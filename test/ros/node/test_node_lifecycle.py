@@ -12,6 +12,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
 from lifecycle_msgs.srv import ChangeState, GetState
+from rclpy.serialization import serialize_message
 from tracker_rig import Rig, TrackerNode, header, on_target, overrides, road, values_of
 
 from vehicle_pf_tracker.ros.messages import image_message
@@ -80,7 +81,7 @@ def test_an_image_taken_just_before_is_left_alone(bench, manager, transitions):
     take = rig.callback("/image")
     for transition in transitions:
         assert manager.change(transition)
-    take(image_message(header(3), frames[3]), {})
+    take(serialize_message(image_message(header(3), frames[3])), {})
     assert rig.node.diagnostics.health.arrivals.images == 3
     assert len(rig.modes) == 3
 

@@ -21,9 +21,10 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.formats.compressed_image import CodedImage, read_compressed
 from vehicle_pf_tracker.image.formats.encodings import frame_of_message
 from vehicle_pf_tracker.ros.rclpy_internals import RCLError
+from vehicle_pf_tracker.ros.serialized_image import ImageMessage, read_serialized_image
 
-ImageCallback = Callable[[Any, Mapping[str, Any]], None]
-"""Takes a message and its info."""
+ImageCallback = Callable[[ImageMessage, Mapping[str, Any]], None]
+"""Takes an image and its info."""
 
 _TYPE_NAMES = {Image: "sensor_msgs/msg/Image", CompressedImage: "sensor_msgs/msg/CompressedImage"}
 """Names of the types in the graph, which knows no classes."""
@@ -75,7 +76,7 @@ class ImageInput:
     depth : int
         Images that may wait.
     callback : callable
-        Takes the message and its info.
+        Takes the image and its info.
 
     Raises
     ------
@@ -90,7 +91,14 @@ class ImageInput:
         self.topic = image_topic(node, transport)
         # Best effort fits publishers of either kind, and a late image is worth less than the next.
         qos = QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT)
-        self._subscription = subscribe(node, self._kind, self.topic, callback, qos)
+
+        def take(serialized: bytes, info: Mapping[str, Any]) -> None:
+            callback(read_serialized_image(serialized), info)
+
+        is_raw = self._kind is Image
+        self._subscription = subscribe(
+            node, self._kind, self.topic, take if is_raw else callback, qos, raw=is_raw
+        )
 
     def count_publishers(self) -> int:
         """Return the number of publishers that match in topic, type and QoS."""
@@ -142,7 +150,7 @@ class ImageInput:
         return f"; images are on {', '.join(found)}: remap image to one of them" if found else ""
 
 
-def read_image(message: Image | CompressedImage) -> Frame | CodedImage:
+def read_image(message: ImageMessage) -> Frame | CodedImage:
     """Return the RGB frame of `message`; for rgb8 a view of its data.
 
     A compressed image is not decoded: it may be a stray, of any size.

@@ -22,7 +22,6 @@ from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
-from sensor_msgs.msg import CompressedImage, Image
 from std_srvs.srv import Trigger
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -33,6 +32,7 @@ from vehicle_pf_tracker.ros.node.diagnostics import Diagnostics
 from vehicle_pf_tracker.ros.node.image_input import ImageInput
 from vehicle_pf_tracker.ros.node.image_path import Feed, ImagePath
 from vehicle_pf_tracker.ros.node.parameters import ParameterTable, take_overrides, unknown_overrides
+from vehicle_pf_tracker.ros.serialized_image import ImageMessage
 
 
 class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
@@ -74,7 +74,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         self.failure = ""
         self.path = None
         self.feed = None
-        self.accept: Callable[[Image | CompressedImage], None] | None = None
+        self.accept: Callable[[ImageMessage], None] | None = None
         self.inputs: list[Subscription] = []
         self.held = ExitStack()
         # rclpy answers a request without a reason; ours is wrapped around its own callback.
@@ -200,7 +200,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         self.feed = None
         self.accept = None
 
-    def _on_image(self, image: Image | CompressedImage, info: Mapping[str, Any]) -> None:
+    def _on_image(self, image: ImageMessage, info: Mapping[str, Any]) -> None:
         """Note an image, and pass it on; not one that a deactivation has overtaken."""
         source = self.diagnostics.source
         if source is None or self.accept is None:

@@ -11,7 +11,6 @@ from typing import Any, Protocol
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
-from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box, check_target
@@ -25,6 +24,7 @@ from vehicle_pf_tracker.ros.node.image_input import read_image
 from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder
 from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.node.kept_target import KeptTarget
+from vehicle_pf_tracker.ros.serialized_image import ImageMessage
 from vehicle_pf_tracker.trackers.attempts import TrackerError, unexpected
 
 
@@ -119,7 +119,7 @@ class ImagePath:
         # Last: it starts the feed on the target, and logs.
         self._go_on_with_kept()
 
-    def take(self, message: Image | CompressedImage, detections: Any = None) -> None:
+    def take(self, message: ImageMessage, detections: Any = None) -> None:
         """Take an image, with its detections where it has some; answer it with one `~/mode`."""
         header = message.header
         if self.incidents is not None:

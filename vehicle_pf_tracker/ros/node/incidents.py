@@ -26,11 +26,14 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.own_files import ros_folder
+from vehicle_pf_tracker.ros.serialized_image import ImageMessage, SerializedImage
 
 _LENGTH = 10.0
 """Seconds that are kept, a choice: an occlusion and what led to it."""
+_RAW = "/camera/image_raw", "sensor_msgs/msg/Image"
 _TOPICS = {
-    Image: ("/camera/image_raw", "sensor_msgs/msg/Image"),
+    Image: _RAW,
+    SerializedImage: _RAW,
     CompressedImage: ("/camera/image_raw/compressed", "sensor_msgs/msg/CompressedImage"),
     DiagnosticArray: ("/{}/mode", "diagnostic_msgs/msg/DiagnosticArray"),
 }
@@ -66,13 +69,12 @@ class IncidentRecorder:
         """Number of messages that are kept."""
         return len(self._kept)
 
-    def keep(
-        self, message: Image | CompressedImage | DiagnosticArray, box: Box | None = None
-    ) -> None:
+    def keep(self, message: ImageMessage | DiagnosticArray, box: Box | None = None) -> None:
         """Keep a message, and let go of old ones; a run can start on the target's `box`."""
         now = self._clock()
         # As bytes, whose size is known, and which nobody changes.
-        data = serialize_message(message)
+        is_serialized = isinstance(message, SerializedImage)
+        data = message.serialized if is_serialized else serialize_message(message)
         self._kept.append((now, stamp_ns(message.header), type(message), data, box))
         self._bytes += len(data)
         while self._kept and (self._bytes > self._most or now - self._kept[0][0] > _LENGTH):

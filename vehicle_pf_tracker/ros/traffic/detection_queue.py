@@ -7,21 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from sensor_msgs.msg import CompressedImage, Image
-
 from vehicle_pf_tracker.core.cdr import header_stamp_ns
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.detections import MOST_DETECTIONS, Detections
 from vehicle_pf_tracker.detection.parameters import DetectorParameters
 from vehicle_pf_tracker.ros.messages import stamp_ns
 from vehicle_pf_tracker.ros.node.notices import Notices
+from vehicle_pf_tracker.ros.serialized_image import ImageMessage
 from vehicle_pf_tracker.ros.traffic.messages import read_serialized_detections
 from vehicle_pf_tracker.ros.traffic.waiting_images import WaitingImages
 
 _BY_PIXELS = "vehicles are followed by their pixels meanwhile"
 """Consequence of missing detections, for the log."""
 
-WaitingMessages = WaitingImages[Image | CompressedImage]
+WaitingMessages = WaitingImages[ImageMessage]
 
 
 class DetectionQueue:
@@ -43,7 +42,7 @@ class DetectionQueue:
         self,
         waiting: WaitingMessages,
         parameters: Callable[[], DetectorParameters],
-        pass_on: Callable[[Image | CompressedImage, Detections | None], None],
+        pass_on: Callable[[ImageMessage, Detections | None], None],
         warnings: Notices,
     ) -> None:
         self._waiting = waiting
@@ -51,7 +50,7 @@ class DetectionQueue:
         self._pass_on = pass_on
         self._warnings = warnings
 
-    def add_image(self, message: Image | CompressedImage) -> None:
+    def add_image(self, message: ImageMessage) -> None:
         """Take an image, which is passed on now or after its detections."""
         self._waiting.add_image(message, stamp_ns(message.header), self._parameters().max_wait)
         self.go_on()
