@@ -26,6 +26,7 @@ from scipy.optimize import minimize
 from scipy.special import gammaln
 
 from laboratory.result_store import ResultStore
+from laboratory.traffic.camera_clips import cut
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
@@ -113,19 +114,6 @@ def lines_of(sequence: TrafficSequence, boxes: str, store: ResultStore) -> list[
         follow(cut(sequence, boxes), TrafficParameters(), lines=lines)
         store.add(key, key, {"lines": [packed(result) for result in lines.results()]})
     return [unpacked(one) for one in store[key]["lines"]]
-
-
-def cut(sequence: TrafficSequence, boxes: str) -> tuple[TrafficSequence, str]:
-    """Return a scene whose detections have scores from what the name says."""
-    name, _, least = boxes.partition("@")
-    if name != MOTION_SOURCE and name not in sequence.detections:
-        raise InputError(f"{sequence.folder} has no det/{name}.txt")
-    if not least:
-        return sequence, name
-    # Rows of MOTChallenge's detections: the sixth is the score.
-    rows = sequence.detections[name]
-    kept = {name: rows[rows[:, 5] >= float(least)]}
-    return replace(sequence, detections=kept), name
 
 
 def packed(one: LineCount) -> list[object]:

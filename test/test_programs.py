@@ -93,10 +93,11 @@ PROGRAMS = {
         needs=("baselines",),
     ),
     "laboratory.traffic.fit": Program(
-        "toy={toy}/traffic --boxes good --only detection.blobs:_PIECE -o {out}",
+        "toy={toy}/traffic --boxes good --only trackers.traffic.existence:_MISSED -o {out}",
         ("leave_one_camera_out.md", "runs.jsonl"),
         needs=("baselines",),
     ),
+    "laboratory.traffic.joined": Program("toy={toy}/traffic", printed="| traffic |"),
     "laboratory.traffic.occluders": Program("{toy}/traffic", printed="traffic: "),
     "laboratory.traffic.perturbed": Program(
         "{toy}/traffic -o {out}", ("traffic.md",), "the report is", ("baselines",)

@@ -6,7 +6,7 @@
 import pytest
 
 from laboratory.traffic.camera_clips import read_clip
-from laboratory.traffic.decision_table import best_for_others, row
+from laboratory.traffic.decision_table import best_for_others, mean_and_error, row
 from laboratory.traffic.decisions import FITTED_DECISIONS, Decision
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED_THRESHOLDS
@@ -49,10 +49,27 @@ def test_a_row_has_what_is_seen_what_is_left_out_and_what_it_is_worth():
         "detection.blobs:_PIECE",
         "0.08",
         "0.7, 0.5, 0.5",
-        "50.0",
         f"{(50 + 30 + 45) / 3:.1f}",
-        f"{50 - (99 + 10 + 10) / 3:+.1f}",
+        "50.0",
+        f"{(99 + 10 + 10) / 3:.1f}",
+        # Differences of -39, 30 and 40: a standard deviation of 43.0, over the root of three.
+        "+10.3 ± 24.8",
     ]
+
+
+def test_a_decision_matters_only_where_it_can_act():
+    motion = Decision("detection.blobs:_PIECE", (0.5,))
+    scores = Decision("trackers.traffic.existence:_SCORE_DOUBT", (0.3,), 0.0, True)
+    always = Decision("trackers.traffic.existence:_MISSED", (0.15,))
+    for decision, expected in ((motion, (True, False)), (scores, (False, True))):
+        assert (decision.matters("motion"), decision.matters("yolox")) == expected
+    assert always.matters("motion")
+    assert always.matters("yolox")
+
+
+def test_one_camera_has_no_standard_error():
+    assert mean_and_error([-1.25]) == "-1.2"
+    assert mean_and_error([1.0, 3.0]) == "+2.0 ± 1.0"
 
 
 def test_a_clip_without_a_camera_is_refused(tmp_path):

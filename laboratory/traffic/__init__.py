@@ -11,6 +11,7 @@ Each is run by its name, as `python -m laboratory.traffic.fit`:
 - `spread`: what changes of no meaning do to its scores
 - `clips`: the identity of single vehicles with truth
 - `occluders`: whether it says rightly who hides a vehicle
+- `joined`: whether it says rightly how many vehicles motion cannot tell apart
 
 What `fit` tries are `decisions`, in `trials` over `camera_clips`; the `decision_table` judges them.
 """

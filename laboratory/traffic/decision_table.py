@@ -11,9 +11,18 @@ from collections.abc import Mapping, Sequence
 from laboratory.traffic.decisions import Decision
 from vehicle_pf_tracker.evaluation.tables import NO_SCORE
 
-HEADER = ["decision", "shipped", "by the other cameras", "shipped scores", "left out", "worth"]
+HEADER = [
+    "decision",
+    "shipped",
+    "by the other cameras",
+    "left out",
+    "shipped scores",
+    "without",
+    "worth",
+]
 """Headings; *by the other cameras* has the values that are best for them, in the order of the
-cameras, *left out* the mean of what each scores on the camera that it has not seen."""
+cameras, *left out* the mean of what each scores on the camera that it has not seen; *worth* is what
+the shipped value scores more than none, mean and standard error over the cameras."""
 
 
 def row(decision: Decision, scores: Mapping[float, Mapping[str, float]]) -> list[str]:
@@ -25,11 +34,22 @@ def row(decision: Decision, scores: Mapping[float, Mapping[str, float]]) -> list
     chosen = {camera: best_for_others(scores, candidates, camera) for camera in cameras}
     seen = statistics.fmean(scores[shipped].values())
     left_out = statistics.fmean(scores[value][camera] for camera, value in chosen.items())
-    worth = NO_SCORE
+    without = worth = NO_SCORE
     if decision.without is not None:
-        worth = f"{seen - statistics.fmean(scores[decision.without].values()):+.1f}"
+        none = scores[decision.without]
+        without = f"{statistics.fmean(none.values()):.1f}"
+        worth = mean_and_error([scores[shipped][camera] - none[camera] for camera in cameras])
     values = ", ".join(f"{value:g}" for value in chosen.values())
-    return [decision.place, f"{shipped:g}", values, f"{seen:.1f}", f"{left_out:.1f}", worth]
+    judged = (f"{left_out:.1f}", f"{seen:.1f}", without, worth)
+    return [decision.place, f"{shipped:g}", values, *judged]
+
+
+def mean_and_error(differences: Sequence[float]) -> str:
+    """Return the mean of paired differences, and its standard error where there are several."""
+    mean = f"{statistics.fmean(differences):+.1f}"
+    if len(differences) < 2:
+        return mean
+    return f"{mean} ± {statistics.stdev(differences) / len(differences) ** 0.5:.1f}"
 
 
 def best_for_others(

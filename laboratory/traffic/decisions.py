@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from vehicle_pf_tracker.evaluation.traffic.case_run import MOTION_SOURCE
+
 _PACKAGE = "vehicle_pf_tracker"
 
 
@@ -26,11 +28,20 @@ class Decision:
         Values to try beside the shipped one.
     without : float or None
         Value by which nothing is decided; None where there is none.
+    is_of_scores : bool
+        True where it decides by the scores of a network, which shapes have not.
     """
 
     place: str
     values: tuple[float, ...]
     without: float | None = None
+    is_of_scores: bool = False
+
+    def matters(self, boxes: str) -> bool:
+        """Tell whether it decides anything with these boxes, ``motion`` or of a detector."""
+        if self.place.startswith("detection."):
+            return boxes == MOTION_SOURCE
+        return boxes != MOTION_SOURCE or not self.is_of_scores
 
     def get(self) -> float:
         """Return the shipped value."""
@@ -70,8 +81,8 @@ FITTED_DECISIONS: tuple[Decision, ...] = (
     Decision("trackers.traffic.births:_THIN", (0.3, 0.7), 0.0),
     Decision("trackers.traffic.correction:_WHOLE", (0.75, 0.95), 0.0),
     Decision("trackers.traffic.correction:_FOLLOWED", (0.15, 0.4)),
-    Decision("trackers.traffic.existence:_SAID_OF_NOTHING", (3.0, 8.0), 1e9),
-    Decision("trackers.traffic.existence:_SCORE_DOUBT", (0.3, 0.7), 0.0),
+    Decision("trackers.traffic.existence:_SAID_OF_NOTHING", (3.0, 8.0), 1e9, True),
+    Decision("trackers.traffic.existence:_SCORE_DOUBT", (0.3, 0.7), 0.0, True),
     Decision("trackers.traffic.existence:_MISSED", (0.15, 0.5)),
     Decision("trackers.traffic.existence:_REACH", (0.25, 0.75), 0.0),
     Decision("trackers.traffic.existence:_REST", (0.15, 0.5), 1e9),

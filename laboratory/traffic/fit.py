@@ -6,10 +6,12 @@
     python -m laboratory.traffic.fit CAMERA=FOLDER... --boxes motion -o results/traffic_fit
 
 runs every decision of `decisions` (or those of ``--only``) at each of its values over all
-clips, which are folders in MOTChallenge's layout; clips of one camera have the same name before the
-equals sign. The score of a run is the mean of HOTA and IDF1. ``leave_one_camera_out.md`` has for
-each decision the value that is best for the other cameras, what it scores on the one left out, and
-what the decision is worth: the shipped value's score less that without it. Runs are kept in
+clips that it matters to: folders in MOTChallenge's layout; clips of one camera have the same name
+before the equals sign. CAMERA=FOLDER=BOXES gives a clip boxes of its own, ``yolox_nano@.1`` those
+of a file of ``det/`` from a score on. The score of a run is the mean of HOTA and IDF1.
+``leave_one_camera_out.md`` has for each decision the value that is best for the other cameras, what
+it scores on the one left out, the shipped value's score, that without the decision, and what it is
+worth: the difference of the last two, with its standard error over the cameras. Runs are kept in
 ``runs.jsonl``: delete it when the code has changed.
 """
 
@@ -34,8 +36,8 @@ from vehicle_pf_tracker.results.output_files import write_text
 def main() -> int:
     """Fit, and write the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("clips", nargs="+", metavar="CAMERA=FOLDER")
-    parser.add_argument("--boxes", default="motion", help="motion, or a file of det/")
+    parser.add_argument("clips", nargs="+", metavar="CAMERA=FOLDER[=BOXES]")
+    parser.add_argument("--boxes", default="motion", help="of clips without: motion, or of det/")
     parser.add_argument("--only", action="append", default=[], metavar="PLACE")
     parser.add_argument("-o", "--out", type=Path, required=True)
     args = parser.parse_args()
@@ -43,6 +45,10 @@ def main() -> int:
     decisions = [each for each in FITTED_DECISIONS if not args.only or each.place in args.only]
     if not decisions:
         raise InputError(f"--only names no decision: {', '.join(args.only)}")
+    # The others would be as many runs, all as shipped.
+    decisions = [each for each in decisions if any(each.matters(clip.boxes) for clip in clips)]
+    if not decisions:
+        raise InputError("none of these decisions matters with these boxes")
     store = ResultStore(args.out / "runs.jsonl")
     with TrafficWorker() as worker:
         rows = [row(decision, scores_of(decision, clips, store, worker)) for decision in decisions]

@@ -35,11 +35,12 @@ def scores_of(
         name = "shipped" if value == shipped else f"{decision.place}={value:g}"
         cameras: dict[str, list[float]] = {}
         for clip in clips:
-            key = f"{name} {clip.sequence.folder.resolve()} {clip.boxes}"
+            run = name if decision.matters(clip.boxes) else "shipped"
+            key = f"{run} {clip.sequence.folder.resolve()} {clip.boxes}"
             # Scored once for all decisions, and kept as soon as it is there.
             if key not in store:
                 with decision.at(value):
-                    tracks, _, _ = follow((clip.sequence, clip.boxes), TrafficParameters())
+                    tracks, _, _ = follow(clip.given, TrafficParameters())
                 scores = worker.score(clip.sequence, tracks)
                 store.add(key, key, {"HOTA": scores["HOTA"], "IDF1": scores["IDF1"]})
             cameras.setdefault(clip.camera, []).append(objective(store[key]))

@@ -9,7 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from vehicle_pf_tracker.cli.network_advice import advice_over_sources, network_advice
+from vehicle_pf_tracker.cli.network_advice import (
+    advice_over_sources,
+    joined_vehicles,
+    network_advice,
+)
 from vehicle_pf_tracker.trackers.traffic.session import DetectionTotals
 
 COMMAND = ["vehicle-pf-tracker", "traffic", "my clip.mp4", "--lines", "lines.yaml", "-o", "out"]
@@ -18,6 +22,21 @@ COMMAND = ["vehicle-pf-tracker", "traffic", "my clip.mp4", "--lines", "lines.yam
 def test_few_ambiguous_blobs_are_no_reason():
     assert network_advice(COMMAND, Path("out"), DetectionTotals(images=0)) == []
     assert network_advice(COMMAND, Path("out"), DetectionTotals(images=100, ambiguous=30)) == []
+
+
+def test_vehicles_without_a_number_are_said_from_one_at_a_time_on():
+    few = DetectionTotals(images=100, sized=50, unresolved=40.0)
+    assert joined_vehicles(few) == []
+    many = DetectionTotals(images=100, sized=50, unresolved=125.0)
+    (sentence,) = joined_vehicles(many)
+    assert sentence.startswith("about 2.5 vehicles at a time")
+    assert sentence.endswith("in 50 of 100 images")
+
+
+def test_where_no_size_is_known_nobody_can_tell():
+    (sentence,) = joined_vehicles(DetectionTotals(images=100, ambiguous=45))
+    assert "cannot be told" in sentence
+    assert joined_vehicles(DetectionTotals(images=100, ambiguous=30)) == []
 
 
 @pytest.mark.parametrize(

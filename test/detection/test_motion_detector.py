@@ -10,6 +10,7 @@ from vehicle_pf_tracker.detection.blobs import BlobReader
 from vehicle_pf_tracker.detection.motion_detector import MotionDetector
 
 GROUND = np.random.default_rng(0).integers(90, 120, (120, 160, 3))
+NOBODY = np.empty((0, 4))
 PAINT = np.random.default_rng(1).integers(180, 250, (24, 36, 3))
 
 
@@ -161,6 +162,18 @@ def test_blobs_that_hold_several_vehicles_are_reported():
     assert reader.read(mask((20, 40, 62, 60)), both, motion).ambiguous == 1
     assert reader.read(mask((20, 40, 40, 60), (42, 40, 62, 60)), both, motion).ambiguous == 0
     assert reader.read(mask((20, 20, 50, 44), (48, 43, 78, 67)), both[:0], motion).ambiguous == 1
+
+
+def test_vehicles_of_a_blob_that_are_not_followed_are_estimated_by_its_size():
+    reader = BlobReader()
+    assert reader.read(mask((10, 10, 50, 50)), NOBODY, NOBODY[:, :2]).joined is None
+    for left in range(20, 31):
+        alone = np.array([[left, 40.0, left + 20, 60]])
+        reader.read(mask((left, 40, left + 20, 60)), alone, NOBODY[:, :2])
+    # Eight usual areas of 20 x 20 px are 7.2 vehicles, and one is followed.
+    joined = reader.read(mask((30, 20, 110, 60)), alone, NOBODY[:, :2]).joined
+    assert joined == pytest.approx(np.array([[30, 20, 110, 60, 6.2]]))
+    assert not len(reader.read(mask((30, 40, 50, 60)), NOBODY, NOBODY[:, :2]).joined)
 
 
 def test_a_change_of_gain_is_no_motion():

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Advice to use a network, where motion joins vehicles in blobs, with the line to type."""
+"""What a summary says where motion joins vehicles in blobs, and the line to type for a network."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ from vehicle_pf_tracker.trackers.traffic.session import DetectionTotals
 _AMBIGUOUS = 0.35
 """Share of images with ambiguous blobs above which a network counts better: on clips with truth, at
 .28 and .30 counts at lines were within one of ten, from .45 on a tenth to all were missed."""
+_WORTH_SAYING = 1.0
+"""Least mean number of vehicles without a number that is reported: one at any time. Roads whose
+counts are exact have .8 to 1.2 by the estimate (laboratory/notes/traffic.md)."""
 _MOST_NAMED = 5
 """Sources that the advice names, what a line of a terminal holds."""
 _OWN = ("--detector",)
@@ -46,6 +49,22 @@ def network_advice(command: Sequence[str], folder: Path, detected: DetectionTota
     return [
         f"in {detected.ambiguous / detected.images:.0%} of the images {_advice(command, folder)}"
     ]
+
+
+def joined_vehicles(detected: DetectionTotals) -> list[str]:
+    """Return a sentence about vehicles that motion cannot tell apart; none where there are few."""
+    mean = detected.mean_unresolved
+    if mean is not None and mean >= _WORTH_SAYING:
+        return [
+            f"about {mean:.1f} vehicles at a time were in blobs with others and have no number, by "
+            f"the blobs' size in {detected.sized} of {detected.images} images"
+        ]
+    if mean is None and _is_ambiguous(detected):
+        return [
+            "how many vehicles were in blobs with others cannot be told: too few drove apart to "
+            "learn how large they are"
+        ]
+    return []
 
 
 def advice_over_sources(command: Sequence[str], folder: Path, folders: Sequence[Path]) -> list[str]:

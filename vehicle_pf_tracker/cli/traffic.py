@@ -14,7 +14,11 @@ from typing import Any
 
 from vehicle_pf_tracker.cli.console import UsageError, counting, shown_progress, tell_notices
 from vehicle_pf_tracker.cli.many_sources import follow_each
-from vehicle_pf_tracker.cli.network_advice import advice_over_sources, network_advice
+from vehicle_pf_tracker.cli.network_advice import (
+    advice_over_sources,
+    joined_vehicles,
+    network_advice,
+)
 from vehicle_pf_tracker.cli.option_values import positive_number
 from vehicle_pf_tracker.cli.requests import option
 from vehicle_pf_tracker.cli.serving import ServeAddress, served
@@ -124,7 +128,8 @@ def run_one(request: Request) -> int:
         write_json(folder / RUN_FILE, document)
     sentences = tracking.sentences(document["detector"])
     if document["detector"] == MOTION_DETECTOR:
-        sentences += network_advice(request.command, folder, tracking.session.found)
+        found = tracking.session.found
+        sentences += [*joined_vehicles(found), *network_advice(request.command, folder, found)]
     for sentence in sentences:
         print(sentence)
     # Without vehicles the picture has the scene, and no path.
@@ -196,6 +201,8 @@ def _document(
         "detector": str(request.detections or kind),
         "images_with_detections": tracking.session.found.images,
         "images_with_ambiguous_blobs": tracking.session.found.ambiguous,
+        "images_with_known_sizes": tracking.session.found.sized,
+        "mean_vehicles_without_number": tracking.session.found.mean_unresolved,
         "summary": tracking.summary.to_json(),
     }
     document = describe_run(request.command, request.source, topic, notices, **facts)

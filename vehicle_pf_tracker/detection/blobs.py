@@ -22,6 +22,8 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas
 from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED_THRESHOLDS, MotionThresholds
+from vehicle_pf_tracker.detection.pieces import Piece
+from vehicle_pf_tracker.detection.usual_size import MEMORY, SIZES_NEEDED, SPREAD, UsualSize
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
 
@@ -38,9 +40,8 @@ that of cars from the front."""
 _FROM_THE_SIDE, _ACROSS = 0.5, 6
 """Usual height over width, to start from, of vehicles that drive across the image; and power of the
 share of their motion across by which they are: of 76 clips, only a steep one fits."""
-_SPREAD = 0.2
-"""Standard deviation of the logarithms of this share, and of a car's size. A choice: cars are alike
-within a fifth."""
+_FULLNESS_SPREAD = 0.2
+"""Standard deviation of the logarithm of this share. A choice: cars are alike within a fifth."""
 _MEMBER = 0.5
 """Share of a predicted vehicle inside a blob's box above which the blob is of it: most of it."""
 _LEAST_PART = 0.15
@@ -55,60 +56,11 @@ _PIECE = 0.8
 here and in `_LEAST_PART` HOTA by motion of the plain clip falls by 2, too."""
 _ASPECT_SIDE = 10
 """Least side in px of a blob whose aspect is learnt; one of less area has no shape."""
-_MOST_SIZE_COST = 4.0
-"""Most cost of another size: a lorry is twice as large, and has to stay whole."""
-_SPECK = math.log(0.4) / _SPREAD
+_SPECK = math.log(0.4) / SPREAD
 """Deviation from the usual size below which a box is of leaves, captions or noise: a motorcycle has
 two thirds of a car's size, and a car beside many lorries half of the usual one."""
-_SIZES_NEEDED, MEMORY = 50, 0.998
-"""Least boxes that a usual size is taken from: of one vehicle that has driven through; and weight
-of those before each, or of earlier images: some minutes."""
-_RATE = 1 / _SIZES_NEEDED
+_RATE = 1 / SIZES_NEEDED
 """Rate at which the usual shape follows blobs of one vehicle each: over as many as a size takes."""
-WIDEST_MASK = 400
-"""Largest width of a mask in px: finer says nothing more about vehicles. At 640 HOTA / IDF1 are
-28.0 / 34.0, halving to at most 400 gives 27.5 / 34.5."""
-_SINGULAR = 1e-4
-"""Least singular value, of the largest one's, that tells: while all vehicles have driven on one
-line, the size beside it is taken to be the same."""
-
-
-class Piece(NamedTuple):
-    """Part of a vehicle: edges in px of the mask, and its area in px."""
-
-    left: float
-    top: float
-    right: float
-    bottom: float
-    area: float
-
-    @property
-    def sides(self) -> tuple[float, float]:
-        """Width and height in px."""
-        return self.right - self.left, self.bottom - self.top
-
-    @property
-    def log_aspect(self) -> float:
-        """Logarithm of height over width."""
-        width, height = self.sides
-        return math.log(height / width)
-
-    @property
-    def log_fullness(self) -> float:
-        """Logarithm of the share of the box that moves."""
-        width, height = self.sides
-        return math.log(self.area / (width * height))
-
-    @property
-    def edges(self) -> Array:
-        """Left, top, right and bottom, (4,)."""
-        return np.array(self[:4])
-
-    def is_free(self, shape: tuple[int, ...]) -> bool:
-        """Tell whether no border of the image cuts the box."""
-        height, width = shape
-        inside = self.right < width - 1 and self.bottom < height - 1
-        return min(self.left, self.top) > 1 and inside
 
 
 class Blobs(NamedTuple):
@@ -123,53 +75,15 @@ class Blobs(NamedTuple):
     ambiguous : int
         Number of blobs that hold several vehicles which are followed, or that their shape alone
         has divided.
+    joined : (J, 5) array or None
+        Edges, px of the mask, of each blob of several vehicles by its size, and how many of them
+        no vehicle that is followed stands for; None while it is not known how large vehicles are.
     """
 
     edges: Array
     fullness: Array
     ambiguous: int
-
-
-class UsualSize:
-    """Size of vehicles by where they stand: on a plane it is an affine function of the image."""
-
-    def __init__(self) -> None:
-        self._squares = np.zeros((3, 3))
-        self._sums = np.zeros(3)
-        self._count = 0
-        self._slopes: list[float] = []
-
-    def learn(self, piece: Piece) -> None:
-        """Add the box of one vehicle; all count alike, near and far ones."""
-        size = math.sqrt(math.prod(piece.sides))  # one number for width and height
-        place = np.array(
-            [(piece.left + piece.right) / 2 / WIDEST_MASK, piece.bottom / WIDEST_MASK, 1.0]
-        )
-        # Least squares of size, each row over its own size: relative errors count.
-        self._squares = MEMORY * self._squares + np.outer(place, place) / size**2
-        self._sums = MEMORY * self._sums + place / size
-        self._count += 1
-
-    def settle(self) -> None:
-        """Fit the usual sizes for the next image."""
-        if self._count >= _SIZES_NEEDED:
-            solved = np.linalg.lstsq(self._squares, self._sums, rcond=_SINGULAR)
-            self._slopes = solved[0].tolist()
-
-    def deviation(self, piece: Piece) -> float:
-        """Logarithm of a box's size over the usual one, in its spread; 0 while none is known."""
-        if not self._slopes:
-            return 0.0
-        across, down, level = self._slopes
-        usual = (
-            (piece.left + piece.right) / 2 * across + piece.bottom * down
-        ) / WIDEST_MASK + level
-        return math.log(math.sqrt(math.prod(piece.sides)) / max(usual, 1.0)) / _SPREAD
-
-    def cost(self, piece: Piece) -> float:
-        """Squared deviation of a box, of a larger one not more than lorries cost."""
-        apart = self.deviation(piece)  # a smaller one may be half of a vehicle
-        return apart**2 if apart < 0 else min(apart**2, _MOST_SIZE_COST)
+    joined: Array | None
 
 
 class BlobReader:
@@ -208,12 +122,16 @@ class BlobReader:
         pieces: dict[int, list[Piece]] = {}
         room = areas(predicted)
         ambiguous = 0
+        joined: list[tuple[float, ...]] = []
         # 2. Divide each blob by shape; learn from those that are of one vehicle.
         for part, box in _components(mask):
             members = int(np.count_nonzero(intersections(box, predicted) > _MEMBER * room))
             x, y = box[:2].astype(int).tolist()
-            parts = self._apart(part, _piece(part, x, y), x, y)
+            whole = _piece(part, x, y)
+            parts = self._apart(part, whole, x, y)
             ambiguous += members > 1 or len(parts) > 1
+            if (unresolved := self._sizes.vehicles_in(whole) - members) > 0:
+                joined.append((*whole[:4], unresolved))
             for piece in parts:
                 self._learn_shape(piece, mask.shape, members)
                 inside = intersections(piece.edges, predicted)
@@ -226,7 +144,8 @@ class BlobReader:
         # 4. Drop specks last: pieces may be as small until they are joined.
         boxes = np.array([one for one in found if self._is_vehicle(one, least, mask.shape)])
         boxes = boxes.reshape(-1, len(Piece._fields))
-        return Blobs(boxes[:, :4], boxes[:, 4] / areas(boxes[:, :4]), ambiguous)
+        crowds = np.array(joined).reshape(-1, 5) if self._sizes.is_roughly_known else None
+        return Blobs(boxes[:, :4], boxes[:, 4] / areas(boxes[:, :4]), ambiguous, crowds)
 
     def _expect_aspect(self, velocities: Array) -> None:
         """Find the usual aspect: until it is learnt, the motion tells which side is seen."""
@@ -280,7 +199,7 @@ class BlobReader:
     def _shape_cost(self, piece: Piece) -> float:
         """Squared standard deviations of aspect, fullness and size from the usual ones."""
         aspect = (piece.log_aspect - self._aspect) / _ASPECT_SPREAD
-        fullness = (piece.log_fullness - self._fullness) / _SPREAD
+        fullness = (piece.log_fullness - self._fullness) / _FULLNESS_SPREAD
         return aspect**2 + fullness**2 + self._sizes.cost(piece)
 
     def _learn_shape(self, piece: Piece, shape: tuple[int, ...], members: int) -> None:

@@ -40,6 +40,10 @@ class Detections:
     ambiguous : int
         Number of blobs of which it is not sure how many vehicles they hold: of several vehicles
         that are followed, or divided by their shape alone. 0 of detectors that report vehicles.
+    joined : array, shape (J, 5), or None
+        Boxes of blobs that are as large as several vehicles, and an estimate of how many of them no
+        vehicle that is followed stands for. None while it is not known how large vehicles are, and
+        of detectors that report vehicles.
     """
 
     boxes: Array
@@ -47,6 +51,7 @@ class Detections:
     labels: tuple[str, ...]
     are_shapes: bool = False
     ambiguous: int = 0
+    joined: Array | None = None
 
     @classmethod
     def make(
@@ -75,21 +80,10 @@ class Detections:
 
     def within(self, regions: Sequence[Region]) -> Detections:
         """Select those whose centre is in one of the inner regions, if any, and in no outer one."""
-        # Centres decide, so that a box on the rim is in or out as a whole.
-        centres = (self.boxes[:, :2] + self.boxes[:, 2:] / 2).astype(np.float32)
-        kept = np.ones(len(self), bool)
-        inner = np.zeros(len(self), bool)
-        for region in regions:
-            outline = np.asarray(region.corners, np.float32)
-            signs = [cv2.pointPolygonTest(outline, one, False) for one in centres.tolist()]
-            inside = np.array(signs, np.float64) >= 0  # of no detection too
-            if region.is_inside:
-                inner |= inside
-            else:
-                kept &= ~inside
-        if any(region.is_inside for region in regions):
-            kept &= inner
-        return self.take(np.flatnonzero(kept))
+        kept = self.take(np.flatnonzero(_are_within(self.boxes, regions)))
+        if self.joined is None:
+            return kept
+        return replace(kept, joined=self.joined[_are_within(self.joined[:, :4], regions)])
 
     def usable(self, width: int, height: int) -> Detections:
         """Select those that a tracker can use in an image of `width` x `height` px.
@@ -119,3 +113,22 @@ class Detections:
                 break
         # In the order of the detector again.
         return self.take(np.array(sorted(single.values()), np.intp))
+
+
+def _are_within(boxes: Array, regions: Sequence[Region]) -> npt.NDArray[np.bool_]:
+    """Tell which boxes have their centre in an inner region, if any, and in no outer one."""
+    # Centres decide, so that a box on the rim is in or out as a whole.
+    centres = (boxes[:, :2] + boxes[:, 2:] / 2).astype(np.float32)
+    kept = np.ones(len(boxes), bool)
+    inner = np.zeros(len(boxes), bool)
+    for region in regions:
+        outline = np.asarray(region.corners, np.float32)
+        signs = [cv2.pointPolygonTest(outline, one, False) for one in centres.tolist()]
+        inside = np.array(signs, np.float64) >= 0  # of no detection too
+        if region.is_inside:
+            inner |= inside
+        else:
+            kept &= ~inside
+    if any(region.is_inside for region in regions):
+        kept &= inner
+    return kept

@@ -16,11 +16,12 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.detection.background import Background, Colours, Pixels
-from vehicle_pf_tracker.detection.blobs import WIDEST_MASK, BlobReader
+from vehicle_pf_tracker.detection.blobs import BlobReader
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import FollowedVehicle
 from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED_THRESHOLDS, MotionThresholds
 from vehicle_pf_tracker.detection.stabilising import Stabiliser
+from vehicle_pf_tracker.detection.usual_size import WIDEST_MASK
 
 _CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
 """Holes and gaps up to this size, px of the mask, are closed: windscreens show the sky. A choice:
@@ -115,10 +116,16 @@ class MotionDetector:
         velocities = np.array([one.velocity for one in tracks]).reshape(-1, 2)
         blobs = self._blobs.read(moving, predicted, velocities)
         # 6. Boxes are of the image as it came.
-        edges = self._stabiliser.from_reference(blobs.edges)
-        boxes = np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
-        made = Detections.make(boxes, blobs.fullness)
-        return replace(made, are_shapes=True, ambiguous=blobs.ambiguous)
+        made = Detections.make(self._boxes(blobs.edges, zoom), blobs.fullness)
+        joined = blobs.joined
+        if joined is not None:
+            joined = np.column_stack([self._boxes(joined[:, :4], zoom), joined[:, 4]])
+        return replace(made, are_shapes=True, ambiguous=blobs.ambiguous, joined=joined)
+
+    def _boxes(self, edges: Array, zoom: float) -> Array:
+        """Boxes (N, 4), left, top, width and height in the image, of edges in the mask."""
+        edges = self._stabiliser.from_reference(edges)
+        return np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
 
     def _restart(self) -> None:
         self._background = Background(self._shape, self._seed, self._thresholds)

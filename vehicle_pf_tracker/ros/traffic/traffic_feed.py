@@ -66,6 +66,7 @@ class TrafficFeed:
     def facts(self) -> Mapping[str, object]:
         """Values for the node's report: seed, detector, vehicles."""
         tracker = self.vehicles.session.tracker
+        found = self.vehicles.session.found
         detector = self.vehicles.session.detector
         kind = self._configuration.tracker.detector.kind
         waiting = self._waiting
@@ -82,6 +83,8 @@ class TrafficFeed:
             "detections of the last image": count,
             "detector's latency (ms)": round(seconds * 1e3, 2),
             "places with false alarms": tracker.cluttered_places,
+            "blobs of the last image that may hold several": _known(found.latest),
+            "vehicles in them without a number": _known(found.latest_unresolved),
         }
         if kind == TOPIC_DETECTOR:
             facts |= {
@@ -177,3 +180,8 @@ class TrafficFeed:
             words = f"{left_out} of {len(detections)} detections of an image cannot be used"
             reasons = "not finite, without an area, outside the image, or there twice"
             self._journal.warnings.say("unusable", f"{words}: {reasons}")
+
+
+def _known(number: float | None) -> float | str:
+    """Return a number with one decimal; a word where nobody knows it."""
+    return "unknown" if number is None else round(number, 1)

@@ -50,6 +50,13 @@ class DetectionTotals:
         Images with blobs of which the detector is not sure how many vehicles they hold.
     latest : int or None
         Such blobs in the latest image; None where its detections are no blobs.
+    sized : int
+        Images in which it was known how large vehicles are.
+    unresolved : float
+        Sum over these of the vehicles in joined blobs that no followed one stands for, estimated by
+        the blobs' size.
+    latest_unresolved : float or None
+        Such vehicles in the latest image; None where nobody knows.
     """
 
     images: int = 0
@@ -58,6 +65,29 @@ class DetectionTotals:
     outside: int = 0
     ambiguous: int = 0
     latest: int | None = None
+    sized: int = 0
+    unresolved: float = 0.0
+    latest_unresolved: float | None = None
+
+    @property
+    def mean_unresolved(self) -> float | None:
+        """Mean number of vehicles in joined blobs without a number; None where nobody knows."""
+        return self.unresolved / self.sized if self.sized else None
+
+    def count(self, detections: Detections) -> None:
+        """Count all that was detected in an image."""
+        self.latest = detections.ambiguous if detections.are_shapes else None
+        self.images += 1
+        self.boxes += len(detections)
+        self.ambiguous += detections.ambiguous > 0
+
+    def count_inside(self, detections: Detections, inside: Detections) -> None:
+        """Count what regions left of detections."""
+        self.outside += len(detections) - len(inside)
+        if inside.joined is not None:
+            self.sized += 1
+            self.latest_unresolved = float(inside.joined[:, 4].sum())
+            self.unresolved += self.latest_unresolved
 
 
 class TrafficSession:
@@ -209,16 +239,13 @@ class TrafficSession:
         # 2. Count before regions apply, so that a user sees what they took. Reset first: without
         # detections the number of the image before would stay.
         self.found.latest = None
+        self.found.latest_unresolved = None
         if detections is not None:
-            self.found.latest = detections.ambiguous if detections.are_shapes else None
-            self.found.images += 1
-            self.found.boxes += len(detections)
-            self.found.ambiguous += detections.ambiguous > 0
-            if self._regions:
-                # Regions bound detections, not vehicles: one that is followed may leave them.
-                inside = detections.within(self._regions)
-                self.found.outside += len(detections) - len(inside)
-                detections = inside
+            self.found.count(detections)
+            # Regions bound detections, not vehicles: one that is followed may leave them.
+            inside = detections.within(self._regions) if self._regions else detections
+            self.found.count_inside(detections, inside)
+            detections = inside
         # 3. None, unlike no detections, says that nobody has looked: nothing is missed.
         self.estimates = self.tracker.step(turn.frame, detections, turn.elapsed)
         # 4. Keep where given vehicles are now: a restart begins them there, as no detector may find
