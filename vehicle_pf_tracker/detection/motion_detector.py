@@ -16,7 +16,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame
 from vehicle_pf_tracker.detection.background import Background, Colours, Pixels
-from vehicle_pf_tracker.detection.blobs import BlobReader
+from vehicle_pf_tracker.detection.blobs import BlobReader, Blobs
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import FollowedVehicle
 from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED_THRESHOLDS, MotionThresholds
@@ -116,6 +116,10 @@ class MotionDetector:
         velocities = np.array([one.velocity for one in tracks]).reshape(-1, 2)
         blobs = self._blobs.read(moving, predicted, velocities)
         # 6. Boxes are of the image as it came.
+        return self._detections(blobs, zoom)
+
+    def _detections(self, blobs: Blobs, zoom: float) -> Detections:
+        """Return what is in the blobs, with boxes of the image."""
         made = Detections.make(self._boxes(blobs.edges, zoom), blobs.fullness)
         joined = blobs.joined
         if joined is not None:
