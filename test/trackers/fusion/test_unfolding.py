@@ -4,6 +4,7 @@
 """A side that unfolds: a textured rectangle whose box stays on its right end."""
 
 import numpy as np
+import pytest
 from fusion_samples import grey_road
 
 from vehicle_pf_tracker.image.motion.foreground import Foreground
@@ -18,8 +19,11 @@ ROAD = grey_road(400, 120)
 BODY = np.random.default_rng(1).integers(160, 255, (24, 120)).astype(np.uint8)
 
 
-def drive(left):
-    """Drive to the right; `left(time)` px of it are beyond the box's left side."""
+def looks(left, rate=30):
+    """Drive to the right and look; `left(time)` px of it are beyond the box's left side.
+
+    Gives time and left side in each frame, and the looks up to it.
+    """
     foreground, unfolding, right = Foreground(), Unfolding(), 90
     for time in range(FRAMES):
         right += 2
@@ -30,10 +34,23 @@ def drive(left):
         foreground.keep(SmallGrey(picture, 1.0), still=True)
         if foreground.is_known:
             position = np.array([right - 15.0, 52.0])
-            unfolding = unfolding.looked(foreground, position, BOX)
-        if unfolding.outline is not None:
-            return time, right - width, unfolding
-    return None
+            unfolding = unfolding.looked(foreground, position, BOX, (1.0, 1 / rate))
+        yield time, right - width, unfolding
+
+
+def drive(left):
+    """Drive until a side has unfolded; None if none does."""
+    return next((found for found in looks(left) if found[2].outline is not None), None)
+
+
+@pytest.mark.parametrize(("rate", "frames"), [(10, 2), (30, 4), (60, 8)])
+def test_looks_are_apart_by_time_and_not_by_frames(rate, frames):
+    *_, (_, _, unfolding) = looks(lambda time: 12, rate)
+    ages = [look.age for look in unfolding.looks]
+    apart = frames / rate
+    assert -np.diff(ages) == pytest.approx(np.full(len(ages) - 1, apart))
+    assert len(ages) >= 5
+    assert ages[0] < 2.6
 
 
 def test_a_side_that_unfolds_is_found_and_followed():
@@ -64,7 +81,9 @@ def test_the_ghost_of_where_it_stood_is_none():
         picture[40:64, right - 30 : right] = BODY[:, 90:]
         foreground.keep(SmallGrey(picture, 1.0), still=True)
         if foreground.is_known:
-            unfolding = unfolding.looked(foreground, np.array([right - 15.0, 52.0]), BOX)
+            unfolding = unfolding.looked(
+                foreground, np.array([right - 15.0, 52.0]), BOX, (1.0, 1 / 30)
+            )
             found.append(unfolding.outline)
     assert found
     assert not any(found)

@@ -61,6 +61,8 @@ class Step:
         Appearance of the vehicle, motion of the camera and foreground, as learnt so far.
     tasks : Tasks
         Costly tasks of the frame before, by which those of this frame are chosen.
+    period : float
+        Nominal time between two frames, s.
     """
 
     frame: Frame
@@ -69,6 +71,7 @@ class Step:
     rng: np.random.Generator
     memory: Memory
     tasks: Tasks
+    period: float
 
     def inside(self, positions: Array) -> Array:
         """Move positions (..., 2) into the image."""

@@ -137,7 +137,9 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         # the response found, the verdict both pieces of evidence; and nothing is learnt before the
         # verdict, as an occluder that was learnt once would answer from then on.
         elapsed = min(elapsed, _LONGEST_STEP)
-        step = Step(frame, elapsed, self.parameters, self._rng, memory, self._tasks)
+        step = Step(
+            frame, elapsed, self.parameters, self._rng, memory, self._tasks, self.frame_period
+        )
         state, prediction = predict(state, step)
         state, seen = observe(state, prediction, step)
         state = weigh_by_flow(state, seen, step)

@@ -20,14 +20,13 @@ from vehicle_pf_tracker.image.motion.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion
 from vehicle_pf_tracker.trackers.fusion.turning import Branch
 
-_EVERY = 4
-"""Frames between two looks: with `_LEAST_LOOKS` the 20 frames of a turn by 90 degrees (scene
-`turn`)."""
-_LEAST_LOOKS = 6
-"""Looks in a row over which an outline has to grow: with 4 of them the ghost of where a drawn lorry
-started counts as a side of it."""
-_KEPT = 20
-"""Looks that are kept, a choice: a slower turn than one of 2.7 s at 30 Hz is not waited for."""
+_EVERY = 0.125
+"""Least time between two looks, s: four frames at 30 Hz, since outlines cost time."""
+_LASTS = 0.66
+"""Least time over which an outline has to grow, s, the 20 frames at 30 Hz of a turn by 90 degrees
+(scene `turn`). With .4 the ghost of where a drawn lorry started counts as a side of it."""
+_KEPT = 2.6
+"""Age of the oldest look that is compared with, s, a choice: a slower turn is not waited for."""
 _GROWN = 0.3
 """Growth at one end that proves it, fraction of the box: an outline is good to a tenth at each end.
 From .2 to .3 the same of 45 sequences have it."""
@@ -38,12 +37,27 @@ A choice."""
 _LEAST_BEYOND = -0.2
 """Least distance of an outline's sides beyond the box's, fraction of it, a choice: further inside
 parts of the outline are missing."""
-_AGO = 8
-"""Frames before with which the part beyond the box is compared: a quarter of a second at 30 Hz."""
+_AGO = 0.27
+"""Time before, s, with which the part beyond the box is compared: eight frames at 30 Hz."""
 _LEAST_CHANGED = 0.3
 """Least share of the far half of that part that has changed since, relative to that of the box. The
 vehicle left a ghost's far half long ago: a drawn lorry's (scene `turn` at 2 px per frame) changes
 by .28 and less after 28 frames. Chosen on it and on turning_car (.39 to .46)."""
+
+
+class Look(NamedTuple):
+    """A look at the outline.
+
+    Attributes
+    ----------
+    age : float
+        Time from it to the last look, s.
+    beyond : (2, 2) array
+        How far the outline reached beyond the low and high sides of the box, fractions of it.
+    """
+
+    age: float
+    beyond: Array
 
 
 class Unfolding(NamedTuple):
@@ -51,23 +65,33 @@ class Unfolding(NamedTuple):
 
     Attributes
     ----------
-    looks : tuple of (2, 2) arrays
-        How far the outline reaches beyond the low and high sides of the box, fractions of it.
-    frames : int
-        Frames since the last look.
+    looks : tuple of Look
+        These looks, oldest first.
+    since : float
+        Time since the last of them, s.
     outline : Outline or None
         The outline, if it proves that a side unfolds.
     """
 
-    looks: tuple[Array, ...] = ()
-    frames: int = 0
+    looks: tuple[Look, ...] = ()
+    since: float = 0.0
     outline: Outline | None = None
 
-    def looked(self, foreground: Foreground, position: Array, size: Array) -> Unfolding:
-        """Look at the present frame, in which the box has this centre and size, px."""
+    def looked(
+        self, foreground: Foreground, position: Array, size: Array, times: tuple[float, float]
+    ) -> Unfolding:
+        """Look at the present frame, in which the box has this centre and size, px.
+
+        Parameters
+        ----------
+        times : pair of float
+            Frame periods since the frame before, and the period, s.
+        """
+        elapsed, period = times
         # Outlines cost time: they are not asked for in each frame.
-        if self.frames + 1 < _EVERY:
-            return self._replace(frames=self.frames + 1)
+        since = self.since + elapsed * period
+        if since < _EVERY:
+            return self._replace(since=since)
         outline = foreground.outline(position, size)
         # In a row: a look that tells nothing begins anew.
         if outline is None:
@@ -76,11 +100,14 @@ class Unfolding(NamedTuple):
         high = position + size / 2
         beyond = np.array([low - outline.low, outline.high - high]) / size
         end, axis = divmod(int(beyond.argmax()), 2)
-        if beyond.min() < _LEAST_BEYOND or not _moves(foreground, outline, (low, high), end, axis):
+        ago = max(round(_AGO / period), 1)
+        moves = _moves(foreground, outline, (low, high), (end, axis), ago)
+        if beyond.min() < _LEAST_BEYOND or not moves:
             return Unfolding()
-        looks = (*self.looks, beyond)[-_KEPT:]
-        has_grown = _grows(np.array(looks), end, axis)
-        return Unfolding(looks, 0, outline if has_grown else None)
+        aged = (look._replace(age=look.age + since) for look in self.looks)
+        looks = (*(look for look in aged if look.age < _KEPT), Look(0.0, beyond))
+        has_grown = _grows(looks, end, axis)
+        return Unfolding(looks, 0.0, outline if has_grown else None)
 
     def branch(self, motion: PerspectiveMotion, size: Array) -> Branch | None:
         """Follow the outline of a vehicle of this size, px, as in a turn; None: it proves none."""
@@ -93,23 +120,34 @@ class Unfolding(NamedTuple):
 
 
 def _moves(
-    foreground: Foreground, outline: Outline, box: tuple[Array, Array], end: int, axis: int
+    foreground: Foreground,
+    outline: Outline,
+    box: tuple[Array, Array],
+    place: tuple[int, int],
+    ago: int,
 ) -> bool:
-    """Test whether the far half of what is beyond one end of the box changes like the box."""
+    """Test whether the far half of what is beyond one end of the box changes like the box.
+
+    Since some frames `ago`; `place` is the end, 0 or 1, and the axis.
+    """
     low, high = box
+    end, axis = place
     far = np.array([outline.low, outline.high])
     far[1 - end, axis] = (far[end, axis] + box[end][axis]) / 2
-    inside = foreground.changed(low, high, _AGO)
+    inside = foreground.changed(low, high, ago)
     # Both are 0 where not enough frames are kept.
-    return 0 < _LEAST_CHANGED * inside <= foreground.changed(far[0], far[1], _AGO)
+    return 0 < _LEAST_CHANGED * inside <= foreground.changed(far[0], far[1], ago)
 
 
-def _grows(looks: Array, end: int, axis: int) -> bool:
+def _grows(looks: tuple[Look, ...], end: int, axis: int) -> bool:
     """Test whether an outline has grown beyond one end of the box, little by little."""
-    ahead = looks[:, end, axis]
-    behind = looks[:, 1 - end, axis]
+    beyond = np.array([look.beyond for look in looks])
+    ahead = beyond[:, end, axis]
+    behind = beyond[:, 1 - end, axis]
     # Since any of the earlier looks: how long a turn takes is not known.
-    for first in range(len(looks) - _LEAST_LOOKS + 1):
+    for first, look in enumerate(looks):
+        if look.age < _LASTS:
+            break
         grown = ahead[-1] - ahead[first]
         largest = _LARGEST_PART * grown
         steps = np.abs(np.diff(ahead[first:])).max()

@@ -68,7 +68,8 @@ def _judged_unfolding(state: State, seen: Observation, whole: float, step: Step)
     if not foreground.is_known:
         return Visible(whole)
     before = state.verdict.unfolding if isinstance(state.verdict, Visible) else Unfolding()
-    unfolding = before.looked(foreground, seen.position, state.size)
+    times = step.elapsed, step.period
+    unfolding = before.looked(foreground, seen.position, state.size, times)
     fitted = state.sightings.fit() if unfolding.outline is not None else None
     branch = fitted and unfolding.branch(fitted[0], state.size)
     return Visible(whole, unfolding) if branch is None else Turning(Outlines(branch))
