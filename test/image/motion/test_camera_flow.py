@@ -107,6 +107,25 @@ def test_tiny_and_changed_images_are_borne():
     assert flow.measure(seen(0, 0), NOWHERE).still
 
 
+def test_a_view_without_corners_is_searched_after_fifteen_frames_and_then_followed(monkeypatch):
+    flow, searched = CameraFlow(), []
+    search = cv2.cornerMinEigenVal
+    monkeypatch.setattr(
+        cv2, "cornerMinEigenVal", lambda *a, **k: searched.append(1) or search(*a, **k)
+    )
+    bare = small_grey(np.full((240, 320, 3), 90, np.uint8))
+    flow.measure(bare, NOWHERE)
+    # Searched at once, and then when it has aged by five frames: one, and a third in each.
+    for _ in range(28):
+        assert flow.measure(bare, NOWHERE).still
+    assert len(searched) == 2
+    # Corners that come are found by the next search, and their motion is measured from then on.
+    for _ in range(15):
+        flow.measure(seen(0, 0), NOWHERE)
+    motion = flow.measure(seen(3, -2), NOWHERE)
+    assert motion.apply(MIDDLE) - MIDDLE == pytest.approx([-3, 2], abs=0.5)
+
+
 def test_a_mounted_camera_is_measured_seldom_and_its_jump_at_once(monkeypatch):
     flow, tracked = CameraFlow(), []
     track = cv2.calcOpticalFlowPyrLK

@@ -106,10 +106,8 @@ def test_another_vehicle_answers_less():
 
 def test_a_wrong_size_answers_less():
     appearance = usual()
-    answers = [
-        appearance.response_at(frame(), PLACE, factor * SIZE)
-        for factor in (0.85, 0.93, 1.0, 1.08, 1.18)
-    ]
+    sizes = [factor * SIZE for factor in (0.85, 0.93, 1.0, 1.08, 1.18)]
+    answers = appearance.responses_at(frame(), PLACE, sizes)
     assert np.argmax(answers) == 2
     assert answers == sorted(answers[:3]) + sorted(answers[3:], reverse=True)
 
@@ -124,7 +122,17 @@ def test_a_first_view_without_the_target_is_not_usual():
 def test_the_response_at_a_box_is_that_of_the_whole_view_there():
     appearance = learnt()
     view = view_at(appearance, frame(), PLACE)
-    assert appearance.response_at(frame(), PLACE, SIZE) == pytest.approx(view.at(PLACE), abs=0.02)
+    (response,) = appearance.responses_at(frame(), PLACE, [SIZE])
+    assert response == pytest.approx(view.at(PLACE), abs=0.02)
+
+
+@pytest.mark.parametrize("kernels", ["opencv", "auto"])
+def test_several_sizes_have_the_bits_that_each_has_alone(kernels):
+    appearance = usual()
+    appearance.use_kernels(load_kernels(kernels))
+    sizes = [SIZE, SIZE / 1.03, 1.9 * SIZE]
+    together = appearance.responses_at(frame(), PLACE, sizes)
+    assert together == [appearance.responses_at(frame(), PLACE, [size])[0] for size in sizes]
 
 
 @pytest.mark.parametrize("away", [2.0, 14.0], ids=["shifted cells", "measured again"])
@@ -179,7 +187,7 @@ def test_an_image_without_any_contrast_gives_finite_responses(level):
     appearance.learn_first(blank, np.array([80.0, 60.0]), SIZE)
     view = view_at(appearance, blank, (80, 60))
     assert np.isfinite(view.response).all()
-    assert np.isfinite(appearance.response_at(blank, np.array([80.0, 60.0]), SIZE))
+    assert np.isfinite(appearance.responses_at(blank, np.array([80.0, 60.0]), [SIZE]))
     appearance.learn(blank, view, np.array([80.0, 60.0]), SIZE, 5.0)
     assert np.isfinite(view_at(appearance, blank, (80, 60)).response).all()
 

@@ -19,23 +19,27 @@ def parameters(**values):
 
 
 def response(best):
-    """A response that falls with the square of the log distance from the best size."""
-    return lambda size: 1 - float((np.log(size / best) ** 2).sum())
+    """Responses that fall with the square of the log distance from the best size."""
+    return at_each(lambda size: 1 - float((np.log(size / best) ** 2).sum()))
+
+
+def at_each(peak):
+    return lambda sizes: [peak(size) for size in sizes]
 
 
 @pytest.mark.parametrize("turn", [0, 2, 4])
 def test_both_sides_go_to_the_vertex_by_hand(turn):
     """The best size is half a step off: the vertex is there, and the gain takes 0.7 of it."""
-    peak = response(SIZE * np.exp(0.5 * STEP))
-    found = searched_size(SIZE, turn, peak, parameters())
+    peaks = response(SIZE * np.exp(0.5 * STEP))
+    found = searched_size(SIZE, turn, peaks, parameters())
     assert found == pytest.approx(SIZE * 1.03 ** (0.7 * 0.5))
 
 
 @pytest.mark.parametrize(("turn", "axis"), [(1, 0), (3, 1), (5, 0)])
 def test_one_side_goes_alone_in_every_second_turn(turn, axis):
     best = SIZE * np.exp([0.4 * STEP, -0.3 * STEP])
-    peak = response(best)
-    found = searched_size(SIZE, turn, peak, parameters())
+    peaks = response(best)
+    found = searched_size(SIZE, turn, peaks, parameters())
     expected = SIZE.copy()
     expected[axis] *= 1.03 ** (0.7 * (0.4, -0.3)[axis])
     assert found == pytest.approx(expected)
@@ -43,8 +47,8 @@ def test_one_side_goes_alone_in_every_second_turn(turn, axis):
 
 @pytest.mark.parametrize("factor", [1.3, 0.8])
 def test_far_off_it_goes_a_step_at_most(factor):
-    peak = response(SIZE * factor)
-    found = searched_size(SIZE, 0, peak, parameters())
+    peaks = response(SIZE * factor)
+    found = searched_size(SIZE, 0, peaks, parameters())
     assert found == pytest.approx(SIZE * 1.03 ** (0.7 * np.sign(factor - 1)))
 
 
@@ -52,12 +56,13 @@ def test_a_valley_is_left_towards_the_higher_side():
     def left(size):
         return 0.5 if size is SIZE else 0.6 + 0.001 * size[0]
 
-    found = searched_size(SIZE, 0, left, parameters())
+    found = searched_size(SIZE, 0, at_each(left), parameters())
     assert found == pytest.approx(SIZE * 1.03**0.7)
 
 
 def test_where_nothing_differs_the_size_stays():
-    assert searched_size(SIZE, 0, lambda size: 0.8, parameters()) == pytest.approx(SIZE)
+    peaks = at_each(lambda _: 0.8)
+    assert searched_size(SIZE, 0, peaks, parameters()) == pytest.approx(SIZE)
 
 
 @pytest.mark.parametrize(
@@ -84,15 +89,15 @@ def test_points_on_a_vehicle_of_a_few_px_tell_half():
 
 def test_repeated_it_converges_on_the_right_aspect():
     best, size = np.array([46.0, 18.0]), SIZE
-    peak = response(best)
+    peaks = response(best)
     for turn in range(40):
-        size = searched_size(size, turn, peak, parameters())
+        size = searched_size(size, turn, peaks, parameters())
     assert size == pytest.approx(best, rel=0.01)
 
 
 @pytest.mark.parametrize("off", ["step", "gain"])
 def test_what_is_switched_off_is_not_even_measured(off):
-    def peak(size):
-        raise AssertionError(size)
+    def peaks(sizes):
+        raise AssertionError(sizes)
 
-    assert searched_size(SIZE, 1, peak, parameters(**{off: 0.0})) is SIZE
+    assert searched_size(SIZE, 1, peaks, parameters(**{off: 0.0})) is SIZE

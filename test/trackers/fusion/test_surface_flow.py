@@ -184,3 +184,15 @@ def test_after_a_return_few_magnified_patches_that_have_hardly_moved_apart_tell_
         judged.append((flow.is_reliable, flow.share > 0.5))
         flow = flow.kept(patch, centre, size)
     assert judged == [(False, True), (False, True), (True, False)]
+
+
+def test_a_share_is_the_same_whatever_flow_was_measured_before():
+    def share(textures):
+        drive = Drive(textures=textures)
+        for _ in range(3):
+            drive.step()
+        return drive.flow.latest
+
+    first = share(SEVERAL[1])
+    share(SEVERAL[2])
+    assert share(SEVERAL[1]) == first

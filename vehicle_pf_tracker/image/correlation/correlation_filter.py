@@ -226,7 +226,7 @@ class CorrelationFilter:
         return self.weights
 
     def _response(self, spectrum: Spectrum, weights: Spectrum) -> Response:
-        return upsampled((spectrum * weights.conj()).sum(axis=0), UPSAMPLING)
+        return upsampled((spectrum * weights.conj()).sum(axis=0), UPSAMPLING, self.waves)
 
     def _wide(self, size: int) -> tuple[PartialFourier, PartialFourier]:
         """Return transforms of a larger square of cells, and of the target in its middle."""

@@ -69,13 +69,13 @@ def frequencies(cells: int) -> npt.NDArray[np.intp]:
     return np.concatenate([[0, -(cells // 2)], positive, -positive])
 
 
-def upsampled(spectrum: Spectrum, upsampling: int) -> _Matrix:
+def upsampled(spectrum: Spectrum, upsampling: int, waves: RowWaves = BY_NUMPY) -> _Matrix:
     """Inverse transform of a half spectrum (n, n // 2 + 1), `upsampling` places per cell.
 
     Zero is in the middle. The highest frequency along x, which has no phase, is left out.
     """
     down, right = _fine_transforms(len(spectrum), upsampling)
-    return product(product(down, BY_NUMPY.of(spectrum)), right)
+    return product(product(down, waves.of(spectrum[np.newaxis])[0]), right)
 
 
 def shifted(spectrum: Spectrum, x: float, y: float) -> Spectrum:

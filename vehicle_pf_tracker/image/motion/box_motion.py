@@ -147,18 +147,18 @@ def carried_share(
     source = points + flow[middles, middles][block].reshape(-1, 2)
     place = points * places[0] + places[1]
     off = source - (points * vehicle[0] + vehicle[1])
-    limits = np.full(len(points), STRAYED_PX)
+    limits: Array | float = STRAYED_PX
     if len(background):
         stays = source - (points @ background[:2] + background[2])
         # A point nearer to the road behind than to its vehicle is the road, seen beside the
         # vehicle.
-        limits = np.minimum(limits, np.hypot(stays[:, 0], stays[:, 1]))
+        limits = np.minimum(STRAYED_PX, np.hypot(stays[:, 0], stays[:, 1]))
     near = np.hypot(off[:, 0], off[:, 1]) < NEARLY * limits
     if np.count_nonzero(near) >= FEWEST_CARRIED:
         # The turn is fitted to the residual, so that only what all share is taken off.
         held = place[near]
         off = off - place @ solved(held.T @ held + _KEPT, held.T @ off[near])
-    return float((np.hypot(off[:, 0], off[:, 1]) < limits).mean())
+    return float(np.count_nonzero(np.hypot(off[:, 0], off[:, 1]) < limits) / len(points))
 
 
 @functools.cache

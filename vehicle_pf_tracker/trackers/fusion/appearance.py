@@ -9,7 +9,7 @@ Width and height of the box follow the response to sizes a step larger and small
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -127,9 +127,9 @@ class View:
         middle = len(self.response) / 2
         x, y = position.tolist()
         left, top = self.patch.centre.tolist()
-        along, down = self.steps.tolist()
-        column = round((x - left) * along + middle)
-        row = round((y - top) * down + middle)
+        across, down = self.patch.zoom.tolist()
+        column = round((x - left) * (across / _STEP_PX) + middle)
+        row = round((y - top) * (down / _STEP_PX) + middle)
         return min(max(column, 0), last), min(max(row, 0), last)
 
     def peak_near(self, position: Array, reach: int) -> tuple[Array, float]:
@@ -220,14 +220,22 @@ class Appearance:
         highest = float(respond(self._spectrum(patch)).max())
         self.usual_response = max(highest, self._least_usual, _TINY_RESPONSE)
 
-    def response_at(self, frame: Frame, position: Array, size: Array) -> float:
-        """Response to a box of this centre and size (px), relative to the usual one."""
+    def responses_at(
+        self, frame: Frame, position: Array, sizes: Sequence[Array]
+    ) -> Sequence[float]:
+        """Responses to boxes of one centre and several sizes (px), relative to the usual one."""
         # Sizes are compared at one position: only the target's cells are measured, and no spectrum.
-        columns, rows = self._filter.extent
-        piece = (columns + 2 * _RIM) * GRADIENT_CELL_PX, (rows + 2 * _RIM) * GRADIENT_CELL_PX
-        image = cut_image(frame, position, self._box / size, piece)
+        columns, rows = (count + 2 * _RIM for count in self._filter.extent)
+        piece = columns * GRADIENT_CELL_PX, rows * GRADIENT_CELL_PX
+        # One below the other: most of the time of such small pieces is that of the calls.
+        image = np.concatenate(
+            [cut_image(frame, position, self._box / size, piece) for size in sizes]
+        )
         grey = np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), np.uint8)
-        return self._filter.respond_in_middle(self._features(image, grey)) / self.usual_response
+        return [
+            self._filter.respond_in_middle(features) / self.usual_response
+            for features in self._features(image, grey, len(sizes))
+        ]
 
     def learn_first(self, frame: Frame, position: Array, size: Array) -> None:
         """Train the filter on the first frame."""
@@ -290,25 +298,36 @@ class Appearance:
     def _spectrum(self, patch: Patch) -> Spectrum:
         wide = patch.side > self._side
         transform = self._filter.wide_spectrum if wide else self._filter.spectrum
-        return transform(self._features(patch.image, patch.grey))
+        (features,) = self._features(patch.image, patch.grey)
+        return transform(features)
 
-    def _features(self, image: Frame, grey: Grey) -> CellFeatures:
-        features = self._kernels.gradient_cells(grey, _COLOURS)
-        cells = features.shape[2], features.shape[1]
+    def _features(self, image: Frame, grey: Grey, images: int = 1) -> Sequence[CellFeatures]:
+        """Describe the cells of images of equal height that lie one below the other."""
+        height, width = grey.shape
+        cells = width // GRADIENT_CELL_PX, height // GRADIENT_CELL_PX
         # Means of whole cells, so that colours lie on the same grid as gradients. Only images of
         # floats from 0 to 1 become Lab without rounding.
         small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
         lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
-        # Lightness is 0 to 100, a and b about as much to either side: all within about one.
-        # Channel by channel: as one array by pixels, most of its loops would be of three steps.
-        for channel, gain in enumerate(_COLOUR_GAINS):
-            np.multiply(lab[..., channel], gain, out=features[GRADIENT_CHANNELS + channel])
-        features[GRADIENT_CHANNELS] -= _MIDDLE_LIGHTNESS
-        return features
+        described = []
+        for part, colours in zip(
+            grey.reshape(images, -1, width), lab.reshape(images, -1, *lab.shape[1:]), strict=True
+        ):
+            features = self._kernels.gradient_cells(part, _COLOURS)
+            # Lightness is 0 to 100, a and b about as much to either side: all within about one.
+            # Channel by channel: as one array by pixels, most of its loops would be of three steps.
+            for channel, gain in enumerate(_COLOUR_GAINS):
+                np.multiply(colours[..., channel], gain, out=features[GRADIENT_CHANNELS + channel])
+            features[GRADIENT_CHANNELS] -= _MIDDLE_LIGHTNESS
+            described.append(features)
+        return described
 
 
 def searched_size(
-    size: Array, turn: int, peak: Callable[[Array], float], parameters: SizeParameters
+    size: Array,
+    turn: int,
+    peaks: Callable[[Sequence[Array]], Sequence[float]],
+    parameters: SizeParameters,
 ) -> Array:
     """Move the size towards the vertex of the response over three sizes.
 
@@ -318,17 +337,15 @@ def searched_size(
         Width and height, px.
     turn : int
         Number of the search, which decides the direction that is tried.
-    peak : callable
-        Function that gives the response at a size (2,), px.
+    peaks : callable
+        Function that gives the responses at some sizes (2,), px.
     """
     direction = np.array(_DIRECTIONS[turn % len(_DIRECTIONS)])
     if not parameters.step or not parameters.gain:
         return size
     # Equal factors up and down: a parabola needs sizes that are equidistant, here in the logarithm.
     factor = (1 + parameters.step) ** direction
-    at_size = peak(size)
-    smaller = peak(size / factor)
-    larger = peak(size * factor)
+    at_size, smaller, larger = peaks([size, size / factor, size * factor])
     bend = smaller + larger - 2 * at_size
     # Below a millionth a bend is rounding, as responses have 7 digits. Without a bend the vertex is
     # beyond the sizes that were tried: one whole step towards the larger response, and no farther.

@@ -215,11 +215,11 @@ def _sized(state: State, seen: Observation, step: Step) -> State:
     options = step.parameters.size
     size = state.size
     # Points first: they follow what is faster than a step of the search, which then trims the rest.
-    peak = partial(step.memory.appearance.response_at, step.frame, state.position)
+    peaks = partial(step.memory.appearance.responses_at, step.frame, state.position)
     if options.step and not seen.was_hidden:
         stretch = believed_stretch(state.points.stretch, state.surface.share, size, options)
         size = size * np.exp(stretch)
-    size = searched_size(size, state.frames // 2, peak, options)
+    size = searched_size(size, state.frames // 2, peaks, options)
     return state._replace(size=step.bounded(size))
 
 

@@ -11,6 +11,7 @@ with it the filter's response, but its surface still moves with it.
 from __future__ import annotations
 
 import math
+import threading
 from typing import NamedTuple
 
 import cv2
@@ -59,6 +60,21 @@ vehicle of which .3 to .5 is visible is .33 (laboratory/notes/fusion_tried.md)."
 _LEAST_KEPT = 3
 """Patches from which a share counts as usual: the first two have hardly moved apart, so that all of
 the image moves with the vehicle."""
+
+
+class _Search(threading.local):
+    """OpenCV's object that measures flow, with its buffers; one for each thread.
+
+    Its results depend on nothing that it measured before. Trackers, which are copied, cannot have
+    it: it has no copies.
+    """
+
+    def __init__(self) -> None:
+        self.method = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
+        self.method.setVariationalRefinementIterations(_REFINED)
+
+
+_search = _Search()
 
 
 class _Kept(NamedTuple):
@@ -199,11 +215,9 @@ def _flow(present: Patch, before: Patch) -> Flow:
     """Flow from the present patch to an earlier one, canonical px.
 
     By dense inverse search (Kroeger et al. 2016), whose stripes, and so its results, do not depend
-    on the number of threads. Trackers are copied, which this object cannot be: it is made anew.
+    on the number of threads.
     """
-    method = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
-    method.setVariationalRefinementIterations(_REFINED)
-    flow = method.calc(present.grey, before.grey, None)  # type: ignore[call-overload]
+    flow = _search.method.calc(present.grey, before.grey, None)  # type: ignore[call-overload]
     return np.asarray(flow, np.float32)
 
 
