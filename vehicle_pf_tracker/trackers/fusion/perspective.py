@@ -158,8 +158,9 @@ class Sightings(NamedTuple):
         """Let `elapsed` frames pass and the camera move."""
         # They are kept from the last clear one on: a vehicle may be hidden for as long again.
         proven = self.proven().rows
-        clear = proven[proven[:, 5] >= CLEAR_RESPONSE, 0]
-        oldest = KEPT_FRAMES + (clear.min() if len(clear) else 0.0)
+        clear = np.flatnonzero(proven[:, 5] >= CLEAR_RESPONSE)
+        # The last one is the youngest.
+        oldest = KEPT_FRAMES + (proven[clear[-1], 0] if len(clear) else 0.0)
         # A mask copies: the rows of the state before stay as they were.
         rows = self.rows[self.rows[:, 0] < oldest]
         rows[:, 0] += elapsed

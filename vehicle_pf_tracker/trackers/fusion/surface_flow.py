@@ -223,10 +223,15 @@ def _flow(present: Patch, before: Patch) -> Flow:
 
 def _cells(patch: Patch, position: Array, size: Array) -> CellBlock:
     """Cells of the patch that lie in the box, at least one."""
-    middle = patch.to_patch(position)
-    half = BOX_REACH * size * patch.zoom
+    middles = patch.to_patch(position).tolist()
+    halves = (BOX_REACH * size * patch.zoom).tolist()
     last = patch.side // FLOW_CELL_PX - 1
-    # Cells whose middles are inside: half a cell less on either side.
-    low = np.minimum(np.maximum(np.ceil((middle - half) / FLOW_CELL_PX - 0.5), 0), last)
-    high = np.minimum(np.maximum(np.floor((middle + half) / FLOW_CELL_PX - 0.5), low), last)
-    return np.array([low, high - low + 1], np.intp)
+    firsts = []
+    counts = []
+    for middle, half in zip(middles, halves, strict=True):
+        # Cells whose middles are inside: half a cell less on either side.
+        low = min(max(math.ceil((middle - half) / FLOW_CELL_PX - 0.5), 0), last)
+        high = min(max(math.floor((middle + half) / FLOW_CELL_PX - 0.5), low), last)
+        firsts.append(low)
+        counts.append(high - low + 1)
+    return np.array([firsts, counts], np.intp)
