@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.motion.foreground import Foreground, median
+from vehicle_pf_tracker.image.motion.foreground import Foreground
 from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 
 SIZE = np.array([24.0, 14.0])
@@ -85,13 +85,6 @@ def test_a_few_frames_are_no_background():
 )
 def test_beside_the_vehicle_and_beyond_the_border_nothing_moves(centre):
     assert watched()[0].outline(np.array(centre), SIZE) is None
-
-
-@pytest.mark.parametrize("count", range(1, 21))
-def test_the_median_is_that_of_each_pixel(count):
-    images = list(np.random.default_rng(count).integers(0, 256, (count, 9, 7)).astype(np.uint8))
-    expected = np.sort(images, axis=0)[count // 2]
-    assert np.array_equal(median(images), expected)
 
 
 def test_all_that_moves_has_a_box_now_and_in_the_frames_before():

@@ -1,15 +1,12 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Appearance of the target: cells of gradients and colour, and the filter that finds them.
-
-Width and height of the box follow the response to sizes a step larger and smaller.
-"""
+"""Appearance of the target: cells of gradients and colour, and the filter that finds them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -34,7 +31,6 @@ from vehicle_pf_tracker.image.correlation.row_waves import Spectrum
 from vehicle_pf_tracker.image.correlation.spectra import shifted
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.trackers.fusion.paint import Paint
-from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
 from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 
 _CELLS = 32
@@ -73,9 +69,6 @@ _MIDDLE_LIGHTNESS = np.float32(0.5)
 _RIM_REACH = 4
 """Places beyond an outline within which the filter has to answer: a tenth of the target's side, as
 outlines are good to that."""
-_DIRECTIONS = ((1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
-"""Axes that are stretched, one pair of sizes per search in turns: vehicles mostly keep their
-aspect, so that both sides together have every second turn."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -321,36 +314,3 @@ class Appearance:
             features[GRADIENT_CHANNELS] -= _MIDDLE_LIGHTNESS
             described.append(features)
         return described
-
-
-def searched_size(
-    size: Array,
-    turn: int,
-    peaks: Callable[[Sequence[Array]], Sequence[float]],
-    parameters: SizeParameters,
-) -> Array:
-    """Move the size towards the vertex of the response over three sizes.
-
-    Parameters
-    ----------
-    size : (2,) array
-        Width and height, px.
-    turn : int
-        Number of the search, which decides the direction that is tried.
-    peaks : callable
-        Function that gives the responses at some sizes (2,), px.
-    """
-    direction = np.array(_DIRECTIONS[turn % len(_DIRECTIONS)])
-    if not parameters.step or not parameters.gain:
-        return size
-    # Equal factors up and down: a parabola needs sizes that are equidistant, here in the logarithm.
-    factor = (1 + parameters.step) ** direction
-    at_size, smaller, larger = peaks([size, size / factor, size * factor])
-    bend = smaller + larger - 2 * at_size
-    # Below a millionth a bend is rounding, as responses have 7 digits. Without a bend the vertex is
-    # beyond the sizes that were tried: one whole step towards the larger response, and no farther.
-    if bend < -1e-6 * at_size:
-        steps = min(max(0.5 * (smaller - larger) / bend, -1.0), 1.0)
-    else:
-        steps = float(np.sign(larger - smaller))
-    return np.asarray(size * factor ** (parameters.gain * steps))

@@ -13,12 +13,13 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
-from vehicle_pf_tracker.trackers.fusion.appearance import View, searched_size
+from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.hypotheses import PRIOR_DOUBT, hidden_hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
 from vehicle_pf_tracker.trackers.fusion.parameters import SIZE_RESPONSE, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
+from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
 from vehicle_pf_tracker.trackers.fusion.state import State, Wholeness
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Step
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
