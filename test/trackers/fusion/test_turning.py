@@ -50,7 +50,14 @@ def path(turns):
     return centres
 
 
-def drive(turns, paint=lambda picture, time: None, response=0.1, still=lambda time: True, late=0):
+def drive(
+    turns,
+    paint=lambda picture, time: None,
+    response=0.1,
+    still=lambda time: True,
+    late=0,
+    difference=1.0,
+):
     """Run the branch from the doubt on; what it gives, frame by frame, and the true centres.
 
     The doubt begins `late` frames after the turn, with the last clear sighting before it.
@@ -65,7 +72,9 @@ def drive(turns, paint=lambda picture, time: None, response=0.1, still=lambda ti
         if not foreground.is_known:
             turning = Outlines()
         if time > DOUBT + late:
-            turning = turning.followed(foreground, 1.0, view(response), lambda *_: 1.0, stranger)
+            turning = turning.followed(
+                foreground, 1.0, view(response), lambda *_: difference, stranger
+            )
             given.append(turning.vehicle)
         elif time == DOUBT + late:
             if foreground.is_known:
@@ -118,11 +127,36 @@ def lorry(picture, time):
     [
         {"turns": 0.0}, {"turns": 0.0, "paint": wall}, {"turns": 0.0, "paint": lorry},
         {"turns": 0.08, "still": lambda time: time != DOUBT + 1},
+        {"turns": 0.08, "difference": 1.1}, {"turns": 0.04, "difference": 1.1, "late": 20},
     ],
-    ids=["straight on", "cut by a wall", "run into by a lorry", "moving camera"],
+    ids=[
+        "straight on", "cut by a wall", "run into by a lorry", "moving camera", "in another paint",
+        "in another paint when the doubt begins",
+    ],
 )  # fmt: skip
 def test_what_does_not_leave_its_path_or_cannot_be_told_is_no_turn(options):
     assert not any(drive(**options)[0])
+
+
+@pytest.mark.parametrize(("behind", "is_proven"), [(9.0, True), (11.0, False)])
+def test_what_is_behind_the_path_by_more_than_half_a_size_is_no_turn(behind, is_proven):
+    """Half of the size is 10.2 px; the outline is beside the path, and moves away from it."""
+
+    class Seen:
+        """Give the outlines of a vehicle that is `behind`, a px farther aside in each frame."""
+
+        def outline(self, _centre, _size, _ago):
+            time = branch.age + 1.0
+            centre = START + np.array([SPEED * time - behind, 20.0 + time])
+            return Outline(centre - SIZE / 2, centre + SIZE / 2)
+
+    first = START + np.array([-behind, 20.0])
+    outline = Outline(first - SIZE / 2, first + SIZE / 2)
+    motion = PerspectiveMotion(START, np.array([SPEED, 0.0]), 0.0)
+    branch = Branch(motion, SIZE, (np.zeros(2), np.zeros(2)), outline, np.array([SPEED, 1.0]))
+    for _ in range(4):
+        branch = branch.moved(Seen(), 1.0)
+    assert branch.is_proven == is_proven
 
 
 def test_the_turn_is_over_when_the_filter_knows_the_vehicle_again():

@@ -41,6 +41,13 @@ _ACROSS = 0.25
 of an outline may lie aside, but it does not move there."""
 _CONFIRMED = 2
 """Frames in a row that prove it: single outlines jump with the noise at their rim."""
+_BEHIND_PATH = 0.5
+"""Distance behind the predicted position, in sizes, from which an outline is no turn but the next
+vehicle: what a wall has left of an outline runs into the one that follows. The half is a choice:
+three such were .44 to .54 behind, outlines of scene `turn` .2 (laboratory/notes/fusion_tried.md).
+"""
+_OTHER_PAINT = 1.0
+"""Difference of paint above which it is another vehicle's, the limit of `Paint.difference`."""
 _LARGEST_LOG_CHANGE = np.log(1.3)
 """Largest change of a side's logarithm in a frame; a merged outline changes by more. A choice:
 twice that of vehicles that pass a camera at 10 images a second (`box_motion.LARGEST_STRETCH`)."""
@@ -232,7 +239,8 @@ class Outlines(NamedTuple):
             Finds the vehicle in an outline.
         """
         # 1. The outline that was followed since the doubt began.
-        branch = self.branch and self.branch.moved(foreground, elapsed)
+        followed = self.branch and self.branch.moved(foreground, elapsed)
+        branch = followed
         emergence = self.emergence
         reappearance = self.reappearance
         # 2. What comes out beside the path: a new branch, if the first one is lost.
@@ -247,7 +255,12 @@ class Outlines(NamedTuple):
                 reappearance = reappearance.observed(boxes, judge)
         if branch is None:
             return Outlines(None, emergence, reappearance)
-        # 4. A proven turn ends the other searches, and is over once the filter knows the new side.
+        # 4. In another paint it is another vehicle, which what was left of the outline ran into.
+        # The searches go on; while they do, no proof has been believed yet.
+        is_new = branch is followed and branch.is_proven and self.reappearance is not None
+        if is_new and difference(*branch.box) > _OTHER_PAINT:
+            return Outlines(None, emergence, reappearance)
+        # 5. A proven turn ends the other searches, and is over once the filter knows the new side.
         branch = branch.judged(view)
         if branch.is_proven:
             emergence = None
@@ -297,8 +310,12 @@ def _leaves(branch: Branch, position: Array, size: Array) -> bool:
     # To one side of the heading; `off` has the sign of that side.
     normal = np.array([-velocity[1], velocity[0]]) / speed
     predicted = branch.size * branch.motion.scale_at(branch.age)
-    off = float((position - branch.motion.position_at(branch.age)) @ normal)
+    extent = float(np.sqrt(predicted.prod()))
+    away = position - branch.motion.position_at(branch.age)
+    if float(away @ velocity) < -_BEHIND_PATH * extent * speed:
+        return False
+    off = float(away @ normal)
     # Both sides of the box have to be off: a cut moves only one of them.
     wider = float(np.abs(normal) @ (size - predicted)) / 2
-    aside = (abs(off) - abs(wider)) / float(np.sqrt(predicted.prod()))
+    aside = (abs(off) - abs(wider)) / extent
     return aside > _ASIDE and float(branch.velocity @ normal) * np.sign(off) > _ACROSS * speed
