@@ -144,6 +144,15 @@ def test_of_a_vehicle_that_stood_nothing_is_behind():
     assert not hidden.is_behind(LAST - np.array([[30.0, 0.0]])).any()
 
 
+def test_a_size_ahead_of_the_prediction_is_another_in_its_lane():
+    """After 20 frames it is expected 40 px ahead; a size is 15.5 px."""
+    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 20.0, LAST)
+    positions = LAST + np.array([[20.0, 5.0], [55.0, -5.0], [56.0, -5.0]])
+    assert hidden.excludes(positions).tolist() == [False, False, True]
+    standing = hidden._replace(motion=PerspectiveMotion(LAST, np.zeros(2), 0.0))
+    assert not standing.excludes(positions).any()
+
+
 @pytest.mark.parametrize(
     ("moving", "is_covered"),
     [([], True), ([box(102, 60, 18, 10)], False), ([box(160, 60, 20, 12)], True)],

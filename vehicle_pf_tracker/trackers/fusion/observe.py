@@ -174,14 +174,14 @@ def observe(state: State, prediction: Prediction, step: Step) -> tuple[State, Ob
 
 
 def _is_stranger(state: State, position: Array, step: Step) -> bool:
-    """Test whether what would return is behind the vehicle, a known other one, or of another paint.
+    """Test whether what would return is off its way, a known other one, or of another paint.
 
     Only before a standing camera, where outlines are followed and the paint is learnt.
     """
     way = _way_of(state)
     if way is None or state.particles.probability_visible <= 0.5:
         return False
-    if way.is_behind(position) or way.is_another(position):
+    if way.excludes(position):
         return True
     appearance = step.memory.appearance
     return appearance.paint_share(step.frame, position, state.size) < LEAST_PAINT
@@ -230,10 +230,10 @@ def _searched(
     options = step.parameters.visibility
     positions, ratios = response_evidence(view, particles.positions, climb, options)
     way = _way_of(state)
-    # What answers behind it, or at another vehicle in view, is no evidence for it, only against it.
+    # What answers where it cannot be, or at another vehicle in view, is no evidence for it, only
+    # against it.
     if way is not None:
-        another = way.is_behind(positions) | way.is_another(positions)
-        ratios = np.where(another, np.minimum(ratios, 0.0), ratios)
+        ratios = np.where(way.excludes(positions), np.minimum(ratios, 0.0), ratios)
     return view, positions, ratios
 
 
