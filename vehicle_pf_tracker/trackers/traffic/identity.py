@@ -16,6 +16,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas
+from vehicle_pf_tracker.trackers.traffic.bodies import LONG_DRIVE, MISSED_FOR, SHORT_DRIVE
 from vehicle_pf_tracker.trackers.traffic.colours import similarities
 from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN_LOG_ODDS, note_found
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, objects
@@ -27,7 +28,7 @@ _HIDDEN_FOR = 4.0
 _OUT_OF_SIGHT = 0.5
 """Visible share of a hidden vehicle below which it is still behind another one: most of it is."""
 _MOST_GROWN = 2.0
-"""Ratio of the areas of two boxes below which they may be of one vehicle: it reappears part by
+"""Ratio of the areas of two boxes below which they fit one vehicle: it reappears part by
 part, and a half is enough to be detected as a whole. A choice."""
 _FARTHER_IN = 30.0
 """Nominal periods, one second of 30 Hz, in which the distance at which a hidden vehicle may
@@ -60,7 +61,12 @@ def named(state: State, proven: Bools, *, returning: bool) -> State:
             # that the others keep their indices meanwhile.
             tracks = resumed(tracks, hidden, row, state.experience)
             kept[row] = False
-        elif not is_double(tracks, row):
+        elif (body := body_of(state._replace(tracks=tracks), row)) is not None:
+            # Beside a part that is still detected it is no more than a double at first.
+            if _replaces(state._replace(tracks=tracks), body, row):
+                tracks = _as_body(tracks, body, row, state.experience)
+                kept[row] = False
+        elif not is_double(tracks, row, are_shapes=state.experience.detections.are_shapes):
             # A double gets no number, and stays tentative.
             identity += 1
             tracks = _numbered(tracks, row, identity)
@@ -109,15 +115,65 @@ def merged(state: State) -> State:
     return state if kept.all() else state._replace(tracks=tracks.take(kept))
 
 
-def is_double(tracks: Tracks, row: int) -> bool:
+def unified(state: State) -> State:
+    """Let vehicles that turned out to be one body have one number, that of the elder."""
+    tracks = state.tracks
+    kept = np.ones(len(tracks), np.bool_)
+    confirmed = tracks.confirmed & ~tracks.names.given
+    for row in np.flatnonzero(confirmed & tracks.detected).tolist():
+        elder = body_of(state._replace(tracks=tracks), row, LONG_DRIVE)
+        if elder is not None and kept[elder]:
+            tracks = _as_body(tracks, elder, row, state.experience)
+            kept[row] = False
+    return state if kept.all() else state._replace(tracks=tracks.take(kept))
+
+
+def body_of(state: State, row: int, least_way: float = SHORT_DRIVE) -> int | None:
+    """Find the elder vehicle that is one body with the track at `row`, if there is one."""
+    names = state.tracks.names
+    own = int(names.serial[row])
+    for pair, together in state.companions.items():
+        if own in pair and together.is_one(least_way):
+            (other,) = np.flatnonzero(names.serial == sum(pair) - own).tolist() or (None,)
+            # Numbers tell who is the elder: a track that began first may be confirmed last.
+            if other is not None and 0 < names.identity[other] < (names.identity[row] or np.inf):
+                return int(other)
+    return None
+
+
+def _replaces(state: State, elder: int, row: int) -> bool:
+    """Test whether the vehicle at `elder` goes on as the track at `row`, with which it is one."""
+    if state.tracks.sights.absences.passed[elder] >= MISSED_FOR:
+        return True
+    # Of two boxes that overlap by half either will do.
+    size, known = areas(state.tracks.sights.looks.detection[[row, elder]])
+    return bool(size > _MOST_GROWN * known) and body_of(state, row, LONG_DRIVE) == elder
+
+
+def _as_body(tracks: Tracks, elder: int, row: int, experience: Experience) -> Tracks:
+    """Let the vehicle at `elder` go on in the larger box of its own and the track's at `row`."""
+    detections = tracks.sights.looks.detection
+    drives = tracks.drives
+    larger = row if areas(detections[row]) > areas(detections[elder]) else elder
+    new = tracks.take(np.array([larger]))
+    tracks = resumed(tracks, elder, row, experience)
+    # With its growth: that of a part is not the whole's.
+    return replace(tracks, drives=drives.put(np.array([elder]), new.drives))
+
+
+def is_double(tracks: Tracks, row: int, *, are_shapes: bool = False) -> bool:
     """Test whether most of a new vehicle's detection is in that of another one, or reversely.
 
     Networks give one vehicle two boxes, for many frames on end: of it all and of its front, or with
     and without its shadow. Two vehicles side by side soon show more of each.
     """
     detections = tracks.sights.looks.detection
-    # Latest detections, not states, which follow them with a delay.
-    boxes = detections[tracks.confirmed & tracks.detected]
+    # Also in those that a network misses for an image or two; blobs join, and one of two goes.
+    is_recent = tracks.sights.absences.passed < MISSED_FOR
+    recent = tracks.confirmed & (tracks.detected if are_shapes else is_recent)
+    # Latest detections, not states, which follow them with a delay, of those that have one.
+    known = np.where(tracks.detected[:, np.newaxis], detections, tracks.edges)
+    boxes = known[recent]
     own = detections[row]
     smaller = np.minimum(areas(boxes), areas(own))
     return bool((intersections(own, boxes) > _SHARED * smaller).any())

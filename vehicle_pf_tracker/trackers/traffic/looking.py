@@ -14,11 +14,12 @@ from vehicle_pf_tracker.core.overlaps import NO_BOXES
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import Pairs, pairs_of_known, pairs_of_new
 from vehicle_pf_tracker.trackers.traffic.births import begun
+from vehicle_pf_tracker.trackers.traffic.bodies import watched
 from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates, weighed
 from vehicle_pf_tracker.trackers.traffic.correction import correct
 from vehicle_pf_tracker.trackers.traffic.existence import believed, doubt, fits_of_known
-from vehicle_pf_tracker.trackers.traffic.identity import merged, named
+from vehicle_pf_tracker.trackers.traffic.identity import merged, named, unified
 from vehicle_pf_tracker.trackers.traffic.parts import divided, inside_of, outgrown
 from vehicle_pf_tracker.trackers.traffic.recognition import coloured
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
@@ -77,6 +78,7 @@ def look(state: State, step: Step, detections: Detections) -> State:
     if step.parameters.returning:
         seen = seen._replace(state=merged(seen.state))
     seen = _give_outgrown(seen)
+    seen = _united(seen)
     # 5. Only now it is known who was missed, in plain sight.
     seen = seen._replace(state=doubt(seen.state, step))
     # 6. A box around a vehicle that has its own is no new one either. The others may be. Here
@@ -113,6 +115,15 @@ def _give_outgrown(look: Look) -> Look:
     return _take(
         look, pairs_of_known(tracks, rows, candidates, columns, step.size, step.edge_noise)
     )
+
+
+def _united(look: Look) -> Look:
+    """Let a lorry and its cab, which were both detected, be one; shapes are joined as blobs are."""
+    state, _, candidates, step = look
+    if candidates.are_shapes:
+        return look
+    companions = watched(state.companions, state.tracks, step.size, step.edge_noise)
+    return look._replace(state=unified(state._replace(companions=companions)))
 
 
 def _take(look: Look, pairs: Pairs) -> Look:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.road.plane import RoadPlane
+from vehicle_pf_tracker.trackers.traffic.bodies import NO_COMPANIONS, Companions
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
@@ -69,6 +70,8 @@ class State(NamedTuple):
         Statistics learnt from this camera; the only part that is changed in place.
     horizon : Horizon
         Row of the horizon, and what it is known by.
+    companions : Companions
+        Pairs of tracks that may be one body.
     last_identity, last_serial : int
         Number of the newest vehicle, and of the newest track.
     grey : (H, W) array or None
@@ -81,6 +84,7 @@ class State(NamedTuple):
     experience: Experience
     # Kept beside the tracks, as it outlives them: vehicles that have left still show it.
     horizon: Horizon = Horizon()
+    companions: Companions = NO_COMPANIONS
     last_identity: int = 0
     last_serial: int = 0
     grey: Grey | None = None
