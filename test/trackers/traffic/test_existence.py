@@ -122,6 +122,24 @@ def test_a_shape_with_another_one_beside_it_may_be_a_piece_for_half_a_second(
     assert reported_from(are_shapes=are_shapes, beside=beside) == images
 
 
+@pytest.mark.parametrize("edge", range(4))
+def test_a_shape_of_which_one_edge_moves_is_no_vehicle(edge):
+    tracker = MultiVehicleTracker()
+    frame = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    numbers = set()
+    for index in range(140):
+        # Vehicles as full as it teach that such shapes are vehicles.
+        boxes = [(20 + 4 * (index % 35), 140, 40, 30)]
+        edges = np.array([80.0, 60, 120, 100])
+        if index >= 70:  # half of it is learnt by and by, as a clock's digit
+            edges[edge] += (1 if edge < 2 else -1) * 2 * ((index - 70) // 7)
+            boxes.append((*edges[:2], *(edges[2:] - edges[:2])))
+        detections = replace(Detections.make(boxes, [0.9] * len(boxes)), are_shapes=True)
+        estimates = tracker.step(frame, detections)
+        numbers |= {one.identity for one in estimates if one.box.y < 110}
+    assert numbers == {0}
+
+
 def test_a_shape_that_shakes_as_it_drives_has_to_drive_farther():
     steady, shaking, boxed = (
         reported_from(are_shapes=True),

@@ -29,6 +29,35 @@ def test_a_way_is_measured_from_the_first_detection_in_widths():
     assert way((5, 7), (9, 7)).matches == 2
 
 
+FIRST = np.array([[40.0, 40, 60, 60]])
+
+
+@pytest.mark.parametrize(
+    ("now", "length"),
+    [
+        ((55, 40, 75, 60), 15 / 20),  # drives across
+        ((40, 30, 60, 50), 10 / 20),  # and away
+        ((35, 42, 65, 75), 5 / 30),  # comes near: the sides move as it grows
+        ((40, 52, 60, 60), 0),  # is learnt from above, as the digit of a clock
+        ((20, 40, 60, 60), 0),  # a hole, from which what left it parts
+        ((40, 40, 60, 60), 0),
+    ],
+)
+def test_two_edges_share_a_drive(now, length):
+    ways = Ways.unknown(1).added(FIRST)
+    shared = ways.shared_lengths(np.array([now], float), (200, 150), 0.05)
+    assert shared == pytest.approx(length)
+
+
+def test_an_edge_that_the_border_cuts_moves_as_the_opposite_one():
+    ways = Ways.unknown(1).added(np.array([[0.0, 40, 12, 60]]))
+    coming = np.array([[0.0, 40, 30, 60]])
+    assert ways.shared_lengths(coming, (200, 150), 0.05) == pytest.approx(18 / 30)
+    later = coming + np.array([50, 0, 50, 0])
+    assert ways.shared_lengths(later, (200, 150), 0.05) == pytest.approx(68 / 30)
+    assert Ways.unknown(1).shared_lengths(coming, (200, 150), 0.05) == 0
+
+
 def test_the_drive_explains_a_share_of_the_scatter():
     # Times have a scatter of 5, places of 2.75, both together of 3.5.
     share = 3.5**2 / 5 / 2.75

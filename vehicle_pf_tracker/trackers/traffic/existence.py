@@ -37,6 +37,10 @@ about a vehicle does not hide it for ever; and that are taken off each, in confi
 alone."""
 _PROVEN = 4.0
 """Sum of the log odds of scores that stands for a drive: one in 55, two detections at least."""
+_PART_OF_DRIVE = 0.5
+"""Way, of that asked for, above which scores of shapes stand for the rest. Where none is asked for,
+a clock's digits and holes have numbers; where scores stand for nothing, HOTA / IDF1 of *highway*
+are 52.9 / 76.2 instead of 59.7 / 90.1."""
 _MISSED = 0.3
 """Log odds that a detection missed in plain sight takes off a vehicle: something unknown may hide
 it, so that only 25 take off all that it can have. At .15 ghosts stay twice as long: 1660 images at
@@ -146,7 +150,10 @@ def believed(
         is_old = beliefs.ways.age >= _WAIT / step.period
         # A piece drives as straight as its vehicle, whose rest is beside it until both are joined.
         now_drives &= is_old | ~_have_rest(edges, candidates.edges)
-        proven &= is_old
+        # Scores say how full they are, and the hole of what has left, or a digit of a clock, is as
+        # full image after image: part of a drive besides.
+        shared = beliefs.ways.shared_lengths(tracks.edges, step.size, step.edge_noise)
+        proven &= is_old & (shared > _PART_OF_DRIVE * step.parameters.birth.displacement)
     # What has driven stays proven: a second box of another vehicle may part from it later.
     drove = now_drives | beliefs.has_driven
     proven |= drove
@@ -238,6 +245,9 @@ def drives(tracks: Tracks, step: Step, *, are_shapes: bool = False) -> Bools:
     if are_shapes:
         # A swing of leaves is straight in as many images as see it: of fewer less is asked.
         straight = max(_STRAIGHT_SHAPE / step.sparsity, _STRAIGHT_ENOUGH)
+        # The centre of what stands moves, too, as one edge of it does.
+        shared = ways.shared_lengths(tracks.edges, step.size, step.edge_noise)
+        lengths = np.minimum(lengths, shared)
         return np.asarray((lengths > displacement) & (evidence > straight))
     # False alarms side by side look like a short drive.
     is_sure = (evidence >= _SURELY_DRIVES) & (lengths >= _OWN_WIDTH)

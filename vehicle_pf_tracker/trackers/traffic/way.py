@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.traffic.box_edges import OPPOSITE, cut_edges
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Rows, columns
 
 _STANDS_WITHIN = 0.1
@@ -37,8 +38,8 @@ class Ways(Rows):
     ----------
     age : (N,) array
         Nominal periods since each was first seen.
-    first : (N, 2) array
-        Centre of the first detection, px.
+    first : (N, 4) array
+        Edges of the first detection, px.
     sums : (N, 8) array
         Sums over the detections since it stood: one, time, its square, x, y, time x, time y, x² +
         y².
@@ -61,8 +62,9 @@ class Ways(Rows):
     def unknown(cls, count: int) -> Ways:
         """Ways before the first detection."""
         number = np.zeros(count, np.intp)
-        place = np.zeros((count, 2))
-        return cls(np.zeros(count), place, np.zeros((count, 8)), number, place, number)
+        edges = np.zeros((count, 4))
+        halt = np.zeros((count, 2))
+        return cls(np.zeros(count), edges, np.zeros((count, 8)), number, halt, number)
 
     @property
     def stands(self) -> Bools:
@@ -75,7 +77,7 @@ class Ways(Rows):
 
     def added(self, edges: Array) -> Ways:
         """Add a detection of each now, by its edges (N, 4) in px."""
-        x, y = ((edges[:, :2] + edges[:, 2:]) / 2).T
+        x, y = _centres(edges).T
         time = self.age
         once = np.ones(len(self))
         terms = columns(once, time, time * time, x, y, time * x, time * y, x * x + y * y)
@@ -83,7 +85,7 @@ class Ways(Rows):
         # Lengths are measured from the first detection, also after a stand: a vehicle that stood
         # and drives on has come as far.
         is_first = self.matches == 0
-        first = np.where(is_first[:, np.newaxis], here, self.first)
+        first = np.where(is_first[:, np.newaxis], edges, self.first)
         away = np.hypot(*(here - self.halt).T)
         # From the first detection of the stand, not from the latest: a slow drive would creep away.
         stays = (away < _STANDS_WITHIN * (edges[:, 2] - edges[:, 0])) & ~is_first
@@ -95,9 +97,24 @@ class Ways(Rows):
 
     def lengths(self, edges: Array) -> Array:
         """Distance (N,) of boxes (N, 4) from the first detection, in their widths; 0 before it."""
-        x, y = ((edges[:, :2] + edges[:, 2:]) / 2 - self.first).T
+        x, y = (_centres(edges) - _centres(self.first)).T
         width = np.maximum(edges[:, 2] - edges[:, 0], 1.0)
         return np.asarray(np.where(self.matches > 0, np.hypot(x, y) / width, 0.0))
+
+    def shared_lengths(self, edges: Array, size: tuple[int, int], noise: float) -> Array:
+        """Distance (N,) that two edges of boxes (N, 4) or more have moved, in widths of the boxes.
+
+        A vehicle takes two with it at least: those of one axis, or the lower one and both sides as
+        it grows. Of what stands, and is learnt by and by or changes its form, one edge moves. One
+        that the border of an image of `size` cuts tells nothing, and moves as the opposite one
+        does; `noise` is the deviation of an edge, fraction of the box's side.
+        """
+        moved = np.abs(edges - self.first)
+        opposite = moved[:, OPPOSITE]
+        cut = cut_edges(edges, size, noise) | cut_edges(self.first, size, noise)
+        second = np.sort(np.where(cut, opposite, moved), axis=1)[:, -2]
+        width = np.maximum(edges[:, 2] - edges[:, 0], 1.0)
+        return np.asarray(np.where(self.matches > 0, second / width, 0.0))
 
     def evidence(self) -> Array:
         """Logarithm (N,) of how rarely detections that shake in one place are as straight.
@@ -121,3 +138,7 @@ class Ways(Rows):
         rest = np.maximum(1 - np.where(is_told, straightness, 0.0), math.ulp(1.0))
         # Its tail is (1 - share)^(count - 2): more detections make the same straightness rarer.
         return np.asarray(np.where(is_told, (2 - count) * np.log(rest), 0.0))
+
+
+def _centres(edges: Array) -> Array:
+    return np.asarray((edges[:, :2] + edges[:, 2:]) / 2)
