@@ -11,18 +11,24 @@ until it has stayed for long: a lorry of one colour hides a place for seconds, a
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.detection.exposure import Curves, exposure_change
+from vehicle_pf_tracker.detection.holes import is_hole
 from vehicle_pf_tracker.detection.motion_thresholds import MotionThresholds
 
 Colours = npt.NDArray[np.uint8]
 Planes = npt.NDArray[np.uint8]
 """Channels of an image, one below the other: sums over them are ten times as fast."""
 Pixels = npt.NDArray[np.bool_]
+Mask = npt.NDArray[np.uint8]
+Section = tuple[slice, slice]
+"""Rows and columns of an image."""
 
 _SAMPLES = 10
 """Colours that are remembered of each pixel. A choice: time and memory grow with them, and what
@@ -52,14 +58,25 @@ _RIM = np.ones((5, 5), np.uint8)
 blur and slope reach over two pixels to each side."""
 _SPARSE = (slice(None), slice(None, None, 4), slice(None, None, 4))
 """Pixels that the camera's gain is taken from: one in sixteen is enough for a median."""
+_ADOPTED = 1.05
+"""Change of the camera's gain, either way, above which the background takes the image's exposure. A
+choice: several times the noise of the median, so that roundings of the samples do not add up."""
 _MOST_GAIN = 1.3
-"""Largest change of the camera's gain, either way, a choice; beyond it the light was switched.
+"""Largest change of the gain, either way, that is undone where no change of exposure explains the
+image, a choice; beyond it the light was switched.
 Without gains HOTA / IDF1 of both CDnet clips fall by 1.2 / 1.8."""
 _NEIGHBOURS = ((-1, 0), (1, 0), (0, -1), (0, 1))
 """Steps (rows, columns) to the four neighbours that a sample may be given to."""
 _FORGIVEN = 0.1
 """Images of change that an image without any makes up for: behind one vehicle in ten images there
 is still a road to be learnt, and leaves that move in more of them are background in the end."""
+_STANDS = 0.2
+"""Mean time, s, for which a part has been changed before it is taken for a hole: of what drives by
+fast edges are blurred."""
+_AGAIN = 0.5
+"""Share of a hole that the search before has found to be one, too: most of it."""
+_LEAST_HOLE = 20
+"""Least area of a hole, px: a smaller outline has as many edges by noise."""
 _AROUND = np.ones((7, 7), np.uint8)
 """Surroundings of a change that are not learnt either: the rim of a vehicle that is not told from
 the road would be given on to its neighbours, and eat into it."""
@@ -86,6 +103,7 @@ class Background:
         self._samples: list[Planes] = []
         self._age = 0
         self._exposure = np.zeros(shape[:2], dtype=np.float32)
+        self._suspected = np.zeros(shape[:2], dtype=np.uint8)
 
     @property
     def is_known(self) -> bool:
@@ -101,7 +119,7 @@ class Background:
     def compare(self, image: Colours) -> Pixels:
         """Mark the pixels that have changed and are not just in a shadow."""
         # Gain first: it changes every pixel. Shadows last, and only among what has changed.
-        planes = self._with_former_gain(_planes(image))
+        planes = self._of_one_exposure(_planes(image))
         changed = self._unlike(planes)
         return np.asarray(changed & ~self._shadows(planes, changed))
 
@@ -157,20 +175,79 @@ class Background:
         chosen = learnt & self._some(learnt.shape)
         _give(planes, chosen, other, _NEIGHBOURS[int(self._rng.integers(len(_NEIGHBOURS)))])
 
-    def _with_former_gain(self, planes: Planes) -> Planes:
-        """Undo a change of the camera's gain: something white that drives by lowers it."""
+    def holes(self, image: Colours, changed: Mask, period: float) -> Mask:
+        """Mark the parts of a change that are holes of vehicles which have left, and learn them.
+
+        Parameters
+        ----------
+        image : (H, W, 3) array
+            The image.
+        changed : (H, W) array
+            Not 0 where it has changed.
+        period : float
+            Time that the image stands for, s.
+
+        Returns
+        -------
+        (H, W) array
+            1 in holes.
+        """
+        suspected = np.zeros(changed.shape, np.uint8)
+        found = np.zeros(changed.shape, np.uint8)
+        for section, part in _standing(changed, self._exposure, _STANDS / period):
+            if not is_hole(image[section][..., 1], self._green(section), part):
+                continue
+            suspected[section] |= part
+            # Twice: by chance once in a hundred, and what drives is elsewhere by then.
+            if cv2.mean(self._suspected[section], part)[0] > _AGAIN:
+                found[section] |= part
+        self._suspected = suspected
+        if found.any():
+            self._relearn(image, cv2.dilate(found, _AROUND) > 0)
+        return found
+
+    def _green(self, section: Section) -> npt.NDArray[np.float32]:
+        """Levels of green in a section, which are most of the brightness."""
+        height = len(self._samples[0]) // 3
+        rows, columns = section
+        green = (slice(rows.start + height, rows.stop + height), columns)
+        samples = self._samples[::_COMPARED]
+        levels = samples[0][green].astype(np.float32)
+        for sample in samples[1:]:
+            levels += sample[green]
+        return np.asarray(levels / len(samples), np.float32)
+
+    def _relearn(self, image: Colours, uncovered: Pixels) -> None:
+        """Learn at once what was uncovered."""
+        planes = _planes(image)
+        for sample in self._samples:
+            _give(planes, uncovered, sample)
+        self._exposure[uncovered] = 0
+
+    def _of_one_exposure(self, planes: Planes) -> Planes:
+        """Undo a small change of the camera's gain, and give the background a large one's.
+
+        Something white that drives by lowers the gain for a moment. What is covered by vehicles, or
+        cut off in white, could not be learnt anew: the samples change as the image has.
+        """
+        gain = self._gain(planes)
+        if not 1 / _ADOPTED < gain < _ADOPTED:
+            curves = exposure_change(*(_sparse(one) for one in (self._samples[0], planes)))
+            if curves is not None:
+                self._samples = [_with_curves(one, curves) for one in self._samples]
+                gain = self._gain(planes)
+        if not 1 / _MOST_GAIN < gain < _MOST_GAIN:
+            return planes
+        return np.asarray(cv2.convertScaleAbs(planes, alpha=1 / gain), np.uint8)
+
+    def _gain(self, planes: Planes) -> float:
+        """Median ratio of the image to the background, as vehicles change some of the pixels."""
         before, now = (
             one.reshape(3, -1, one.shape[1])[_SPARSE].sum(axis=0, dtype=np.float32)
             for one in (self._samples[0], planes)
         )
         lit = before > self._thresholds.colour_threshold  # darker ones are noise
-        if not lit.any():
-            return planes
-        # A median, as vehicles change some of the pixels.
-        gain = float(np.median(now[lit] / before[lit]))
-        if not 1 / _MOST_GAIN < gain < _MOST_GAIN:
-            return planes
-        return np.asarray(cv2.convertScaleAbs(planes, alpha=1 / gain), np.uint8)
+        return float(np.median(now[lit] / before[lit])) if lit.any() else 1.0
 
     def _some(self, shape: tuple[int, ...]) -> Pixels:
         """Choose as many pixels at random as are renewed in an image."""
@@ -229,6 +306,39 @@ def _sum(planes: npt.NDArray[Any]) -> npt.NDArray[Any]:
     second = planes[height : 2 * height]
     third = planes[2 * height :]
     return np.asarray(cv2.add(cv2.add(first, second), third), planes.dtype)
+
+
+def _standing(
+    changed: Mask, exposure: npt.NDArray[np.float32], least: float
+) -> Iterator[tuple[Section, Mask]]:
+    """Find parts of a change that have been there for `least` images: sections, and their pixels.
+
+    Of what the border cuts half an outline tells nothing, and it is left out.
+    """
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(changed)
+    height, width = changed.shape
+    for index in range(1, count):
+        x, y, across, down, area = stats[index].tolist()
+        is_free = x > 0 and y > 0 and x + across < width and y + down < height
+        if area < _LEAST_HOLE or not is_free:
+            continue
+        # With its surroundings, in which are edges of the outline.
+        rows = slice(max(y - 2, 0), min(y + down + 2, height))
+        section = (rows, slice(max(x - 2, 0), min(x + across + 2, width)))
+        part = (labels[section] == index).view(np.uint8)
+        if cv2.mean(exposure[section], part)[0] >= least:
+            yield section, part
+
+
+def _sparse(planes: Planes) -> npt.NDArray[np.float64]:
+    """Levels (3, N) of a few pixels."""
+    few = planes.reshape(3, -1, planes.shape[1])[_SPARSE]
+    return np.asarray(few.reshape(3, -1), np.float64)
+
+
+def _with_curves(planes: Planes, curves: Curves) -> Planes:
+    parts = [cv2.LUT(*each) for each in zip(np.split(planes, 3), curves, strict=True)]
+    return np.ascontiguousarray(np.concatenate(parts), np.uint8)
 
 
 def _give(planes: Planes, chosen: Pixels, sample: Planes, offset: tuple[int, int] = (0, 0)) -> None:

@@ -26,6 +26,9 @@ from vehicle_pf_tracker.detection.usual_size import WIDEST_MASK
 _CLOSED = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
 """Holes and gaps up to this size, px of the mask, are closed: windscreens show the sky. A choice:
 larger ones would join vehicles."""
+_HOLES_EVERY = 0.19
+"""Time between two searches for holes of what has left, s: two find one before what stands could
+have a number after half a second. Below whole intervals of 30 and of 25 Hz, for jitter."""
 _DISTURBED = 0.5
 """Share of the image that differs above which the camera moves or the light was switched: no
 vehicle that is worth following fills half of it."""
@@ -58,6 +61,7 @@ class MotionDetector:
         self.is_blind = False
         self._blobs = BlobReader(thresholds)
         self._shape: tuple[int, ...] = (0, 0)
+        self._since_holes = 0.0
         self._restart()
 
     def detect(
@@ -111,6 +115,11 @@ class MotionDetector:
             return Detections.none()
         # 4. Learn with the clean mask: the specks that it leaves out are background.
         moving = _cleaned(changed)
+        # Holes of what has left first: a vehicle that drives over one would be hidden in it.
+        self._since_holes += period
+        if self._since_holes >= _HOLES_EVERY:
+            self._since_holes = 0.0
+            moving[self._background.holes(small, moving, period) > 0] = 0
         self._background.learn(small, moving > 0, _covered(covered, small), period)
         # 5. Read blobs. All tracks tell how vehicles drive here, also tentative ones.
         velocities = np.array([one.velocity for one in tracks]).reshape(-1, 2)
@@ -134,6 +143,7 @@ class MotionDetector:
     def _restart(self) -> None:
         self._background = Background(self._shape, self._seed, self._thresholds)
         self._stabiliser = Stabiliser()
+        self._since_holes = 0.0
 
 
 def _cleaned(changed: Pixels) -> npt.NDArray[np.uint8]:
