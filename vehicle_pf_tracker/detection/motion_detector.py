@@ -15,7 +15,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.clock import DEFAULT_PERIOD
 from vehicle_pf_tracker.core.frame import Frame, check_frame
-from vehicle_pf_tracker.detection.background import Background, Colours, Pixels
+from vehicle_pf_tracker.detection.background import Background, Colours, Mask, Pixels
 from vehicle_pf_tracker.detection.blobs import BlobReader, Blobs
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.detection.detector import FollowedVehicle
@@ -113,14 +113,8 @@ class MotionDetector:
             self.disturbed = self.is_blind = True
             self._restart()
             return Detections.none()
-        # 4. Learn with the clean mask: the specks that it leaves out are background.
-        moving = _cleaned(changed)
-        # Holes of what has left first: a vehicle that drives over one would be hidden in it.
-        self._since_holes += period
-        if self._since_holes >= _HOLES_EVERY:
-            self._since_holes = 0.0
-            moving[self._background.holes(small, moving, period) > 0] = 0
-        self._background.learn(small, moving > 0, _covered(covered, small), period)
+        # 4. Clean the mask, and learn the background with it.
+        moving = self._learnt(small, changed, _covered(covered, small), period)
         # 5. Read blobs. All tracks tell how vehicles drive here, also tentative ones.
         velocities = np.array([one.velocity for one in tracks]).reshape(-1, 2)
         blobs = self._blobs.read(moving, predicted, velocities)
@@ -140,13 +134,25 @@ class MotionDetector:
         edges = self._stabiliser.from_reference(edges)
         return np.hstack([edges[:, :2], edges[:, 2:] - edges[:, :2]]) / zoom
 
+    def _learnt(self, small: Colours, changed: Pixels, covered: Pixels, period: float) -> Mask:
+        """Learn what has not changed, and holes of what has left; mark what moves."""
+        # With the clean mask: the specks that it leaves out are background.
+        moving = _cleaned(changed)
+        # Holes first: a vehicle that drives over one would be hidden in it.
+        self._since_holes += period
+        if self._since_holes >= _HOLES_EVERY:
+            self._since_holes = 0.0
+            moving[self._background.holes(small, moving, period) > 0] = 0
+        self._background.learn(small, moving > 0, covered, period)
+        return moving
+
     def _restart(self) -> None:
         self._background = Background(self._shape, self._seed, self._thresholds)
         self._stabiliser = Stabiliser()
         self._since_holes = 0.0
 
 
-def _cleaned(changed: Pixels) -> npt.NDArray[np.uint8]:
+def _cleaned(changed: Pixels) -> Mask:
     """Drop single pixels from a mask, and close its gaps."""
     # Single pixels go first, else closing would join them to vehicles.
     moving = np.asarray(cv2.medianBlur(changed.astype(np.uint8), 3), np.uint8)
