@@ -4,12 +4,14 @@
 """Steps of this version against those of another commit: `python -m benchmarks.versus COMMIT`.
 
     python -m benchmarks.versus v1.0.0 --variants apf fusion --passes 5
+    python -m benchmarks.versus v1.0.0 --vehicles 10 60
 
 The other commit's package is laid out in a cache folder, and runs in a process of its own with the
 libraries of this environment, so that only our own code differs. Both processes follow the same
 drawn vehicle, in turns of 10 frames whose order changes, and report the processor time of their
-thread. A ratio above 1 means that this version's step takes longer. Nothing is judged: what a
-change of a hot path costs is read here, and stands in its commit.
+thread; with `--vehicles` `traffic` follows as many at once, in given boxes. A ratio above 1 means
+that this version's step takes longer. Nothing is judged: what a change of a hot path costs is read
+here, and stands in its commit.
 """
 
 from __future__ import annotations
@@ -36,6 +38,7 @@ from benchmarks.bench.case import interquartile_range
 from benchmarks.bench.material import drive
 from benchmarks.bench.root import ROOT
 from benchmarks.bench.turns import TURN_FRAMES
+from benchmarks.traffic_cost import SETTLED, made
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.kernels.interface import KERNEL_CHOICES
 from vehicle_pf_tracker.trackers.registry import VARIANTS
@@ -185,6 +188,12 @@ def write_frames(path: Path, count: int) -> int:
     return len(sides)
 
 
+def write_road(path: Path, vehicles: int, images: int) -> None:
+    """Write the images of a road with so many vehicles at once, and the boxes of a detector."""
+    road = made(vehicles, path.with_suffix(""), images)
+    np.savez(path, frames=np.stack(list(road.frames())), boxes=road.detections["good"])
+
+
 def compare(
     variant: str,
     workers: tuple[Worker, Worker],
@@ -192,7 +201,7 @@ def compare(
     passes: int,
     settings: Mapping[str, str | int],
 ) -> Ratio:
-    """Step one variant in both versions, in turns of `TURN_FRAMES` frames.
+    """Step one variant in both versions, in turns.
 
     Parameters
     ----------
@@ -211,10 +220,43 @@ def compare(
     for seed in range(passes):
         for worker in workers:
             worker.ask("start", variant, {**settings, "seed": seed})
-        for turn, first in enumerate(range(1, frames - TURN_FRAMES + 1, TURN_FRAMES)):
-            for side in (0, 1) if turn % 2 else (1, 0):
-                times[side].append(workers[side].ask("step", first, TURN_FRAMES) / TURN_FRAMES)
+        take_turns(workers, range(1, frames), times)
     return Ratio.of(variant, *times)
+
+
+def compare_traffic(
+    road: Path, workers: tuple[Worker, Worker], settled: int, frames: int, passes: int
+) -> Ratio:
+    """Step `traffic` in both versions, in turns, where `frames` follow `settled` ones.
+
+    Parameters
+    ----------
+    road : Path
+        File of images and boxes, as `write_road` makes it; the ratio has its name.
+    workers : (Worker, Worker)
+        This version and the other one.
+    settled : int
+        Number of images before the first turn, in which vehicles are found.
+    frames : int
+        Number of images of the turns.
+    passes : int
+        Number of passes over all.
+    """
+    times: tuple[list[float], list[float]] = ([], [])
+    for _ in range(passes):
+        for worker in workers:
+            worker.ask("start_traffic", str(road), settled)
+        take_turns(workers, range(settled, settled + frames), times)
+    return Ratio.of(road.stem, *times)
+
+
+def take_turns(
+    workers: tuple[Worker, Worker], frames: range, times: tuple[list[float], list[float]]
+) -> None:
+    """Let both step through frames in turns of `TURN_FRAMES`; add the seconds a step of each."""
+    for turn, first in enumerate(frames[: len(frames) // TURN_FRAMES * TURN_FRAMES : TURN_FRAMES]):
+        for side in (0, 1) if turn % 2 else (1, 0):
+            times[side].append(workers[side].ask("step", first, TURN_FRAMES) / TURN_FRAMES)
 
 
 def table(ratios: Sequence[Ratio], commit: str) -> str:
@@ -256,10 +298,16 @@ def _compare_all(args: argparse.Namespace, commit: str) -> list[Ratio]:
         settings = {"kernels": args.kernels}
         if args.particles:
             settings["num_particles"] = args.particles
-        return [
-            compare(name, (here, other), frames, args.passes, settings)
-            for name in args.variants or shared
-        ]
+        both = here, other
+        named = args.variants or ([] if args.vehicles else shared)
+        ratios = [compare(name, both, frames, args.passes, settings) for name in named]
+        settled = 1 if args.toy else SETTLED
+        for count in args.vehicles:
+            road = folder / f"traffic_{count}.npz"
+            write_road(road, count, settled + args.frames - 1)
+            ratios.append(compare_traffic(road, both, settled, args.frames - 1, args.passes))
+            road.unlink()
+        return ratios
 
 
 def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -269,6 +317,14 @@ def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
         "--otherwise", metavar="COMMIT", help="commit to compare with where there is no tag"
     )
     parser.add_argument("--variants", nargs="+", default=[], metavar="NAME", choices=VARIANTS)
+    parser.add_argument(
+        "--vehicles",
+        nargs="+",
+        type=int,
+        default=[],
+        metavar="N",
+        help="`traffic`: so many at once",
+    )
     parser.add_argument("--passes", type=int, default=3, help="passes over the drive")
     parser.add_argument("--frames", type=int, default=101, help="frames of a pass")
     parser.add_argument("--particles", type=int, default=0, help="0: each variant's own number")
@@ -286,7 +342,7 @@ def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
         args.passes = 1
         args.frames = _TOY_FRAMES
         args.kernels = "opencv"
-        args.variants = args.variants or list(_TOY_VARIANTS)
+        args.variants = args.variants or ([] if args.vehicles else list(_TOY_VARIANTS))
     return args
 
 

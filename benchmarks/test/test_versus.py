@@ -44,6 +44,16 @@ def test_a_toy_compares_a_commit_with_this_tree(tmp_path, capsys):
     assert versus.lay_out("HEAD", tmp_path) == laid_out
 
 
+def test_a_toy_compares_the_step_of_many_vehicles(tmp_path, capsys):
+    commit()
+    words = ["HEAD", "--toy", "--vehicles", "4", "--cache", str(tmp_path)]
+    assert versus.main(words) == 0
+    (_, line) = capsys.readouterr().out.splitlines()
+    name, *numbers = line.split()
+    assert name == "traffic_4"
+    assert float(numbers[0]) > 0 < float(numbers[4])
+
+
 def test_the_other_version_is_what_runs_in_its_process(tmp_path):
     folder = versus.lay_out(commit(), tmp_path)
     registry = folder / "vehicle_pf_tracker" / "trackers" / "registry.py"
