@@ -26,6 +26,7 @@ from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan, read_counting_plan
 from vehicle_pf_tracker.showing.traffic_drawing import Trails, frame_with_vehicles
 from vehicle_pf_tracker.trackers.traffic.association import check_library
+from vehicle_pf_tracker.trackers.traffic.colours import load_counting
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
@@ -187,6 +188,7 @@ def session_and_counter(
     """
     # First: a library that is missing is said before a network is fetched.
     check_library()
+    load_counting()
     parameters = configuration.tracker
     plane = configuration.session.road.fixed_plane()
     plan = read_counting_plan(Path(parameters.lines)) if parameters.lines else CountingPlan()

@@ -17,6 +17,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+LINKER = "libllvmlite"
+"""LLVM's library, which nothing calls once kernels are loaded: 45 MB of it are resident then."""
 SMAPS = Path("/proc/self/smaps")
 """Areas of this process's address space, each with the file that it is of, and its sizes."""
 _AREA = r"^([0-9a-f]+)-([0-9a-f]+) (\S+) .*/{}.*\n((?:\w+:.*\n)+)"

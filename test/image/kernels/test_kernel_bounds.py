@@ -18,6 +18,7 @@ import cv2, numpy as np
 from vehicle_pf_tracker.image.windows.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.windows.gradients import GradientDirections
 from vehicle_pf_tracker.image.kernels import (
+    numba_box_colours,
     numba_cells,
     numba_counts,
     numba_pixel_cells,
@@ -84,6 +85,9 @@ for _ in range(1500):
     attempt(numba_pixel_cells.pair_cells, frame[..., 0], table)
     grey = np.ascontiguousarray(frame[..., 0])
     attempt(numba_cells.gradient_cells, grey, int(rng.integers(-40, 2)))
+    boxes, covers = (rng.integers(-90, 150, (int(rng.integers(4)), 4)) for _ in range(2))
+    ends = np.sort(rng.integers(-1, 5, int(rng.integers(4))))
+    attempt(numba_box_colours.count_colours, frame, boxes, covers, ends)
 assert outcomes["refused"] > 2000 < outcomes["done"], outcomes
 print("done")
 """

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from vehicle_pf_tracker.image.kernels import numba_edges
 from vehicle_pf_tracker.image.kernels.interface import load_kernels
+from vehicle_pf_tracker.image.windows.box_colours import COLOUR_BINS
 from vehicle_pf_tracker.image.windows.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.windows.gradients import GradientDirections, direction_bins
 from vehicle_pf_tracker.image.windows.mean_shift import kernel_histogram
@@ -182,3 +183,29 @@ def test_directions_are_those_of_the_arc_tangent(signed):
         for x, y in zip(gx.tolist(), gy.tolist(), strict=True)
     ]
     assert found == direction_bins(gx, gy, signed=signed).tolist()
+
+
+@pytest.mark.parametrize("name", ["opencv", "numba"])
+def test_colours_of_boxes_are_counted_where_nothing_covers_them(request, name):
+    chosen = OPENCV if name == "opencv" else request.getfixturevalue(name)
+    frame = np.zeros((4, 6, 3), np.uint8)
+    frame[:, 3:] = (255, 64, 128)  # levels 3, 1, 2: bin 3 * 16 + 1 * 4 + 2
+    # Twelve pixels of each half; of the second box three are in the frame, and two shown.
+    boxes = np.array([[0, 0, 6, 4], [-2, 3, 3, 9], [7, 0, 9, 4]])
+    covers = np.array([[-5, 0, 2, 2], [1, 0, 4, 1], [1, 2, 2, 5]])
+    counts = chosen.count_colours(frame, boxes, covers, np.array([2, 3, 3]))
+    assert counts.shape == (3, COLOUR_BINS)
+    assert counts[:, 0].tolist() == [12 - 4 - 1, 2, 0]
+    assert counts[:, 54].tolist() == [12 - 1, 0, 0]
+    assert counts.sum() == 20
+
+
+@settings(max_examples=80)
+@given(data=st.data(), frame=scenes, seed=st.integers(0, 2**32 - 1))
+def test_colours_of_boxes_are_counted_alike(numba, data, frame, seed):
+    rng = np.random.default_rng(seed)
+    count = data.draw(st.integers(0, 5))
+    ends = np.cumsum(rng.integers(0, 4, count), dtype=np.int64)
+    boxes, covers = (rng.integers(-9, 70, (n, 4)) for n in (count, ends[-1] if count else 0))
+    arguments = frame, boxes, covers, ends
+    assert np.array_equal(numba.count_colours(*arguments), OPENCV.count_colours(*arguments))

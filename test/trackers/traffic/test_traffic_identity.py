@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from traffic_samples import changed, together, track
 
-from vehicle_pf_tracker.trackers.traffic.colours import COLOUR_BINS
+from vehicle_pf_tracker.image.windows.box_colours import COLOUR_BINS
 from vehicle_pf_tracker.trackers.traffic.identity import former, resumed
 from vehicle_pf_tracker.trackers.traffic.report import estimates_of
 from vehicle_pf_tracker.trackers.traffic.state import Experience

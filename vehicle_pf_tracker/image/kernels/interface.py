@@ -16,7 +16,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.correlation import gradient_cells
 from vehicle_pf_tracker.image.correlation.row_waves import RowWaves
-from vehicle_pf_tracker.image.windows import mean_shift
+from vehicle_pf_tracker.image.windows import box_colours, mean_shift
 from vehicle_pf_tracker.image.windows.similarity import Histogram, Reference
 from vehicle_pf_tracker.image.windows.window import Coefficients, Positions, Window, WindowFeature
 
@@ -41,6 +41,7 @@ class Kernels:
 
     name = "opencv"
 
+    count_colours = staticmethod(box_colours.count_colours)
     gradient_cells = staticmethod(gradient_cells.gradient_cells)
     kernel_similarity = staticmethod(mean_shift.kernel_similarity)
     mean_shift = staticmethod(mean_shift.mean_shift)

@@ -16,6 +16,7 @@ import numpy as np
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.correlation.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.kernels import (
+    numba_box_colours,
     numba_cells,
     numba_counts,
     numba_edges,
@@ -60,6 +61,7 @@ _MODULES = (
     numba_mean_shift,
     numba_cells,
     numba_row_waves,
+    numba_box_colours,
 )
 
 _LANES = 16
@@ -170,11 +172,18 @@ def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
     return features
 
 
+def count_colours(frame: Frame, boxes: Pixels, covers: Pixels, ends: Pixels) -> Counts:
+    """Count the pixels of each colour in boxes; see `image.windows.box_colours`."""
+    counts: Counts = numba_box_colours.count_colours(frame, boxes, covers, ends)
+    return counts
+
+
 class NumbaKernels(Kernels):
     """Compiled kernels, each of which is compiled, or loaded, when it is first called."""
 
     name = "numba"
 
+    count_colours = staticmethod(count_colours)
     gradient_cells = staticmethod(gradient_cells)
     kernel_similarity = staticmethod(kernel_similarity)
     mean_shift = staticmethod(mean_shift)

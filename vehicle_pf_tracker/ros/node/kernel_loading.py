@@ -11,7 +11,7 @@ from typing import Any
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.image.kernels.interface import load_kernels, may_compile
-from vehicle_pf_tracker.ros.library_memory import give_back_library
+from vehicle_pf_tracker.ros.library_memory import LINKER, give_back_library
 from vehicle_pf_tracker.ros.messages import NOT_READY
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.trackers.rehearsal import rehearse
@@ -20,8 +20,6 @@ _THREAD = "loading kernels"
 """Name of the threads, by which `is_loading` finds those of all nodes of the process."""
 _REASON = f"{NOT_READY}; the first start compiles them, for up to a minute"
 """Answer to every image meanwhile."""
-_LINKER = "libllvmlite"
-"""LLVM's library, which nothing calls once kernels are loaded: 45 MB of it are resident then."""
 _rehearsed: set[str] = set()
 """Variants whose kernels this process has."""
 
@@ -81,7 +79,7 @@ class KernelLoading:
                 with suppress(Exception):  # a plug-in's own; its first image shows it
                     rehearse(self._variant, self._parameters)
             # A kernel that is linked later reads some of it again.
-            give_back_library(_LINKER)
+            give_back_library(LINKER)
             # Also where the rehearsal failed: its kernels are compiled as they are called, as
             # without it.
             _rehearsed.add(self._variant.name)

@@ -22,6 +22,7 @@ from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, sessi
 from vehicle_pf_tracker.image.formats.compressed_image import CodedImage
 from vehicle_pf_tracker.image.formats.encodings import LARGEST_SIDE_PX
 from vehicle_pf_tracker.parameters.configuration import Configuration
+from vehicle_pf_tracker.ros.library_memory import LINKER, give_back_library
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.session import TrafficSession
 
@@ -125,6 +126,8 @@ class Vehicles:
 
     def __init__(self, configuration: Configuration) -> None:
         self.counted = CountedVehicles(*session_and_counter(configuration))
+        # The session has linked its kernel.
+        give_back_library(LINKER)
         self._configuration = configuration
         self.latest: dict[str, Crossing] = {}
         self.selection = Selection()

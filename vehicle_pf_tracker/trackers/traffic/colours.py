@@ -5,23 +5,30 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 
-import cv2
 import numpy as np
-import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame
+from vehicle_pf_tracker.core.overlaps import NO_BOXES
+from vehicle_pf_tracker.image.kernels.interface import Kernels, load_kernels
 
-_LEVELS = 4
-"""Levels of each channel: enough to tell colours, few enough for a box of 100 px to fill its 64
-joint bins."""
-COLOUR_BINS = _LEVELS**3
-"""Joint bins of the three channels."""
 BACKGROUND_RIM = 0.1
 """Margin on each side, of the size, that is left out as background: two standard deviations of an
 edge at the usual `detections.edge_noise` of .05."""
+
+
+@functools.cache
+def _kernels() -> Kernels:
+    # All count the same numbers, so that nobody has to choose.
+    return load_kernels("auto")
+
+
+def load_counting() -> None:
+    """Load what counts colours at the start: compiling it takes seconds, once on a machine."""
+    ColourBins(np.zeros((1, 1, 3), np.uint8)).histograms(NO_BOXES, [])
 
 
 class ColourBins:
@@ -45,30 +52,16 @@ class ColourBins:
         (N, COLOUR_BINS) array
             Shares of the colours; zero where nothing of a box is in sight.
         """
-        # Slices below clip at the far borders by themselves; a negative start would count from
-        # there.
         margins = BACKGROUND_RIM * (edges[:, 2:] - edges[:, :2])
-        low = np.maximum((edges[:, :2] + margins).astype(np.intp), 0)
-        high = np.maximum((edges[:, 2:] - margins).astype(np.intp) + 1, 0)
-        counts = np.zeros((len(edges), COLOUR_BINS), np.float32)
-        boxes = zip(np.hstack([low, high]).tolist(), covers, strict=True)
-        for row, ((left, top, right, bottom), cover) in enumerate(boxes):
-            part = self._frame[top:bottom, left:right]
-            if part.size:
-                seen = _uncovered(part, cover - (left, top, left, top)) if len(cover) else None
-                shares = cv2.calcHist([part], [0, 1, 2], seen, [_LEVELS] * 3, [0.0, 256.0] * 3)
-                counts[row] = shares.ravel()
+        low = (edges[:, :2] + margins).astype(np.int64)
+        high = (edges[:, 2:] - margins).astype(np.int64) + 1
+        above = np.concatenate([NO_BOXES, *filter(len, covers)]).astype(np.int64)
+        ends = np.cumsum([len(each) for each in covers], dtype=np.int64)
+        boxes = np.concatenate([low, high], axis=1)
+        counts = _kernels().count_colours(self._frame, boxes, above, ends).astype(np.float32)
         # At least one, so that what is out of sight stays zero, the mark of the unknown.
         totals = np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
         return np.asarray(counts / totals, np.float64)
-
-
-def _uncovered(part: Frame, covers: Array) -> npt.NDArray[np.uint8]:
-    """Mask of the pixels of a part of the image that no nearer box covers, by its own pixels."""
-    seen = np.ones(part.shape[:2], np.uint8)
-    for left, top, right, bottom in np.maximum(covers, 0.0).astype(int).tolist():
-        seen[top:bottom, left:right] = 0
-    return seen
 
 
 def similarities(some: Array, others: Array) -> Array:

@@ -15,7 +15,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import NO_BOXES
-from vehicle_pf_tracker.trackers.traffic.colours import COLOUR_BINS
+from vehicle_pf_tracker.image.windows.box_colours import COLOUR_BINS
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE
 from vehicle_pf_tracker.trackers.traffic.horizon import Growths
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Objects, Rows, filled
