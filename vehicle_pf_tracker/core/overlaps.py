@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
@@ -26,6 +27,12 @@ def overlaps(edges: Array, others: Array) -> Array:
     return np.asarray(common / (areas(edges) + areas(others) - common))
 
 
+def are_alone(edges: Array) -> npt.NDArray[np.bool_]:
+    """Find the boxes (N, 4) that overlap none of the others."""
+    # One overlap is with itself.
+    return np.asarray((intersections(edges[:, np.newaxis], edges) > 0).sum(axis=1) == 1)
+
+
 def inside_image(edges: Array, size: tuple[int, int]) -> Array:
     """Measure the shares of boxes (..., 4) that lie in an image of this width and height, px."""
     return np.asarray(intersections(edges, np.array([0.0, 0.0, *size])) / areas(edges))
@@ -33,6 +40,7 @@ def inside_image(edges: Array, size: tuple[int, int]) -> Array:
 
 def clipped(edges: Array, size: tuple[int, int]) -> Array:
     """Cut boxes (N, 4) at the borders of the image, but keep one px of width and height."""
-    limits = np.array([*size, *size], dtype=np.float64)
-    low = np.clip(edges[:, :2], 0.0, limits[:2] - 1)
-    return np.hstack([low, np.maximum(np.clip(edges[:, 2:], 0.0, limits[2:]), low + 1)])
+    ends = np.array(size, dtype=np.float64)
+    low = np.minimum(np.maximum(edges[:, :2], 0.0), ends - 1)
+    high = np.minimum(np.maximum(edges[:, 2:], 0.0), ends)
+    return np.concatenate([low, np.maximum(high, low + 1)], axis=1)

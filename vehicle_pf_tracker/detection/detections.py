@@ -102,13 +102,16 @@ class Detections:
             good &= boxes[:, 3] <= LARGEST_SHARE * height
             # Touching the image is enough: a vehicle that comes in is partly outside.
             good &= (boxes[:, 0] < width) & (boxes[:, 1] < height) & (right > 0) & (bottom > 0)
+        singles = list(map(tuple, boxes.tolist()))
+        if good.all() and len(set(singles)) == len(singles) <= MOST_DETECTIONS:
+            return self
         kept = np.flatnonzero(good)
         # Stable: equal scores stay in the detector's order, so that runs repeat.
         kept = kept[np.argsort(-scores[kept], kind="stable")]
         # Of exact duplicates the best one stays; stop as soon as there are enough.
         single: dict[tuple[float, ...], int] = {}
         for index in kept.tolist():
-            single.setdefault(tuple(boxes[index].tolist()), index)
+            single.setdefault(singles[index], index)
             if len(single) == MOST_DETECTIONS:
                 break
         # In the order of the detector again.

@@ -10,7 +10,7 @@ from traffic_samples import changed, step_of, track_of
 
 from vehicle_pf_tracker.core.overlaps import overlaps
 from vehicle_pf_tracker.trackers.traffic.births import first_gaussians
-from vehicle_pf_tracker.trackers.traffic.correction import correct, which_edges
+from vehicle_pf_tracker.trackers.traffic.correction import Comparison, correct, which_edges
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import places_of
 from vehicle_pf_tracker.trackers.traffic.prediction import driven
 from vehicle_pf_tracker.trackers.traffic.report import estimates_of
@@ -39,7 +39,8 @@ def test_a_covered_edge_does_not_brake_the_vehicle(vehicle):
 
 
 def test_a_verdict_is_given_before_anything_changes(vehicle):
-    given = vehicle.tracks, PART[None], SIZE, 0.05, np.zeros((1, 4), bool), vehicle.uncoverings
+    compared = Comparison.of(vehicle.tracks.drives, PART[None], SIZE, 0.05)
+    given = vehicle.tracks, compared, SIZE, 0.05, vehicle.uncoverings
     verdict = which_edges(*given)
     assert verdict.covered.tolist() == [[False, False, False, True]]
     assert verdict.left_out.tolist() == verdict.covered.tolist()

@@ -33,7 +33,8 @@ def taught(transform=lambda score: score):
 def odds(evidence, edges, *scores):
     evidence.look()
     places = places_of(np.tile(edges, (len(scores), 1)), SIZE)
-    return evidence.log_odds(np.array(scores), np.full(len(scores), UNSAID), places)
+    by_score = evidence.by_score(np.array(scores), np.full(len(scores), UNSAID))
+    return evidence.log_odds(by_score, places)
 
 
 def test_nothing_is_known_at_first():
@@ -43,11 +44,12 @@ def test_nothing_is_known_at_first():
 def test_before_anything_is_known_a_score_is_what_its_detector_says():
     scores = np.array([0.1, 0.5, 0.9])
     places = np.zeros(3, np.intp)
-    claimed = DetectionEvidence().log_odds(scores, claims_of(scores), places)
+    nothing_known = DetectionEvidence()
+    claimed = nothing_known.log_odds(nothing_known.by_score(scores, claims_of(scores)), places)
     assert claimed == pytest.approx([-np.log(9), 0, np.log(9)])
     evidence = taught(lambda score: 1 - score)
     evidence.look()
-    low, _, high = evidence.log_odds(scores, claims_of(scores), places)
+    low, _, high = evidence.log_odds(evidence.by_score(scores, claims_of(scores)), places)
     assert low > 1.5 > -1.5 > high  # it is worth few detections
 
 

@@ -433,5 +433,6 @@ def test_a_vehicle_does_not_teach_that_what_the_detector_says_anyway_is_one(log_
     evidence_of(9.0, log_odds=log_odds, experience=experience)
     evidence = experience.detections
     evidence.look()
-    told = evidence.log_odds(np.array([SCORE]), np.array([0.5]), np.array([0]))
+    by_score = evidence.by_score(np.array([SCORE]), np.array([0.5]))
+    told = evidence.log_odds(by_score, np.array([0]))
     assert (told[0] > 0) == teaches

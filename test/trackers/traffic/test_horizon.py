@@ -9,6 +9,7 @@ import pytest
 from vehicle_pf_tracker.trackers.traffic.horizon import Growths, Horizon, explaining_row
 
 HEIGHT = 240
+ALL = np.array([True])
 
 
 def grown(horizon, bottoms, factor=0.4):
@@ -17,7 +18,7 @@ def grown(horizon, bottoms, factor=0.4):
     for bottom in bottoms:
         width = factor * (bottom - horizon) if horizon is not None else 40.0
         box = [100 - width / 2, bottom - 20, 100 + width / 2, bottom]
-        growth = growth.added(np.array([box]))
+        growth = growth.added(np.array([box]), ALL)
     return growth
 
 
@@ -61,7 +62,7 @@ def test_one_that_is_wrong_does_not_move_it():
     right = [grown(24, range(60, 160), factor) for factor in (0.3, 0.4, 0.5)]
     wrong = Growths.unknown(1)
     for bottom in range(60, 160):
-        wrong = wrong.added(np.array([[0.0, bottom - 20, 300.0 - bottom, bottom]]))
+        wrong = wrong.added(np.array([[0.0, bottom - 20, 300.0 - bottom, bottom]]), ALL)
     assert row(-0.2, *right, wrong) == pytest.approx(0.1, abs=0.03)
 
 

@@ -10,7 +10,7 @@ import pytest
 from traffic_samples import changed, together, track
 
 from vehicle_pf_tracker.core.box import intersections
-from vehicle_pf_tracker.core.overlaps import areas, clipped, inside_image, overlaps
+from vehicle_pf_tracker.core.overlaps import are_alone, areas, clipped, inside_image, overlaps
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import (
     GATE,
@@ -18,6 +18,7 @@ from vehicle_pf_tracker.trackers.traffic.association import (
     edge_costs,
     pair_costs,
 )
+from vehicle_pf_tracker.trackers.traffic.box_edges import deviations
 from vehicle_pf_tracker.trackers.traffic.candidates import weighed
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
     DetectionEvidence,
@@ -33,14 +34,14 @@ BOX = np.array([10.0, 10, 50, 40])
 
 def test_a_cost_is_the_squared_distance_in_standard_deviations():
     costs = edge_costs(BOX[np.newaxis], np.full((1, 4), 2.0), BOX[np.newaxis] + (2, 0, 2, -2))
-    assert costs == pytest.approx(np.array([[3.0]]))
+    assert costs == pytest.approx(np.array([3.0]))
 
 
 def test_a_part_costs_what_is_missing_not_its_distance():
     # The lower half is hidden: 15 px inward are 56 squared deviations.
     half = BOX - (0, 0, 0, 15)
     costs = edge_costs(BOX[np.newaxis], np.full((1, 4), 2.0), half[np.newaxis])
-    assert costs == pytest.approx(np.array([[3 + 12 * 0.5]]))
+    assert costs == pytest.approx(np.array([3 + 12 * 0.5]))
 
 
 def test_a_sliver_is_no_part():
@@ -67,6 +68,7 @@ def test_overlaps():
     assert intersections(BOX, others).tolist() == [600, 0]
     assert overlaps(BOX, others)[0] == pytest.approx(600 / 1800)
     assert areas(BOX) == 1200
+    assert are_alone(np.vstack([BOX, others])).tolist() == [False, False, True]
     assert inside_image(BOX, (30, 240)) == 0.5
     assert clipped(np.array([[-5.0, 5, 20, 300]]), (100, 240)).tolist() == [[0, 5, 20, 240]]
     assert clipped(np.array([[200.0, 5, 220, 30]]), (100, 240)).tolist() == [[99, 5, 100, 30]]
@@ -92,6 +94,25 @@ def test_a_likely_vehicle_that_overlaps_by_half_may_be_one_whose_drive_was_wrong
     candidates = replace(candidates, log_odds=np.array([log_odds]))
     cost, _ = pair_costs(sure, candidates, ONLY, SIZE, 0.02)
     assert (cost < GATE).all() == (log_odds > 0)
+
+
+def test_what_is_out_of_reach_costs_the_gate_and_all_else_what_its_edges_cost():
+    # Unlikely detections at all distances, of the size of the vehicle and of a quarter of it.
+    lefts = np.arange(-80.0, 330.0, 3.0)
+    boxes = [(left, 100, width, 30 * width / 40) for left in lefts for width in (40, 20)]
+    vehicles = together(track(1, 60), track(2, 200))
+    candidates = weighed(Detections.make(boxes), DetectionEvidence(), SIZE)
+    candidates = replace(candidates, log_odds=np.full(len(boxes), -1.0))
+    columns = np.arange(len(boxes))
+    costs, odds = pair_costs(vehicles, candidates, columns, SIZE, 0.05)
+    gaussians = vehicles.drives.gaussians
+    spread = np.sqrt(gaussians.edge_variances + deviations(gaussians.edges, 0.05) ** 2)
+    predicted = clipped(gaussians.edges, SIZE)
+    for row in range(2):
+        every = edge_costs(predicted[[row]], spread[[row]], candidates.edges)
+        assert np.array_equal(np.minimum(costs[row], GATE), np.minimum(every, GATE))
+        assert (every < GATE).sum() > 10
+        assert np.isfinite(odds[row][every < GATE]).all()
 
 
 def test_the_log_odds_of_a_pair_fall_with_its_distance_and_with_false_alarms_there():

@@ -49,13 +49,17 @@ def count_colours(frame: Frame, boxes: Rectangles, covers: Rectangles, ends: Rec
     for i in range(len(boxes)):
         if not first <= ends[i] <= len(covers):
             raise IndexError("there are other covers than the boxes have")
-        left, top = max(boxes[i, 0], 0), max(boxes[i, 1], 0)
-        right, bottom = min(boxes[i, 2], width), min(boxes[i, 3], height)
+        left = max(boxes[i, 0], 0)
+        top = max(boxes[i, 1], 0)
+        right = min(boxes[i, 2], width)
+        bottom = min(boxes[i, 3], height)
         for y in range(top, bottom):
             mark_shown(shown, (left, top, right, bottom), y, covers, (first, ends[i]))
             for x in range(left, right):
                 # The upper two bits of each channel.
-                red, green, blue = frame[y, x, 0] >> 6, frame[y, x, 1] >> 6, frame[y, x, 2] >> 6
+                red = frame[y, x, 0] >> 6
+                green = frame[y, x, 1] >> 6
+                blue = frame[y, x, 2] >> 6
                 counts[i, red << 4 | green << 2 | blue] += shown[x]
         first = ends[i]
     return counts

@@ -21,7 +21,9 @@ LEVELS = 4
 joint bins."""
 COLOUR_BINS = LEVELS**3
 """Joint bins of the three channels."""
-_CHANNELS, _COUNTS, _RANGES = [0, 1, 2], [LEVELS] * 3, [0.0, 256.0] * 3
+_CHANNELS = [0, 1, 2]
+_COUNTS = [LEVELS] * 3
+_RANGES = [0.0, 256.0] * 3
 """Channels, levels and ranges in the words of OpenCV."""
 
 

@@ -18,11 +18,11 @@ from typing import NamedTuple
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.core.overlaps import clipped, overlaps
+from vehicle_pf_tracker.core.overlaps import are_alone, clipped, overlaps
 from vehicle_pf_tracker.trackers.traffic.box_edges import (
     INWARD_SIGNS,
+    both_ends,
     cut_edges,
     deviations,
     sides_of,
@@ -44,6 +44,10 @@ bridge falls by six."""
 _OVERLAPPING = 0.5
 """Overlap with a likely vehicle above which a drive, however sure, may be wrong: no other is as
 near. A choice: at a half evaluations, too, take two boxes for one vehicle's."""
+
+_CLOSEST = 0.9 * GATE * _OVERLAPPING
+"""Cost that no overlap lessens: a complete one costs a ninth more, so that rounding decides
+nothing."""
 
 
 class Pairs(NamedTuple):
@@ -129,25 +133,26 @@ def assigned(rows: Integers, columns: Integers, costs: Array, odds: Array) -> Pa
 
 
 def edge_costs(predicted: Array, deviations: Array, detected: Array) -> Array:
-    """Cost of each pair by the edges, (tracks, detections).
+    """Cost (P,) of each pair of a track and a detection by the edges.
 
     Parameters
     ----------
-    predicted, deviations : (T, 4) arrays
+    predicted, deviations : (P, 4) arrays
         Edges of the tracks and their standard deviations, measurement included, px.
-    detected : (D, 4) array
+    detected : (P, 4) array
         Edges of the detections, px.
     """
-    inward = (detected[np.newaxis] - predicted[:, np.newaxis]) * INWARD_SIGNS
+    inward = (detected - predicted) * INWARD_SIGNS
     # Each edge in its own standard deviations, without covariances: a covered edge can then be left
     # out by itself.
-    normal = inward / deviations[:, np.newaxis]
-    whole = (normal**2).sum(axis=2)
+    normal = inward / deviations
+    whole = (normal**2).sum(axis=1)
     # An occluder can only draw edges in: what is outside the prediction costs in full.
-    outward = (np.minimum(normal, 0.0) ** 2).sum(axis=2)
+    outward = (np.minimum(normal, 0.0) ** 2).sum(axis=1)
     lacking = np.maximum(inward, 0.0)
-    size = sides_of(predicted)[:, np.newaxis]
-    kept = np.clip(1 - (lacking[..., :2] + lacking[..., 2:]) / size, 0.0, 1.0).prod(axis=2)
+    shares = 1 - (lacking[:, :2] + lacking[:, 2:]) / sides_of(predicted)
+    shares = np.minimum(np.maximum(shares, 0.0), 1.0)
+    kept = shares[:, 0] * shares[:, 1]
     # The price keeps a part from being as good as a whole; the less is seen, the dearer it is.
     part = outward + _PARTIAL + _MISSING * (1 - kept)
     return np.asarray(np.where(kept > _LEAST_PART, np.minimum(whole, part), whole))
@@ -160,27 +165,50 @@ def pair_costs(
     size: tuple[int, int],
     noise: float,
 ) -> tuple[Array, Array]:
-    """Cost of each pair of a vehicle and one of the detections at `columns`, and its log odds."""
+    """Cost of each pair of a vehicle and one of the detections at `columns`, and its log odds.
+
+    Both are (tracks, detections); of pairs beyond the gate they are `GATE` and none at all.
+    """
     gaussians = tracks.drives.gaussians
-    # Innovation: prediction and measurement are independent.
+    # 1. Innovation: prediction and measurement are independent.
     spread = np.sqrt(gaussians.edge_variances + deviations(gaussians.edges, noise) ** 2)
     # A detector's box ends at the border, and so does what is compared with it.
     predicted = clipped(gaussians.edges, size)
     detected = candidates.edges[columns]
-    costs = edge_costs(predicted, spread, detected)
-    # Log likelihood ratio: a Gaussian over the edges against the density of false alarms.
+    # 2. Nearly all pairs are out of reach, and only the others cost time.
+    rows, pairs = _within_reach(predicted, spread, detected)
+    each = predicted.take(rows, 0)
+    others = detected.take(pairs, 0)
+    cost = edge_costs(each, spread.take(rows, 0), others)
+    # 3. Log likelihood ratio: a Gaussian over the edges against the density of false alarms.
     peaks = -np.log(spread * math.sqrt(2 * math.pi)).sum(axis=1)
-    odds = peaks[:, np.newaxis] - costs / 2 - candidates.false[columns]
-    # Only with no other prediction over its own (one overlap is with itself), and in sight: in a
-    # crowd, or behind something, the likely vehicle may be another one.
-    alone = (intersections(predicted[:, np.newaxis], predicted) > 0).sum(axis=1) == 1
-    alone &= tracks.in_sight
-    # However sure its drive is, it was wrong where a likely vehicle overlaps it by half.
-    may_be = alone[:, np.newaxis] & (candidates.log_odds[columns] > 0)
-    overlap = overlaps(predicted[:, np.newaxis], detected)
-    # Below the gate from the overlap of `_OVERLAPPING` on, and the closer the cheaper.
-    near = np.where(may_be, GATE * (1 + _OVERLAPPING - overlap), np.inf)
-    return np.minimum(costs, near), odds
+    odds = np.full((len(predicted), len(detected)), -np.inf)
+    odds[rows, pairs] = peaks[rows] - cost / 2 - candidates.false[columns][pairs]
+    # 4. However sure its drive is, it was wrong where a likely vehicle overlaps it by half.
+    far = (cost > _CLOSEST) & (candidates.log_odds[columns] > 0)[pairs]
+    if far.any():
+        # In a crowd, or behind something, the likely vehicle may be another one.
+        far &= (are_alone(predicted) & tracks.in_sight)[rows]
+        # Below the gate from the overlap of `_OVERLAPPING` on, and the closer the cheaper.
+        near = GATE * (1 + _OVERLAPPING - overlaps(each[far], others[far]))
+        cost[far] = np.minimum(cost[far], near)
+    costs = np.full(odds.shape, GATE)
+    costs[rows, pairs] = cost
+    return costs, odds
+
+
+def _within_reach(predicted: Array, spread: Array, detected: Array) -> tuple[Integers, Integers]:
+    """Find the pairs (P,), (P,) of predictions (T, 4) and detections (D, 4) not surely too dear.
+
+    As a whole a pair is too dear if one edge alone is beyond the gate, and a part lies inside its
+    prediction: whatever does not touch a prediction, widened by the gate, is neither.
+    """
+    widened = predicted - INWARD_SIGNS * (math.sqrt(GATE) * spread)
+    left, top, right, bottom = widened.T[..., np.newaxis]
+    near = (left < detected[:, 2]) & (detected[:, 0] < right)
+    near &= (top < detected[:, 3]) & (detected[:, 1] < bottom)
+    rows, pairs = near.nonzero()
+    return rows, pairs
 
 
 def birth_odds(
@@ -230,7 +258,7 @@ def birth_odds(
         pairs = pairs[near]
     # 3. An edge that is cut in both: this variance gives it the density that false alarms have
     # there, so that both cancel and it tells nothing.
-    sides = np.tile(sides_of(detected), 2)
+    sides = both_ends(sides_of(detected))
     unknown = (SIZE_SPREAD * sides[pairs]) ** 2 / (2 * np.pi)
     both_cut = cut[rows] & also_cut[pairs]
     # 4. With covariances here: while its speed is unknown, a new track's edges move far together.

@@ -75,8 +75,7 @@ class Candidates:
     def samples(self, indices: Integers) -> list[Sample]:
         """Scores and places of those at `indices`, for learning what becomes of them."""
         scores = self.scores[indices].tolist()
-        places = self.places[indices].tolist()
-        return [Sample(*each) for each in zip(scores, places, strict=True)]
+        return list(map(Sample, scores, self.places[indices].tolist()))
 
 
 def weighed(
@@ -96,12 +95,14 @@ def weighed(
     # 1. Edges and places, by which clutter is known.
     boxes = detections.boxes
     scores = detections.scores
-    edges = np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
+    low = boxes[:, :2]
+    edges = np.concatenate([low, low + boxes[:, 2:]], axis=1)
     places = places_of(edges, size)
     clutter = evidence.clutter(places)
     # 2. A shape's score is how full its box is, no probability.
     claims = np.full(len(scores), UNSAID) if detections.are_shapes else claims_of(scores)
-    log_odds = evidence.log_odds(scores, claims, places)
+    by_score = evidence.by_score(scores, claims)
+    log_odds = evidence.log_odds(by_score, places)
     # 3. Poisson clutter, as usual, in the space of the edges, of which (left, right) has the same
     # measure as (centre, width): false alarms are anywhere in the image, and of any size.
     false = (
@@ -114,7 +115,7 @@ def weighed(
         are_shapes=detections.are_shapes,
         places=places,
         log_odds=log_odds,
-        gains=evidence.gains(scores, claims),
+        gains=evidence.gains(by_score),
         sure=_sure(log_odds, claims, evidence.ranks(scores)),
         clutter=clutter,
         false=false,

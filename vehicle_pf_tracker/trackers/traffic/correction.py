@@ -14,12 +14,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.core.box import intersections
+from vehicle_pf_tracker.core.overlaps import are_alone
 from vehicle_pf_tracker.trackers.traffic.box_edges import (
     INWARD_SIGNS,
-    OPPOSITE,
+    both_ends,
     cut_edges,
     deviations,
+    opposites,
     sides_of,
 )
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, places_of
@@ -49,7 +50,69 @@ odds."""
 _FOLLOWED = 0.25
 """Rate per detection at which residuals are learnt, and at which boxes follow them: the latest four
 count for two thirds."""
-_ENDS = [Edge.LEFT, Edge.RIGHT]
+_ENDS = slice(Edge.LEFT, Edge.BOTTOM, Edge.RIGHT - Edge.LEFT)
+"""Left and right edge."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Comparison:
+    """Detections of N vehicles beside their predictions, once for all that a correction asks.
+
+    Attributes
+    ----------
+    predicted, detected : (N, 4) arrays
+        Edges of the predictions and of the detections, px.
+    unknown : (N, 4) array
+        Edges that the border of the image cuts in both.
+    is_cut : (N,) array
+        True where it cuts any.
+    own, sides : (N, 2) arrays
+        Width and height of the predictions and of the detections, px.
+    latest : (N, 2) array
+        Largest width and height of the latest detections, these ones included, px.
+    inward : (N, 4) array
+        Detection less prediction, inward positive, px.
+    variances, spread, expected : (N, 4) arrays
+        Variances of the predictions; standard deviations of the measurements, and of the residuals
+        that both let expect, px.
+    """
+
+    predicted: Array
+    detected: Array
+    unknown: Bools
+    is_cut: Bools
+    own: Array
+    sides: Array
+    latest: Array
+    inward: Array
+    variances: Array
+    spread: Array
+    expected: Array
+
+    @classmethod
+    def of(cls, drives: Drives, edges: Array, size: tuple[int, int], noise: float) -> Comparison:
+        """Compare with detections (N, 4) in px; see `correct`."""
+        predicted = drives.gaussians.edges
+        # Cut in both, an edge is unknown. Where only one is cut, the vehicle comes in or leaves,
+        # and the edge is measured.
+        unknown = cut_edges(edges, size, noise) & cut_edges(predicted, size, noise)
+        own = sides_of(predicted)
+        sides = sides_of(edges)
+        variances = drives.gaussians.edge_variances
+        spread = deviations(predicted, noise)
+        return cls(
+            predicted=predicted,
+            detected=edges,
+            unknown=unknown,
+            is_cut=np.asarray(unknown.any(axis=1)),
+            own=own,
+            sides=sides,
+            latest=np.maximum(sides, own * drives.extents.shown),
+            inward=(edges - predicted) * INWARD_SIGNS,
+            variances=variances,
+            spread=spread,
+            expected=np.sqrt(variances + spread**2),
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,83 +161,57 @@ def correct(
     uncoverings : Returns
         Learns where missing parts of vehicles come back: there something covers them.
     """
-    # 1. Cut in both, an edge is unknown. Where only one is cut, the vehicle comes in or leaves, and
-    # the edge is measured.
-    unknown = cut_edges(edges, size, noise) & cut_edges(tracks.edges, size, noise)
-    # 2. Count what is smaller than before, as patience depends on it.
-    tracks = note_short(tracks, edges, size, unknown, uncoverings)
-    # 3. Judge all four edges by the prediction, then correct once.
-    verdict = which_edges(tracks, edges, size, noise, unknown, uncoverings)
-    return replace(tracks, drives=corrected(tracks.drives, edges, verdict, noise)), verdict.whole
+    compared = Comparison.of(tracks.drives, edges, size, noise)
+    # 1. Count what is smaller than before, as patience depends on it.
+    tracks = note_short(tracks, compared, size, uncoverings)
+    # 2. Judge all four edges by the prediction, then correct once.
+    verdict = which_edges(tracks, compared, size, noise, uncoverings)
+    return replace(tracks, drives=corrected(tracks.drives, compared, verdict)), verdict.whole
 
 
 def note_short(
-    tracks: Tracks,
-    edges: Array,
-    size: tuple[int, int],
-    unknown: Bools,
-    uncoverings: Returns,
+    tracks: Tracks, compared: Comparison, size: tuple[int, int], uncoverings: Returns
 ) -> Tracks:
-    """Note of which vehicles less was detected than before, and learn what became of the rest.
-
-    The border of the image cuts the edges (N, 4) that are `unknown`.
-    """
-    predicted = tracks.edges
+    """Note of which vehicles less was detected than before, and learn what became of the rest."""
     extents = tracks.drives.extents
     # What the border cuts is smaller by that, and no part of it will come back.
-    asked = ~unknown.any(axis=1)
-    is_short = (sides_of(edges) < _WHOLE * _latest(tracks.drives, edges)).any(axis=1)
+    asked = ~compared.is_cut
+    is_short = (compared.sides < _WHOLE * compared.latest).any(axis=1)
     short = np.where(asked, np.where(is_short, extents.short + 1, 0), extents.short)
     shortened = extents.shortened.copy()
     # Asked once, when the row of short detections is no chance; answered by a whole one (it came
     # back), or by `_COVERED_FOR` (it did not).
     begins = asked & (short == _SHORT_FOR)
     if begins.any():
-        shortened[begins] = places_of(predicted[begins], size)
+        shortened[begins] = places_of(compared.predicted[begins], size)
     settled = asked & ((short == 0) | (short == _COVERED_FOR)) & (shortened != NOWHERE)
-    for row in np.flatnonzero(settled).tolist():
+    for row in settled.nonzero()[0].tolist():
         uncoverings.learn(int(shortened[row]), found=bool(short[row] == 0))
         shortened[row] = NOWHERE
     extents = replace(extents, short=short, shortened=shortened)
     return replace(tracks, drives=replace(tracks.drives, extents=extents))
 
 
-def _latest(drives: Drives, edges: Array) -> Array:
-    """Largest width and height (N, 2) of the latest detections, these ones (N, 4) included, px."""
-    own = sides_of(drives.gaussians.edges)
-    return np.maximum(sides_of(edges), own * drives.extents.shown)
-
-
 def which_edges(
     tracks: Tracks,
-    edges: Array,
+    compared: Comparison,
     size: tuple[int, int],
     noise: float,
-    unknown: Bools,
     uncoverings: Returns,
 ) -> Verdict:
-    """Judge which edges of detections (N, 4) in px tell where vehicles end; see `correct`.
-
-    The border of the image cuts those (N, 4) that are `unknown`.
-    """
-    drives = tracks.drives
-    predicted = drives.gaussians.edges
-    own = sides_of(drives.gaussians.edges)
-    spread = deviations(predicted, noise)
-    # Innovations in their standard deviations, inward positive.
-    normal = (
-        (edges - predicted) * INWARD_SIGNS / np.sqrt(drives.gaussians.edge_variances + spread**2)
-    )
-    opposite = normal[:, OPPOSITE]
+    """Judge which edges of detections tell where vehicles end; see `correct`."""
+    # Residuals in their standard deviations, inward positive.
+    normal = compared.inward / compared.expected
+    opposite = opposites(normal)
     # Smaller than both: a prediction may have grown wrongly, a detection may be of two vehicles.
-    shrunk = sides_of(edges) < _WHOLE * np.minimum(own, _latest(drives, edges))
+    shrunk = compared.sides < _WHOLE * np.minimum(compared.own, compared.latest)
     jumped = (normal > _JUMP) & (opposite > 0)  # a vehicle that brakes pushes it out
     # Of two edges that are drawn in, the one that is more so.
-    crept = np.tile(shrunk, 2) & (normal > np.maximum(opposite, 0.0))
-    recede = _recede(tracks, edges, noise) & ~unknown.any(axis=1)
-    covered = (jumped | crept) & ~unknown & ~recede[:, np.newaxis]
+    crept = both_ends(shrunk) & (normal > np.maximum(opposite, 0.0))
+    recede = _recede(tracks, compared, noise) & ~compared.is_cut
+    covered = (jumped | crept) & ~(compared.unknown | recede[:, np.newaxis])
     patient = _patient(tracks, size, uncoverings)
-    return Verdict(unknown | (covered & patient[:, np.newaxis]), covered, recede)
+    return Verdict(compared.unknown | (covered & patient[:, np.newaxis]), covered, recede)
 
 
 def _patient(tracks: Tracks, size: tuple[int, int], uncoverings: Returns) -> Bools:
@@ -184,7 +221,8 @@ def _patient(tracks: Tracks, size: tuple[int, int], uncoverings: Returns) -> Boo
     # At first all are patient: most covers are short. Later only where parts come back, or a size
     # that was wrong from the start would never be corrected.
     patient = known & (extents.partial < _SHORT_FOR)
-    for row in np.flatnonzero(known & ~patient & (extents.partial < _COVERED_FOR)).tolist():
+    asked = known & ~patient & (extents.partial < _COVERED_FOR)
+    for row in asked.nonzero()[0].tolist():
         place = int(extents.shortened[row])
         if place == NOWHERE:
             (place,) = places_of(tracks.edges[row : row + 1], size).tolist()
@@ -192,43 +230,39 @@ def _patient(tracks: Tracks, size: tuple[int, int], uncoverings: Returns) -> Boo
     return patient
 
 
-def _recede(tracks: Tracks, edges: Array, noise: float) -> Bools:
+def _recede(tracks: Tracks, compared: Comparison, noise: float) -> Bools:
     """Find vehicles (N,) that became smaller as a whole, and go on so: they drive away.
 
-    What covers one draws an edge in, and changes its shape; `edges` and `noise` are of detections.
+    What covers one draws an edge in, and changes its shape; `noise` is of detections.
     """
-    predicted = tracks.edges
-    shares = np.log(sides_of(edges) / sides_of(predicted))
-    alike = np.abs(shares[:, 0] - shares[:, 1]) < 2 * noise  # that of four edges
-    drawn_in = ((edges - predicted) * INWARD_SIGNS > 0)[:, _ENDS]
+    across, down = np.log(compared.sides / compared.own).T
+    alike = np.abs(across - down) < 2 * noise  # that of four edges
+    drawn_in = compared.inward[:, _ENDS] > 0
     lately = tracks.drives.drift[:, _ENDS] <= 0
     in_sight = np.array([len(covers) == 0 for covers in tracks.sights.covers], np.bool_)
-    smaller = (shares < 0).all(axis=1) & (drawn_in & lately).all(axis=1)
+    smaller = (across < 0) & (down < 0) & (drawn_in & lately).all(axis=1)
     return np.asarray(in_sight & alike & smaller)
 
 
-def corrected(drives: Drives, edges: Array, verdict: Verdict, noise: float) -> Drives:
-    """Apply a verdict: measure the edges (N, 4) in px that tell where the vehicles end."""
-    predicted = drives.gaussians.edges
-    latest = _latest(drives, edges)
-    spread = deviations(predicted, noise)
-    residuals = np.where(verdict.left_out, 0.0, (predicted - edges) * INWARD_SIGNS)
-    drives = _doubted(drives, residuals, spread, verdict.recede)
+def corrected(drives: Drives, compared: Comparison, verdict: Verdict) -> Drives:
+    """Apply a verdict: measure the edges that tell where the vehicles end."""
+    residuals = np.where(verdict.left_out, 0.0, -compared.inward)
+    drives = _doubted(drives, compared, residuals, verdict.recede)
     # An infinite deviation is a gain of zero: the edge moves by its correlations only.
-    exact = np.where(verdict.left_out, np.inf, spread)
-    gaussians = drives.gaussians.measured(edges, exact)
+    exact = np.where(verdict.left_out, np.inf, compared.spread)
+    gaussians = drives.gaussians.measured(compared.detected, exact)
     # Successive residuals agree: states stay behind.
-    lag = _FOLLOWED * np.where(verdict.left_out, 0.0, edges - gaussians.edges)
+    lag = _FOLLOWED * np.where(verdict.left_out, 0.0, compared.detected - gaussians.edges)
     extents = replace(
         drives.extents,
         # Relative to the state, so that it grows with the vehicle as that comes near.
-        shown=latest / gaussians.mean[:, W:ACROSS],
+        shown=compared.latest / gaussians.mean[:, W:ACROSS],
         partial=np.where(verdict.whole, 0, drives.extents.partial + 1),
     )
     return replace(drives, gaussians=gaussians, lag=lag, extents=extents)
 
 
-def _doubted(drives: Drives, residuals: Array, spread: Array, recede: Bools) -> Drives:
+def _doubted(drives: Drives, compared: Comparison, residuals: Array, recede: Bools) -> Drives:
     """Be less sure of drives that detections keep contradicting.
 
     Where the horizon is wrong or the road bends, a drive is wrong in every frame by a little, on
@@ -242,29 +276,31 @@ def _doubted(drives: Drives, residuals: Array, spread: Array, recede: Bools) -> 
     ----------
     drives : Drives
         Drives of N vehicles, predicted into this frame.
-    residuals, spread : (N, 4) arrays
-        Detection less prediction, outward, zero of edges that tell nothing; and the standard
-        deviations of the measurement, px.
+    compared : Comparison
+        Their predictions, and their detections.
+    residuals : (N, 4) array
+        Detection less prediction, outward, zero of edges that tell nothing, px.
     recede : (N,) array
         True where the vehicle drives away.
     """
-    # 1. Drift of each edge's residuals; among others a residual may be of a neighbour's box.
-    edges = drives.gaussians.edges
-    variances = drives.gaussians.edge_variances
-    alone = (intersections(edges[:, np.newaxis], edges) > 0).sum(axis=1) == 1
-    normal = residuals / np.sqrt(variances + spread**2)
+    # 1. Drift of each edge's residuals.
     # Chance has no direction, and averages out; a wrong drive stays on one side.
-    drift = drives.drift + _FOLLOWED * (normal - drives.drift)
+    drift = drives.drift + _FOLLOWED * (residuals / compared.expected - drives.drift)
     # 2. Edges that count, and their variances as expected and as seen.
     away = recede[:, np.newaxis]
-    outward = np.clip(np.where(away, -drift, drift), 0.0, np.abs(drift[:, OPPOSITE]))
+    outward = np.maximum(np.where(away, -drift, drift), 0.0)
+    outward = np.minimum(outward, np.abs(opposites(drift)))
     seen = ((residuals > 0) | away) & (outward > 0)
-    expected = np.where(seen, variances, 0.0).sum(axis=1)
-    lacking = np.where(seen, residuals**2 - spread**2, 0.0).sum(axis=1)
+    expected = np.where(seen, compared.variances, 0.0).sum(axis=1)
+    lacking = np.where(seen, residuals**2 - compared.spread**2, 0.0).sum(axis=1)
     # 3. One for each edge. At 2.5 errors that detectors repeat are followed, too: HOTA of CenterNet
     # on the exam's clip falls by one; at 9 more boxes stay behind vehicles that come near.
-    wrong = ((outward**2).sum(axis=1) > len(Edge)) & (lacking > expected) & alone
-    wider = np.where(wrong, lacking / np.where(wrong, expected, 1.0), 1.0)
-    # What has widened the covariance is used up: once is enough for the next gain.
-    drift = np.where(wrong[:, np.newaxis], 0.0, drift)
-    return replace(drives, gaussians=drives.gaussians.widened(wider), drift=drift)
+    wrong = ((outward**2).sum(axis=1) > len(Edge)) & (lacking > expected)
+    if wrong.any():
+        # Among others a residual may be of a neighbour's box.
+        wrong &= are_alone(compared.predicted)
+        wider = np.where(wrong, lacking / np.where(wrong, expected, 1.0), 1.0)
+        # What has widened the covariance is used up: once is enough for the next gain.
+        drift = np.where(wrong[:, np.newaxis], 0.0, drift)
+        drives = replace(drives, gaussians=drives.gaussians.widened(wider))
+    return replace(drives, drift=drift)

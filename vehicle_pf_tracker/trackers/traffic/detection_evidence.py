@@ -61,7 +61,8 @@ def places_of(edges: Array, size: tuple[int, int]) -> Integers:
     """Places (N,), in a grid over the image, of boxes (N, 4) in px."""
     centres = (edges[:, :2] + edges[:, 2:]) / 2
     # A box of a vehicle that leaves may have its centre outside.
-    columns, rows = np.clip(centres / size * _GRID, 0, _GRID - 1).astype(np.intp).T
+    places = np.minimum(np.maximum(centres / size * _GRID, 0), _GRID - 1)
+    columns, rows = places.astype(np.intp).T
     return np.asarray(rows * _GRID + columns)
 
 
@@ -75,7 +76,8 @@ def claims_of(scores: Array) -> Array:
     if not ((scores >= 0) & (scores <= 1)).all():
         return np.full(len(scores), UNSAID)
     says = (scores > 0) & (scores < 1)
-    return np.where(says, np.clip(scores, _LEAST_CLAIM, 1 - _LEAST_CLAIM), UNSAID)
+    bounded = np.minimum(np.maximum(scores, _LEAST_CLAIM), 1 - _LEAST_CLAIM)
+    return np.where(says, bounded, UNSAID)
 
 
 class DetectionEvidence:
@@ -125,35 +127,37 @@ class DetectionEvidence:
 
     def learn(self, samples: Sequence[Sample], genuine: bool, *, alone: bool = True) -> None:
         """Add outcomes of detections; one beside a vehicle is no false alarm of its place."""
+        is_false = alone and not genuine
+        places = self._places[int(genuine)]
         for score, place in samples:
             # A ring: the oldest outcome goes.
             self._outcomes[self._learnt % _MEMORY] = score, genuine
             self._learnt += 1
-            self._fresh += 1
-            self._false[place] += alone and not genuine
-            self._places[int(genuine), place] += 1
+            places[place] += 1
+            if is_false:
+                self._false[place] += 1
+        self._fresh += len(samples)
 
-    def log_odds(self, scores: Array, claims: Array, places: Integers) -> Array:
-        """Logarithm of the odds that detections are vehicles, (N,).
+    def log_odds(self, by_score: Array, places: Integers) -> Array:
+        """Logarithm of the odds that detections are vehicles, (N,), of that by their scores.
 
-        Before anything is known that is what their detector claims, (N,) probabilities. A place
-        only speaks against a detection: where many vehicles pass, parts of vehicles are detected
-        as well.
+        A place only speaks against a detection: where many vehicles pass, parts of vehicles are
+        detected as well.
         """
         totals = self._places.sum(axis=1)
         here = self._places[:, places]
         # Relative to the usual odds, which scores have in them already: else they counted twice.
         by_place = np.log(here[1] / here[0]) - np.log(totals[1] / totals[0])
-        both = self._by_score(scores, claims) + np.minimum(by_place, 0.0)
-        return np.asarray(np.clip(both, -_MOST, _MOST))
+        both = by_score + np.minimum(by_place, 0.0)
+        return np.asarray(np.minimum(np.maximum(both, -_MOST), _MOST))
 
-    def gains(self, scores: Array, claims: Array) -> Array:
-        """Logarithm of how much more often vehicles have scores (N,) than false alarms have."""
+    def gains(self, by_score: Array) -> Array:
+        """Logarithm of how much more often vehicles have such scores (N,) than false alarms."""
         genuine = self._sums[-1]
         total = len(self._sorted)
         # Without the usual odds, a likelihood ratio: those of a new track are counted at its birth.
         usual = np.log((genuine + _PRIOR) / (total - genuine + _PRIOR))
-        return np.asarray(self._by_score(scores, claims) - usual)
+        return np.asarray(by_score - usual)
 
     def ranks(self, scores: Array) -> Array:
         """Share of the vehicles' detections with lower scores, (N,); 0 before enough are known."""
@@ -172,11 +176,15 @@ class DetectionEvidence:
         seen = self._false[places] * PLACE_COUNT + _ASSUMED_FOR * usual
         return np.asarray(np.log(seen / images))
 
-    def _by_score(self, scores: Array, claims: Array) -> Array:
+    def by_score(self, scores: Array, claims: Array) -> Array:
+        """Logarithm of the odds that detections of these scores are vehicles, (N,).
+
+        Before anything is known that is what their detector claims, (N,) probabilities.
+        """
         # Between both ends of equal scores: a detector that gives all the same has one probability
         # for all.
-        left = np.searchsorted(self._sorted, scores, "left")
-        middle = (left + np.searchsorted(self._sorted, scores, "right")) // 2
+        left = self._sorted.searchsorted(scores, "left")
+        middle = (left + self._sorted.searchsorted(scores, "right")) // 2
         low = np.maximum(middle - _NEIGHBOURS // 2, 0)
         high = np.minimum(middle + _NEIGHBOURS // 2, len(self._sorted))
         genuine = self._sums[high] - self._sums[low]

@@ -13,7 +13,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas
-from vehicle_pf_tracker.trackers.traffic.box_edges import INWARD_SIGNS
+from vehicle_pf_tracker.trackers.traffic.box_edges import INWARD_SIGNS, both_ends, sides_of
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, places_of
 from vehicle_pf_tracker.trackers.traffic.parameters import IGNORE_STANDING
@@ -94,7 +94,7 @@ def fits_of_known(tracks: Tracks, candidates: Candidates, columns: Integers, fit
     where the detector says the same of nothing, as of lights far behind: some of it always fits.
     """
     stands = tracks.beliefs.has_driven & (tracks.drives.gaussians.speed_ratio < _MOVES)
-    bounded = np.clip(fits, -_MOST, _MOST)
+    bounded = np.minimum(np.maximum(fits, -_MOST), _MOST)
     usual = tracks.confirmed & _usual_clutter(candidates, columns, _SAID_OF_NOTHING)
     bounded = np.where(usual, np.minimum(bounded, 0.0), bounded)
     return np.where(tracks.confirmed & stands, 0.0, bounded)
@@ -139,10 +139,9 @@ def believed(
     edges = candidates.edges[columns]
     # 1. Learn from what had vanished, before the absence ends.
     tracks = _seen(note_found(tracks, experience), edges)
-    tracks = _weighed(tracks, candidates, columns, fits, step)
+    tracks, lengths = _weighed(tracks, candidates, columns, fits, step)
     # 2. All evidence makes it ripe, a drive or sure scores prove it.
     beliefs = tracks.beliefs
-    lengths = beliefs.ways.lengths(tracks.edges)
     is_ripe = tracks.confirmed | (beliefs.log_odds >= step.parameters.birth.evidence)
     now_drives = is_ripe & ~(beliefs.has_driven | tracks.names.given)
     if now_drives.any():
@@ -168,8 +167,11 @@ def believed(
 
 def _weighed(
     tracks: Tracks, candidates: Candidates, columns: Integers, fits: Array, step: Step
-) -> Tracks:
-    """Add what scores, places and ways of the detections tell; see `believed`."""
+) -> tuple[Tracks, Array]:
+    """Add what scores, places and ways of the detections tell; and the ways' lengths (N,).
+
+    See `believed`.
+    """
     beliefs = tracks.beliefs
     log_odds = candidates.log_odds[columns]
     # The usual odds of a score count once, at the birth: a new track gains by likelihood ratios.
@@ -177,25 +179,27 @@ def _weighed(
     # Scores of one spot repeat from image to image, and a second of them says as much at any rate:
     # of fewer each takes off more, but no more than one may add.
     most_doubt = min(_SCORE_DOUBT * step.sparsity, _MOST)
-    gains = np.clip(gains, -most_doubt, _MOST)
+    gains = np.minimum(np.maximum(gains, -most_doubt), _MOST)
     ways = beliefs.ways.added(candidates.edges[columns])
-    proof = np.where(ways.lengths(tracks.edges) < _STANDS, candidates.sure[columns], log_odds)
-    proof = np.clip(proof - _SCORE_DOUBT, -_SCORE_DOUBT, _MOST)
+    lengths = ways.lengths(tracks.edges)
+    proof = np.where(lengths < _STANDS, candidates.sure[columns], log_odds)
+    proof = np.minimum(np.maximum(proof - _SCORE_DOUBT, -_SCORE_DOUBT), _MOST)
     strength = beliefs.strength + proof
+    stands = ways.stands
     beliefs = replace(
         beliefs,
         log_odds=np.minimum(beliefs.log_odds + gains + fits, CERTAIN_LOG_ODDS),
         # A time of standing is no debt: having stood makes nothing less likely once it drives.
-        doubt=np.where(ways.stands, 0.0, np.maximum(beliefs.doubt - gains, 0.0)),
-        strength=np.where(ways.stands, np.maximum(strength, 0.0), strength),
+        doubt=np.where(stands, 0.0, np.maximum(beliefs.doubt - gains, 0.0)),
+        strength=np.where(stands, np.maximum(strength, 0.0), strength),
         ways=ways,
     )
-    return replace(tracks, beliefs=beliefs)
+    return replace(tracks, beliefs=beliefs), lengths
 
 
 def _have_rest(edges: Array, others: Array) -> Bools:
     """Find boxes (N, 4) among `others` (M, 4), all, that have another one beside them."""
-    reach = _REACH * np.tile(edges[:, 2:] - edges[:, :2], 2)
+    reach = _REACH * both_ends(sides_of(edges))
     near = intersections((edges - reach * INWARD_SIGNS)[:, np.newaxis], others) > 0
     near &= areas(others) > _REST * areas(edges)[:, np.newaxis]  # a speck is no rest
     return np.asarray(near.sum(axis=1) > 1)  # itself is one
@@ -271,11 +275,14 @@ def _taught(
     evidence = experience.detections
     settled = beliefs.has_driven | tracks.names.given
     moves = tracks.names.given | (tracks.drives.gaussians.speed_ratio > _MOVES)
-    stands = ~tracks.confirmed & (lengths < _STANDS)
-    samples = beliefs.samples.copy()
     # A vehicle far away may take clutter for itself, and would teach that this is a vehicle: by
     # what is likelier clutter than any fit can outweigh.
     moves &= ~_usual_clutter(candidates, columns, _MOST)
+    if settled.all():  # the usual case, in one call
+        evidence.learn(candidates.samples(columns[moves]), True)
+        return tracks
+    stands = ~tracks.confirmed & (lengths < _STANDS)
+    samples = beliefs.samples.copy()
     rows = zip(settled.tolist(), moves.tolist(), now_drives.tolist(), stands.tolist(), strict=True)
     new = candidates.samples(columns)
     for row, (is_settled, does_move, does_drive, does_stand) in enumerate(rows):
@@ -292,15 +299,6 @@ def _taught(
     return replace(tracks, beliefs=beliefs)
 
 
-def _passed(state: State) -> State:
-    """Count this look for all that it has not detected."""
-    tracks = state.tracks
-    sights = tracks.sights
-    passed = np.where(tracks.detected, 0, sights.absences.passed + 1)
-    sights = replace(sights, absences=replace(sights.absences, passed=passed))
-    return state._replace(tracks=replace(tracks, sights=sights))
-
-
 def _sparse_price(absences: Absences, rates: Array, step: Step) -> Array:
     """Price (N,) of a look that misses a vehicle where looks are rare; `rates` find vehicles.
 
@@ -314,14 +312,15 @@ def _sparse_price(absences: Absences, rates: Array, step: Step) -> Array:
 
 def doubt(state: State, step: Step) -> State:
     """Take off evidence from tracks that a detector has missed in plain sight."""
-    state = _passed(state)
-    # 1. A detector that misses all it could see has failed, and says nothing.
     tracks = state.tracks
     elapsed = step.elapsed
     sights = tracks.sights
-    absences = tracks.sights.absences
     confirmed = tracks.confirmed
     detected = tracks.detected
+    # Every look counts for all that it has not detected.
+    passed = np.where(detected, 0, sights.absences.passed + 1)
+    absences = replace(sights.absences, passed=passed)
+    # 1. A detector that misses all it could see has failed, and says nothing.
     in_sight = tracks.in_sight
     is_seen = absences.seen
     watched = confirmed & is_seen & (absences.undetected <= _BLIND_FOR) & in_sight
@@ -329,7 +328,7 @@ def doubt(state: State, step: Step) -> State:
     # boxes that pixels hold on an empty road would excuse each other.
     watched &= absences.undetected == absences.undetected[watched].min(initial=np.inf)
     if not (confirmed & detected).any() and watched.sum() >= _BLIND_FROM:
-        return state
+        return state._replace(tracks=replace(tracks, sights=replace(sights, absences=absences)))
     # 2. Confirmed: a fixed price, the unknown may hide it. Tentative: a sequential test.
     asked = tracks.beliefs.has_driven & in_sight & is_seen
     rates = state.experience.rate.learn(asked, detected)
@@ -339,8 +338,9 @@ def doubt(state: State, step: Step) -> State:
     # the detector for it, but road that stands would hold the box of one that has left for ever.
     held = ~detected & is_seen & (sights.visible > IN_SIGHT) & ~tracks.names.given
     lost = (missed | held) & confirmed
-    taken[lost] = np.maximum(elapsed * _MISSED, _sparse_price(absences, rates, step))[lost]
-    for row in np.flatnonzero(missed & ~confirmed).tolist():
+    if lost.any():
+        taken[lost] = np.maximum(elapsed * _MISSED, _sparse_price(absences, rates, step))[lost]
+    for row in (missed & ~confirmed).nonzero()[0].tolist():
         taken[row] = elapsed * -math.log(1 - rates[row])
     count = absences.missed + missed  # 3. note where it vanished
     vanishes = missed & confirmed & ~tracks.names.given & (count == _VANISHED_AFTER)

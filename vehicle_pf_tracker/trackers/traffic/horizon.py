@@ -16,7 +16,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.road.plane import RoadPlane
-from vehicle_pf_tracker.trackers.traffic.rows import Rows, columns
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, Rows, columns
 
 _LEAST_BOXES = 20
 """Boxes below which a vehicle does not tell how it grows. At 30, HOTA of `traffic-overtaking` falls
@@ -64,14 +64,14 @@ class Growths(Rows):
         """Growths before the first box."""
         return cls(np.zeros((count, 5)))
 
-    def added(self, edges: Array) -> Growths:
-        """Add a detection of each (N, 4) that shows the whole vehicle."""
+    def added(self, edges: Array, whole: Bools) -> Growths:
+        """Add the detections (N, 4), in px, that show the `whole` vehicle (N,)."""
         width = edges[:, 2] - edges[:, 0]
         bottom = edges[:, 3]
         # Sums are all that a regression needs: the boxes themselves are not kept.
         once = np.ones(len(edges))
         terms = columns(once, bottom, bottom * bottom, width, bottom * width)
-        return Growths(self.sums + terms)
+        return Growths(self.sums + np.where(whole[:, np.newaxis], terms, 0.0))
 
     def told(self, height: int, sparsity: float = 1.0) -> Array:
         """Summarise those of enough boxes in units of the image's height.
@@ -186,7 +186,7 @@ def explaining_row(assumed: float, told: Array) -> float:
     # The assumed horizon as a growth; one below the vehicles would make it negative.
     usual = 1 / (centre - min(assumed, centre - 1 / _GROWTHS[-1]))
     # The assumed one is tried, too, so that without evidence the row is exactly that.
-    growths = np.append(_GROWTHS, usual)
+    growths = np.concatenate([_GROWTHS, [usual]])
     rows = centre - 1 / growths
     # A horizon below a vehicle cannot be: infinite growth costs the bound.
     expected = np.where(middle > rows, 1 / (middle - rows), np.inf)

@@ -197,13 +197,18 @@ def former(tracks: Tracks, row: int, others: Bools) -> int | None:
     distance, ratio = _apart(tracks.edges[row], tracks.edges[rows])
     # The longer it was hidden, the less its prediction is worth.
     distance /= 1 + undetected[rows] / _FARTHER_IN
-    fall = looks.usual_similarity[rows] - similarities(looks.colours[rows], looks.colours[row])
-    may_be = (ratio > 1 / _MOST_GROWN) & (ratio < _MOST_GROWN) & (fall <= _FALL)
+    may_be = (ratio > 1 / _MOST_GROWN) & (ratio < _MOST_GROWN)
     may_be &= distance <= (_NEAR_A_DOUBLE if is_named else 1.0)
-    if not may_be.any():
+    # Colours last: few are near enough to be compared.
+    rows = rows[may_be]
+    distance = distance[may_be]
+    fall = looks.usual_similarity[rows] - similarities(looks.colours[rows], looks.colours[row])
+    rows = rows[fall <= _FALL]
+    distance = distance[fall <= _FALL]
+    if not len(rows):
         return None
     # The nearest, of equally near ones the oldest track, so that runs repeat.
-    nearest = np.lexsort((tracks.names.serial[rows], np.where(may_be, distance, np.inf)))
+    nearest = np.lexsort((tracks.names.serial[rows], distance))
     return int(rows[nearest[0]])
 
 

@@ -169,8 +169,7 @@ def _shown(
         looks = coloured(looks, colours, whole)
     # A width that the border cuts grows with the distance from the border, not from the horizon.
     grows = whole & ~cut_edges(edges, step.size, step.edge_noise).any(axis=1)
-    growths = tracks.drives.growths
-    growths = growths.put(grows, growths.take(grows).added(edges[grows]))
+    growths = tracks.drives.growths.added(edges, grows)
     return replace(
         tracks,
         names=tracks.names.voted(labels),
@@ -184,9 +183,9 @@ def _without_parts(look: Look, *, either: bool = False) -> Look:
     state, free, candidates, _ = look
     tracks = state.tracks
     columns = np.flatnonzero(free)
-    boxes = tracks.edges[tracks.confirmed & (either | tracks.detected)]
-    if not (len(columns) and len(boxes)):
+    if not len(columns):
         return look
+    boxes = tracks.edges[tracks.confirmed & (either | tracks.detected)]
     parts = columns[inside_of(boxes, candidates.edges[columns], either=either)]
     if not len(parts):
         return look

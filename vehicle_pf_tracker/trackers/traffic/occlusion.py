@@ -35,9 +35,7 @@ def hide(state: State, step: Step) -> State:
     """
     # Sorted by distance, one triangle of the matrix of overlaps says who hides whom. The order is
     # kept in the state: from frame to frame it rarely changes, and nothing is copied then.
-    order = nearest_first(state.tracks, step.road)
-    is_sorted = (order == np.arange(len(order))).all()
-    tracks = state.tracks if is_sorted else state.tracks.take(order)
+    tracks = state.tracks.take(nearest_first(state.tracks, step.road))
     edges = tracks.edges
     sights = tracks.sights
     hiding = np.flatnonzero(_hides(tracks) & step.parameters.occlusions)
@@ -47,13 +45,18 @@ def hide(state: State, step: Step) -> State:
     # A sum of shares, no union: where occluders overlap one another, less seems to be seen than is.
     visible = np.maximum(1 - common.sum(axis=1), 0.0)
     hidden_by = np.zeros(len(tracks), np.intp)
-    if len(hiding):
+    covers = filled(len(tracks), NO_BOXES)
+    rows = (visible < 1).nonzero()[0]
+    if len(rows):
         is_named = common.max(axis=1) > _GOOD_PART
         hidden_by[is_named] = tracks.names.identity[hiding[common.argmax(axis=1)]][is_named]
-    # Kept beside the share: pixels and colours leave out just these boxes.
-    covers = filled(len(tracks), NO_BOXES)
-    for row in np.flatnonzero(visible < 1).tolist():
-        covers[row] = edges[hiding][common[row] > 0]
+        # Kept beside the share: pixels and colours leave out just these boxes.
+        covered, over = (common > 0).nonzero()
+        boxes = edges[hiding[over]]
+        first = covered.searchsorted(rows).tolist()
+        last = covered.searchsorted(rows, "right").tolist()
+        for row, start, end in zip(rows.tolist(), first, last, strict=True):
+            covers[row] = boxes[start:end]
     sights = replace(
         sights,
         visible=visible,
@@ -75,16 +78,15 @@ def nearest_first(tracks: Tracks, road: RoadPlane | None) -> Integers:
         Road that they stand on; None: the lower a vehicle stands in the image, the nearer it is.
     """
     edges = tracks.edges
-    # A box stands on the road in the middle of its lower edge.
-    feet = np.column_stack([(edges[:, 0] + edges[:, 2]) / 2, edges[:, 3]])
-    nearness = feet[:, 1] if road is None else _nearness(feet, road)
     # What a lens cannot show is out of the image, and last.
-    distances = np.nan_to_num(-nearness, nan=np.inf)
+    distances = -edges[:, 3] if road is None else np.nan_to_num(-_nearness(edges, road), nan=np.inf)
     # Equally far ones by age: an order that depends on nothing else repeats.
     return np.asarray(np.lexsort((tracks.names.serial, distances)))
 
 
-def _nearness(feet: Array, road: RoadPlane) -> Array:
+def _nearness(edges: Array, road: RoadPlane) -> Array:
+    # A box stands on the road in the middle of its lower edge.
+    feet = np.column_stack([(edges[:, 0] + edges[:, 2]) / 2, edges[:, 3]])
     return np.asarray(road.homography.nearness(road.ideal(feet)))
 
 

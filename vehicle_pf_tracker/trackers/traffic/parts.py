@@ -59,15 +59,16 @@ def divided(drives: Drives, edges: Array, others: Array) -> Drives:
         Edges of all detections.
     """
     predicted = drives.gaussians.edges
-    each = predicted[:, np.newaxis]
-    own = edges[:, np.newaxis]
     # Another detection within the prediction, apart from its own, and farther away: nothing that
     # its own detection shows could hide it, so the prediction is of both.
-    beside = (
-        (intersections(each, others) > _TOUCHES * areas(each))
-        & (intersections(own, others) < _TOUCHES * areas(others))
-        & (others[:, Edge.BOTTOM] < own[..., Edge.BOTTOM])
-    ).any(axis=1)
+    within = intersections(predicted[:, np.newaxis], others)
+    rows, columns = (within > _TOUCHES * areas(predicted)[:, np.newaxis]).nonzero()
+    own = edges[rows]
+    other = others[columns]
+    is_rest = intersections(own, other) < _TOUCHES * areas(other)
+    is_rest &= other[:, Edge.BOTTOM] < own[:, Edge.BOTTOM]
+    beside = np.zeros(len(edges), np.bool_)
+    beside[rows[is_rest]] = True
     # Its own has to lie in the prediction, too: else that is just wrong.
     known = intersections(predicted, edges) > _INSIDE * areas(edges)
     # In a row: one box of a neighbour that touches does not count for ever.

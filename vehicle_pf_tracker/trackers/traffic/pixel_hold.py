@@ -10,6 +10,7 @@ well they explain where the points went; their mean and spread are the measureme
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -17,8 +18,9 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import NO_BOXES, areas
 from vehicle_pf_tracker.image.motion.point_flow import PointFlow
+from vehicle_pf_tracker.trackers.traffic.box_edges import both_ends, sides_of
 from vehicle_pf_tracker.trackers.traffic.colours import BACKGROUND_RIM, similarities
-from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Objects
 from vehicle_pf_tracker.trackers.traffic.state import Grey, State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Sights, Tracks
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import PIXEL_NOISE, V, X
@@ -55,6 +57,12 @@ each hold begins them anew, so that holding ends only where it failed all the ti
 _HELD_FALL = 0.15
 """Fall of the colours' similarity below its usual value above which pixels do not hold it. At .2,
 as for vehicles that come back, IDF1 by motion behind the bridge falls by five."""
+_PARTICLES_AT_ONCE = 1000
+"""Particles of several vehicles that are weighed at once: with 25 points each they fill a cache of
+half a MB, and more would only need more memory."""
+_AXIS = ((np.arange(_GRID) + 0.5) / _GRID - 0.5) * (1 - 2 * BACKGROUND_RIM)
+_PLACES = np.column_stack([np.tile(_AXIS, _GRID), np.repeat(_AXIS, _GRID)])
+"""Places of the points in a box, of its sides from its centre, (G², 2)."""
 # A small window and one halving: the prediction is the guess, and distant vehicles are small.
 _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 
@@ -106,35 +114,54 @@ def measure(tracks: Tracks, before: Grey, step: Step) -> tuple[Integers, Array, 
     (K,), (K, 4), (K, 4) arrays
         Rows of those that their pixels show, edges and their standard deviations, px.
     """
-    # 1. Points on a grid in the old box, where no nearer vehicle covers them. After a change of
+    # 1. Points on a grid in each old box, where no nearer vehicle covers them. After a change of
     # size there are none.
     if before.shape != step.grey.shape:
         return np.zeros(0, np.intp), NO_BOXES, NO_BOXES
     old = tracks.drives.before
     new = tracks.edges
-    covers = tracks.sights.covers
-    starts = [_uncovered(_points(edges), cover) for edges, cover in zip(old, covers, strict=True)]
+    starts = _points(old)
+    in_sight = _uncovered(starts, tracks.sights.covers)
     # 2. Followed in one call for all vehicles, from where the drive predicts them.
-    guesses = [_carried(*each) for each in zip(starts, old, new, strict=True)]
-    moved = _follow(before, step.grey, np.concatenate(starts), np.concatenate(guesses))
-    ends = np.split(moved, np.cumsum([len(one) for one in starts])[:-1])
-    # 3. Each vehicle by its own points.
+    guesses = _carried(starts, old, new)
+    ends = np.full_like(starts, np.nan)
+    ends[in_sight] = _follow(before, step.grey, starts[in_sight], guesses[in_sight])
+    # 3. Each vehicle by its own points, of which there have to be enough without those that stand
+    # on an occluder.
+    found = np.isfinite(ends[..., 0])
+    alive = found & ~_standing(starts, ends, old, new)
+    counts = alive.sum(axis=1)
+    enough = counts >= np.maximum(_GRID, _MOST_ALIVE * found.sum(axis=1))
     gaussians = tracks.drives.gaussians
     places = np.sqrt(gaussians.covariance[:, [X, V], [X, V]]) + PIXEL_NOISE
-    rows = []
-    edges = []
-    spreads = []
-    for row, (start, end) in enumerate(zip(starts, ends, strict=True)):
-        shown = _shown(start, end, old[row], new[row], places[row], step.normals)
-        if shown is not None:
-            rows.append(row)
-            edges.append(shown[0])
-            spreads.append(shown[1])
+    edges = np.empty_like(new)
+    spreads = np.empty_like(new)
+    agree = np.zeros(len(new), np.bool_)
+    for rows in _together(counts, enough, len(step.normals)):
+        at_first, now = (every[rows][alive[rows]] for every in (starts, ends))
+        as_many = (len(rows), -1, 2)
+        edges[rows], spreads[rows], agree[rows] = _shown(
+            at_first.reshape(as_many),
+            now.reshape(as_many),
+            old[rows],
+            new[rows],
+            places[rows],
+            step.normals,
+        )
     # 4. Flow follows whatever is there: the colours tell that it is still the vehicle.
-    kept = np.array(rows, np.intp)
-    boxes = np.array(edges).reshape(-1, 4)
-    alike = _alike(tracks.sights.take(kept), boxes, step)
-    return kept[alike], boxes[alike], np.array(spreads).reshape(-1, 4)[alike]
+    kept = np.flatnonzero(agree)
+    alike = _alike(tracks.sights.take(kept), edges[kept], step)
+    kept = kept[alike]
+    return kept, edges[kept], spreads[kept]
+
+
+def _together(counts: Integers, enough: Bools, particles: int) -> Iterator[Integers]:
+    """Rows of vehicles that have `enough` points (K,), those with equal counts (K,) together."""
+    most = max(_PARTICLES_AT_ONCE // particles, 1)
+    for count in np.unique(counts[enough]).tolist():
+        rows = np.flatnonzero(enough & (counts == count))
+        for first in range(0, len(rows), most):
+            yield rows[first : first + most]
 
 
 def _alike(sights: Sights, boxes: Array, step: Step) -> Bools:
@@ -146,74 +173,82 @@ def _alike(sights: Sights, boxes: Array, step: Step) -> Bools:
 
 def _shown(
     old: Array, new: Array, before: Array, predicted: Array, place: Array, normals: Array
-) -> tuple[Array, Array] | None:
-    """Edges (4,) and their standard deviations, px, by one vehicle's points; None if too few agree.
+) -> tuple[Array, Array, Bools]:
+    """Edges (K, 4) and their standard deviations, px, by the points of each vehicle.
 
     Parameters
     ----------
-    old, new : (N, 2) arrays
-        Points in the frame before, and where they are now; NaN where they are not found again.
-    before, predicted : (4,) arrays
-        Box in the frame before, and as it is predicted.
-    place : (2,) array
-        Standard deviations of the predicted place, px.
+    old, new : (K, N, 2) arrays
+        Points in the frame before, and where they are now.
+    before, predicted : (K, 4) arrays
+        Boxes in the frame before, and as they are predicted.
+    place : (K, 2) array
+        Standard deviations of the predicted places, px.
     normals : (P, 3) array
         Standard normal numbers that make the particles.
+
+    Returns
+    -------
+    (K, 4), (K, 4), (K,) arrays
+        Edges, their standard deviations, and True where enough points agree with them.
     """
-    # 1. Without the points that stand on an occluder there have to be enough.
-    found = np.isfinite(new[:, 0])
-    alive = found & ~_standing(old, new, before, predicted)
-    if alive.sum() < max(_GRID, _MOST_ALIVE * found.sum()):
-        return None
-    # 2. Residual motion of each point, beside the growth that is predicted.
-    centre = (predicted[:2] + predicted[2:]) / 2
-    size = predicted[2:] - predicted[:2]
-    relative = (old[alive] - (before[:2] + before[2:]) / 2) * _growth(before, predicted)
-    observed = new[alive] - centre
+    # 1. Residual motion of each point, beside the growth that is predicted.
+    centre = _middles(predicted)
+    size = sides_of(predicted)
+    growth = _growth(before, predicted)
+    relative = (old - _middles(before)[:, np.newaxis]) * growth[:, np.newaxis, np.newaxis]
+    observed = new - centre[:, np.newaxis]
     particles = _particles(place, observed - relative, normals)
-    # 3. Weigh particles: where each would have carried the points.
-    expected = (1 + particles[:, 2])[:, np.newaxis, np.newaxis] * relative
-    expected += particles[:, np.newaxis, :2]
-    squared = ((observed - expected) ** 2).sum(axis=2) / PIXEL_NOISE**2
+    # 2. Weigh particles: where each would have carried the points.
+    expected = (1 + particles[:, :, 2, np.newaxis, np.newaxis]) * relative[:, np.newaxis]
+    expected += particles[:, :, np.newaxis, :2]
+    away = observed[:, np.newaxis] - expected
+    away *= away
+    squared = (away[..., 0] + away[..., 1]) / PIXEL_NOISE**2
     # A Gaussian on a floor, so that points astray cannot veto. A mean times `_GRID`, not a sum: 25
     # points of one texture are not 25 measurements, and the weights would collapse.
-    logs = np.log(np.exp(-squared / 2) + _OUTLIER).mean(axis=1)
+    logs = np.log(np.exp(-squared / 2) + _OUTLIER).mean(axis=2)
     logs *= _GRID
-    # 4. The best of all bad ones is no measurement.
-    if (squared[int(np.argmax(logs))] < _ASTRAY**2).mean() < _MOST_AGREE:
-        return None
-    # 5. Mean and spread of the boxes are the measurement, its errors larger than the particles say.
-    middles = centre + particles[:, :2]
-    halves = size * (1 + particles[:, 2:]) / 2
-    boxes = np.hstack([middles - halves, middles + halves])
+    # 3. The best of all bad ones is no measurement.
+    best = squared[np.arange(len(logs)), logs.argmax(axis=1)]
+    agree = (best < _ASTRAY**2).mean(axis=1) >= _MOST_AGREE
+    # 4. Mean and spread of the boxes are the measurement, its errors larger than the particles say.
+    middles = centre[:, np.newaxis] + particles[..., :2]
+    halves = size[:, np.newaxis] * (1 + particles[..., 2:]) / 2
+    boxes = np.concatenate([middles - halves, middles + halves], axis=2)
     # Less the largest, so that not all underflow.
-    weights = np.exp(logs - logs.max())
-    weights /= weights.sum()
-    edges = weights @ boxes
-    spread = np.sqrt(weights @ (boxes - edges) ** 2)
-    sides = np.tile(edges[2:] - edges[:2], 2)
-    return edges, _CAUTION * (np.hypot(spread, _SLIP * sides) + _SLIP_PX)
+    weights = np.exp(logs - logs.max(axis=1, keepdims=True))
+    weights /= weights.sum(axis=1, keepdims=True)
+    edges = weights[:, np.newaxis] @ boxes
+    spread = np.sqrt(weights[:, np.newaxis] @ (boxes - edges) ** 2)[:, 0]
+    edges = edges[:, 0]
+    sides = both_ends(sides_of(edges))
+    return edges, _CAUTION * (np.hypot(spread, _SLIP * sides) + _SLIP_PX), agree
 
 
 def _standing(old: Array, new: Array, before: Array, predicted: Array) -> Bools:
-    """Points that stand while the vehicle drives: they lie on what hides it."""
-    drive = (predicted[:2] + predicted[2:] - before[:2] - before[2:]) / 2
-    length = float(np.hypot(*drive))
-    # Standing and driving are not to be told apart yet.
-    if length < PIXEL_NOISE:
-        return np.zeros(len(old), dtype=np.bool_)
-    return np.asarray(np.hypot(*(new - old).T) < _STANDS * length)
+    """Points (K, N) that stand while the vehicle drives: they lie on what hides it."""
+    drive = (predicted[:, :2] + predicted[:, 2:] - before[:, :2] - before[:, 2:]) / 2
+    length = np.hypot(*drive.T)[:, np.newaxis]
+    way = new - old
+    stands = np.hypot(way[..., 0], way[..., 1]) < _STANDS * length
+    # Else standing and driving are not to be told apart yet.
+    return np.asarray(stands & (length >= PIXEL_NOISE))
 
 
 def _particles(place: Array, motions: Array, normals: Array) -> Array:
-    """Particles (P, 3): displacement of the centre in px and relative growth.
+    """Particles (K, P, 3): displacement of the centre in px and relative growth.
 
     Half of them are drawn around the prediction, half around the points' median motion: a
     prediction may be far off.
     """
-    particles = np.asarray(normals * np.append(place, _SLIP))
-    particles[::2, :2] = np.median(motions, axis=0) + normals[::2, :2] * PIXEL_NOISE
-    return particles
+    count = motions.shape[1]
+    ordered = np.sort(motions, axis=1)
+    median = (ordered[:, (count - 1) // 2] + ordered[:, count // 2]) / 2
+    spread = np.concatenate([place, np.full((len(place), 1), _SLIP)], axis=1)
+    particles = normals * spread[:, np.newaxis]
+    particles[:, ::2, :2] = median[:, np.newaxis] + normals[::2, :2] * PIXEL_NOISE
+    return np.asarray(particles)
 
 
 def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
@@ -231,28 +266,32 @@ def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
 
 
 def _points(edges: Array) -> Array:
-    places = ((np.arange(_GRID) + 0.5) / _GRID - 0.5) * (1 - 2 * BACKGROUND_RIM)
-    x, y = np.meshgrid(places, places)
-    middle = (edges[:2] + edges[2:]) / 2
-    size = edges[2:] - edges[:2]
-    return np.asarray(np.column_stack([x.ravel(), y.ravel()]) * size + middle)
+    """Points (K, G², 2) on a grid inside of boxes (K, 4)."""
+    return np.asarray(_PLACES * sides_of(edges)[:, np.newaxis] + _middles(edges)[:, np.newaxis])
 
 
-def _uncovered(points: Array, covers: Array) -> Array:
-    """Points that no nearer box covers."""
-    if not len(covers):
-        return points
-    x, y = points[:, :1], points[:, 1:]
-    inside = (x > covers[:, 0]) & (x < covers[:, 2]) & (y > covers[:, 1]) & (y < covers[:, 3])
-    return np.asarray(points[~inside.any(axis=1)])
+def _middles(edges: Array) -> Array:
+    return np.asarray((edges[:, :2] + edges[:, 2:]) / 2)
+
+
+def _uncovered(points: Array, covers: Objects) -> Bools:
+    """Find points (K, N, 2) that no nearer box covers: True (K, N)."""
+    shown = np.ones(points.shape[:2], np.bool_)
+    for row, boxes in enumerate(covers.tolist()):
+        if len(boxes):
+            x, y = points[row, :, :1], points[row, :, 1:]
+            inside = (x > boxes[:, 0]) & (x < boxes[:, 2]) & (y > boxes[:, 1]) & (y < boxes[:, 3])
+            shown[row] = ~inside.any(axis=1)
+    return shown
 
 
 def _carried(points: Array, before: Array, after: Array) -> Array:
-    """Places of points as the prediction has them."""
-    relative = (points - (before[:2] + before[2:]) / 2) * _growth(before, after)
-    return np.asarray(relative + (after[:2] + after[2:]) / 2)
+    """Places of points (K, N, 2) as the prediction has them."""
+    growth = _growth(before, after)[:, np.newaxis, np.newaxis]
+    relative = (points - _middles(before)[:, np.newaxis]) * growth
+    return np.asarray(relative + _middles(after)[:, np.newaxis])
 
 
-def _growth(before: Array, after: Array) -> float:
-    """Growth of a box's sides."""
-    return float(np.sqrt(areas(after) / areas(before)))
+def _growth(before: Array, after: Array) -> Array:
+    """Growth (K,) of the boxes' sides."""
+    return np.asarray(np.sqrt(areas(after) / areas(before)))

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.trackers.traffic.estimate import (
     BORDER_OCCLUDER,
@@ -16,7 +17,7 @@ from vehicle_pf_tracker.trackers.traffic.estimate import (
     TrackEstimate,
     TrackMode,
 )
-from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
+from vehicle_pf_tracker.trackers.traffic.tracks import Drives, Tracks
 
 _MOSTLY_INSIDE = 0.5
 """Share in the image above which no border hides a vehicle: most of it is inside."""
@@ -36,16 +37,13 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
     names = tracks.names
     drives = tracks.drives
     sights = tracks.sights
-    # With the lag the box is where detections are; the state stays smooth for the prediction.
-    low, high = np.split(drives.gaussians.edges + drives.lag, 2, axis=1)
     modes = _modes(tracks)
     rows = zip(
         names.identity.tolist(),
         names.serial.tolist(),
         names.joined.tolist(),
         names.votes.tolist(),
-        # A box has a size even where an unsure prediction has none.
-        np.hstack([low, np.maximum(high - low, 1.0)]).tolist(),
+        _boxes(drives).tolist(),
         drives.gaussians.velocity.tolist(),
         drives.gaussians.foot_covariance.tolist(),
         tracks.beliefs.log_odds.tolist(),
@@ -63,7 +61,7 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
             velocity=(velocity[0], velocity[1]),
             mode=mode,
             confidence=_PLACED[mode] / (1 + math.exp(-log_odds)),
-            label=max(votes, key=votes.__getitem__, default=""),
+            label=max(votes, key=votes.__getitem__) if votes else "",
             # One object for all: estimates of two runs are equal only if their NaN is the same.
             score=math.nan if math.isnan(score) else score,
             age=age,
@@ -92,6 +90,15 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
     return tuple(estimates[row] for row in order.tolist())
 
 
+def _boxes(drives: Drives) -> Array:
+    """Boxes (N, 4): left, top, width and height, px."""
+    # With the lag the box is where detections are; the state stays smooth for the prediction.
+    boxes = drives.gaussians.edges + drives.lag
+    # A box has a size even where an unsure prediction has none.
+    boxes[:, 2:] = np.maximum(boxes[:, 2:] - boxes[:, :2], 1.0)
+    return boxes
+
+
 def _modes(tracks: Tracks) -> list[TrackMode]:
     """Claims about the vehicles."""
     absences = tracks.sights.absences
@@ -115,10 +122,13 @@ def _mode(is_confirmed: bool, is_lost: bool, is_seen: bool) -> TrackMode:
 
 def _hiders(tracks: Tracks, modes: list[TrackMode]) -> list[int | str | None]:
     """Say what hides each hidden vehicle: another one, or else the scene or the border."""
-    unknown = np.where(
-        tracks.sights.inside >= _MOSTLY_INSIDE, SCENE_OCCLUDER, BORDER_OCCLUDER
-    ).tolist()
-    rows = zip(modes, tracks.sights.hidden_by.tolist(), unknown, strict=True)
-    hidden = (TrackMode.OCCLUDED, TrackMode.LOST)
+    sights = tracks.sights
+    rows = zip(modes, sights.hidden_by.tolist(), sights.inside.tolist(), strict=True)
+    return [_hider(*each) for each in rows]
+
+
+def _hider(mode: TrackMode, identity: int, inside: float) -> int | str | None:
+    if mode not in (TrackMode.OCCLUDED, TrackMode.LOST):
+        return None
     # Zero is no identity: nothing that is followed hides it.
-    return [(hider or other) if mode in hidden else None for mode, hider, other in rows]
+    return identity or (SCENE_OCCLUDER if inside >= _MOSTLY_INSIDE else BORDER_OCCLUDER)

@@ -64,6 +64,8 @@ OBSERVATION = np.array(
 )
 """Edges of the box as linear functions of the state (relative to the horizon)."""
 
+_UNCHANGED = np.eye(6)
+"""Jacobian of a map that changes no component of the state."""
 _LOWEST_MEAN = np.array([-_LARGEST, _LEAST, _LEAST, _LEAST, -_LARGEST, -_LARGEST])
 """Lower bounds of the mean, by component."""
 # Keeps a determinant that rounding made zero a divisor.
@@ -223,14 +225,14 @@ class Gaussians(Rows):
         x, v, w, h, across, along = self.mean.T
         # It is 0 where the vehicle passes the camera: bounded before it is divided by.
         divisor = 1 + v * along * elapsed
-        bounded = np.clip(divisor, 1 / _MOST_GROWTH, _MOST_GROWTH)
+        bounded = np.minimum(np.maximum(divisor, 1 / _MOST_GROWTH), _MOST_GROWTH)
         growth, free = 1 / bounded, bounded == divisor  # else the growth depends on nothing
         by_v = free * -along * elapsed * growth**2
         by_along = free * -v * elapsed * growth**2
         # 2. Jacobian of this map, as in an extended Kalman filter.
         moved = x + v * across * elapsed
-        step = np.zeros_like(self.covariance)
-        step[:, ACROSS, ACROSS] = step[:, ALONG, ALONG] = 1.0
+        step = np.empty_like(self.covariance)
+        step[:] = _UNCHANGED
         step[:, X, X] = step[:, W, W] = step[:, H, H] = growth
         step[:, X, V] = across * elapsed * growth + moved * by_v
         step[:, X, ACROSS] = v * elapsed * growth
@@ -260,8 +262,8 @@ class Gaussians(Rows):
         # The edge's speed in px is v² along, so that along changes by the square; that across, v
         # across - x v along, fixes the other one.
         ratio = v / new
-        step = np.zeros_like(self.covariance)
-        step[:, range(6), range(6)] = 1.0
+        step = np.empty_like(self.covariance)
+        step[:] = _UNCHANGED
         step[:, ALONG, ALONG] = ratio**2
         step[:, ACROSS, ACROSS] = ratio
         step[:, ACROSS, ALONG] = x * (ratio - 1) * ratio
@@ -282,14 +284,18 @@ class Gaussians(Rows):
         """Take measured edges (N, 4) in px of these standard deviations; infinite: not seen."""
         mean = self.mean
         covariance = self.covariance
+        noises = deviations**2
+        # Edges as the state has them: top and bottom are relative to the horizon.
+        measured = edges.copy()
+        measured[:, Edge.TOP :: 2] -= self.horizon[:, np.newaxis]
         for edge in Edge:
             # Edge by edge, as noises of edges are independent: no matrix has to be inverted.
             spread = _along(covariance, edge)
-            offset = self.horizon if edge in (Edge.TOP, Edge.BOTTOM) else 0.0
-            residual = edges[:, edge] - offset - _along(mean, edge)
-            variance = _along(spread, edge) + deviations[:, edge] ** 2
+            residual = measured[:, edge] - _along(mean, edge)
+            variance = _along(spread, edge) + noises[:, edge]
             mean = mean + spread * (residual / variance)[:, np.newaxis]
-            mean[:, V:ACROSS] = np.maximum(mean[:, V:ACROSS], _LEAST)  # sides stay positive
+            sides = mean[:, V:ACROSS]
+            np.maximum(sides, _LEAST, out=sides)  # they stay positive
             # Products of the spread with itself are symmetric to the last bit, as no gain's are.
             known = spread[:, :, np.newaxis] * spread[:, np.newaxis, :]
             covariance = covariance - known / variance[:, np.newaxis, np.newaxis]
@@ -325,7 +331,7 @@ def _transformed(covariance: Array, step: Array) -> Array:
 
 def _bounded(mean: Array, covariance: Array, horizon: Array) -> Gaussians:
     """Keep a prediction within bounds; a vehicle that is in sight is far inside them."""
-    mean = np.clip(mean, _LOWEST_MEAN, _LARGEST)
+    mean = np.minimum(np.maximum(mean, _LOWEST_MEAN), _LARGEST)
     variances = covariance.diagonal(axis1=-2, axis2=-1)
     if variances.max(initial=0.0) > _LARGEST**2:
         # Scaled from both sides a covariance stays one, and correlations stay what they are.

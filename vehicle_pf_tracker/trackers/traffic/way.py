@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.traffic.box_edges import OPPOSITE, cut_edges
+from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges, opposites
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Rows, columns
 
 _STANDS_WITHIN = 0.1
@@ -110,7 +110,7 @@ class Ways(Rows):
         does; `noise` is the deviation of an edge, fraction of the box's side.
         """
         moved = np.abs(edges - self.first)
-        opposite = moved[:, OPPOSITE]
+        opposite = opposites(moved)
         cut = cut_edges(edges, size, noise) | cut_edges(self.first, size, noise)
         second = np.sort(np.where(cut, opposite, moved), axis=1)[:, -2]
         width = np.maximum(edges[:, 2] - edges[:, 0], 1.0)
