@@ -7,7 +7,6 @@ import numpy as np
 from traffic_samples import track_of
 
 from vehicle_pf_tracker.trackers.traffic.correction import correct
-from vehicle_pf_tracker.trackers.traffic.returns import Returns
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Gaussians, Motion
 
 SIZE = (320, 240)
@@ -25,12 +24,11 @@ class Vehicle:
 
     def __init__(self, edges=BOX):
         self.tracks = track_of(exactly(edges), matches=20, shown=1.0)
-        self.uncoverings = Returns()
 
     def see(self, detection, *, noise=0.05):
         """Be detected; True if that shows all of it."""
         edges = np.array([detection], float)
-        self.tracks, whole = correct(self.tracks, edges, SIZE, noise, self.uncoverings)
+        self.tracks, whole = correct(self.tracks, edges, SIZE, noise)
         return bool(whole[0])
 
     @property

@@ -365,18 +365,6 @@ def test_the_share_of_a_place_is_a_beta_binomial_estimate():
     assert shares == pytest.approx([2 * usual / 4, (1 + 2 * usual) / 3])
 
 
-@pytest.mark.parametrize("found", [True, False])
-def test_what_becomes_of_a_vehicle_becomes_of_the_part_that_was_missing(found):
-    experience, place = Experience(), 53
-    one = changed(vanish(experience, 100.0), shortened=place)
-    if found:
-        one = resumed(together(one, track(2, 100.0)), 0, 1, experience)
-        assert one.drives.extents.shortened[0] == NOWHERE
-    else:
-        end(State(changed(one, unseen=1e3), experience), STEP)
-    assert (experience.uncoverings.share(place) > 0.5) is found
-
-
 def test_a_place_is_learnt_anew():
     experience = Experience()
     for _ in range(500):

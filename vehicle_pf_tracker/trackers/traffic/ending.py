@@ -81,7 +81,6 @@ def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) 
 def _gone(tracks: Tracks, inside: Array, goes_on: Bools, experience: Experience) -> Bools:
     """Find vehicles that vanished where most do not come back; learn from those that end."""
     vanished = tracks.sights.absences.vanished
-    shortened = tracks.drives.extents.shortened
     ends = tracks.confirmed & ~goes_on & (inside > _LEFT)
     gone = np.zeros(len(tracks), np.bool_)
     for row in np.flatnonzero((vanished != NOWHERE) | ends).tolist():
@@ -90,7 +89,6 @@ def _gone(tracks: Tracks, inside: Array, goes_on: Bools, experience: Experience)
             gone[row] = experience.reappearances.share(place) < _RETURNS
         if ends[row]:
             _note_end(experience.reappearances, place)
-            _note_end(experience.uncoverings, int(shortened[row]))
     return gone
 
 

@@ -138,7 +138,8 @@ def believed(
     """
     edges = candidates.edges[columns]
     # 1. Learn from what had vanished, before the absence ends.
-    tracks = _seen(note_found(tracks, experience), edges)
+    note_found(tracks, experience)
+    tracks = _seen(tracks, edges)
     tracks, lengths = _weighed(tracks, candidates, columns, fits, step)
     # 2. All evidence makes it ripe, a drive or sure scores prove it.
     beliefs = tracks.beliefs
@@ -215,21 +216,11 @@ def _seen(tracks: Tracks, edges: Array) -> Tracks:
     return replace(tracks, sights=sights)
 
 
-def note_found(tracks: Tracks, experience: Experience) -> Tracks:
+def note_found(tracks: Tracks, experience: Experience) -> None:
     """Learn which of tracks that are detected now had vanished in plain sight."""
     vanished = tracks.sights.absences.vanished
-    extents = tracks.drives.extents
-    rows = np.flatnonzero(vanished != NOWHERE)
-    if not len(rows):
-        return tracks
-    shortened = extents.shortened.copy()
-    for row in rows.tolist():
-        experience.reappearances.learn(int(vanished[row]), found=True)
-        if shortened[row] != NOWHERE:
-            experience.uncoverings.learn(int(shortened[row]), found=True)
-    shortened[rows] = NOWHERE
-    extents = replace(extents, shortened=shortened)
-    return replace(tracks, drives=replace(tracks.drives, extents=extents))
+    for place in vanished[vanished != NOWHERE].tolist():
+        experience.reappearances.learn(place, found=True)
 
 
 def drives(tracks: Tracks, step: Step, *, are_shapes: bool = False) -> Bools:

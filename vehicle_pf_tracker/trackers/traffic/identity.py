@@ -226,7 +226,8 @@ def resumed(tracks: Tracks, hidden: int, row: int, experience: Experience) -> Tr
     # 1. The absence is learnt from: what vanished here came back.
     at = np.array([hidden])
     new = tracks.take(np.array([row]))
-    old = note_found(tracks.take(at), experience)
+    old = tracks.take(at)
+    note_found(old, experience)
     # 2. Number, given or not, and growth are the old ones; classes are voted by both.
     votes = added_votes(old.names.votes[0], new.names.votes[0])
     names = replace(old.names, joined=new.names.serial, votes=objects([votes]))
@@ -236,7 +237,6 @@ def resumed(tracks: Tracks, hidden: int, row: int, experience: Experience) -> Tr
         old.drives.extents,
         shown=new.drives.extents.shown,
         partial=new.drives.extents.partial,
-        short=new.drives.extents.short,
     )
     gaussians = new.drives.gaussians
     before = new.drives.before

@@ -139,8 +139,7 @@ def _take(look: Look, pairs: Pairs) -> Look:
     # 1. Divide before correcting: a box of two vehicles would else take the detection of one for a
     # part of itself, and stay too large.
     tracks = replace(tracks, drives=divided(tracks.drives, edges, candidates.edges))
-    uncoverings = state.experience.uncoverings
-    tracks, whole = correct(tracks, edges, step.size, step.edge_noise, uncoverings)
+    tracks, whole = correct(tracks, edges, step.size, step.edge_noise)
     # 2. Learn appearance and growth only from what is seen whole: a covered vehicle has the colours
     # of its occluder, and a width that says nothing about the road.
     tracks = _shown(tracks, candidates, columns, whole, step)

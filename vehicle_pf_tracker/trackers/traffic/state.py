@@ -44,8 +44,8 @@ class Experience:
     ----------
     detections : DetectionEvidence
         Outcomes of detections, by their scores and places.
-    reappearances, uncoverings : Returns
-        Shares of the vehicles, and of parts of vehicles, that vanished in plain sight and returned.
+    reappearances : Returns
+        Share of the vehicles that vanished in plain sight and returned.
     rate : DetectionRate
         Share of the vehicles in plain sight that the detector finds.
     speeds : Speeds
@@ -54,7 +54,6 @@ class Experience:
 
     detections: DetectionEvidence = field(default_factory=DetectionEvidence)
     reappearances: Returns = field(default_factory=Returns)
-    uncoverings: Returns = field(default_factory=Returns)
     rate: DetectionRate = field(default_factory=DetectionRate)
     speeds: Speeds = field(default_factory=Speeds)
 

@@ -78,11 +78,8 @@ class Extents(Rows):
     ----------
     shown : (N, 2) array
         Largest width and height of its latest detections, fractions of the state's.
-    partial, short : (N,) arrays
-        Number of its latest detections in a row that showed only a part of it, and that were
-        smaller than earlier ones.
-    shortened : (N,) array
-        Place where several in a row were smaller, until it is known whether the rest comes back.
+    partial : (N,) array
+        Number of its latest detections in a row that showed only a part of it.
     crowded : (N,) array
         Number of its latest detections in a row that had another one beside them in its box.
     enclosed : (N,) array
@@ -91,8 +88,6 @@ class Extents(Rows):
 
     shown: Array
     partial: Integers
-    short: Integers
-    shortened: Integers
     crowded: Integers
     enclosed: Integers
 
@@ -259,7 +254,7 @@ class Tracks(Rows):
         zero = np.zeros(count)
         no = np.zeros(count, np.bool_)
         edges = np.zeros((count, 4))
-        extents = Extents(np.zeros((count, 2)), numbers, numbers, none, numbers, numbers)
+        extents = Extents(np.zeros((count, 2)), numbers, numbers, numbers)
         # Similar and in sight until something shows the opposite: ones, not zeros.
         looks = Looks(
             np.zeros((count, COLOUR_BINS)), np.ones(count), detections, np.full(count, np.nan)
