@@ -313,6 +313,28 @@ def test_what_pixels_hold_on_empty_road_at_the_border_is_soon_lost():
     assert TrackMode.TRACKING not in modes[90]
 
 
+@pytest.mark.parametrize(
+    ("unseen", "has_driven", "are_shapes", "is_known"),
+    [
+        (100.0, True, False, True),  # behind a bridge, say
+        (200.0, True, False, False),  # for longer than a LOST vehicle is kept in mind
+        (0.0, True, False, False),  # held by pixels where the detector sees none
+        (100.0, False, False, False),
+        (100.0, True, True, False),
+    ],
+)
+def test_misses_refute_no_vehicle_that_has_driven_and_is_hidden(
+    unseen, has_driven, are_shapes, is_known
+):
+    experience = Experience()
+    experience.detections.look(are_shapes=are_shapes)
+    facts = {"confirmed": True, "has_driven": has_driven, "unseen": unseen, "undetected": 100.0}
+    state = end(State(track(1, 100.0, **facts, log_odds=-20.0), experience), STEP)
+    assert bool(len(state.tracks)) is is_known
+    if is_known:
+        assert state.tracks.sights.absences.lost[0]
+
+
 def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
     assert min(missed([200.0, 200.0])) > 0
 

@@ -72,7 +72,11 @@ def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) 
     parameters = step.parameters
     waits = absences.passed <= _PATIENCE / experience.rate.share
     tentative = waits & (log_odds >= -CERTAIN_LOG_ODDS) & (inside > 0)  # no memory of one that left
-    known = (inside >= _LEFT) & (log_odds >= _REFUTED)
+    # Misses refute no vehicle that has driven and is seen by nothing: what hides it may be unknown,
+    # as a bridge is. Shapes are refuted even so, as many were pieces.
+    hidden = tracks.beliefs.has_driven & ~absences.seen
+    hidden &= not experience.detections.are_shapes
+    known = (inside >= _LEFT) & (hidden | (log_odds >= _REFUTED))
     longest = parameters.lost_after + parameters.forgotten_after  # predicted, then kept in mind
     remembered = absences.unseen * step.period <= longest
     return remembered & np.where(tracks.confirmed, known, tentative)
