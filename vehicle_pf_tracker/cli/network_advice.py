@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a summary says where motion joins vehicles in blobs, and the line to type for a network."""
+"""Advice to use a network where motion joins vehicles in blobs."""
 
 from __future__ import annotations
 

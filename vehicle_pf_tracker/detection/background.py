@@ -11,7 +11,6 @@ until it has stayed for long: a lorry of one colour hides a place for seconds, a
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import cv2
@@ -19,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.detection.exposure import Curves, exposure_change
-from vehicle_pf_tracker.detection.holes import is_hole
+from vehicle_pf_tracker.detection.holes import Section, is_hole, standing_parts
 from vehicle_pf_tracker.detection.motion_thresholds import MotionThresholds
 
 Colours = npt.NDArray[np.uint8]
@@ -27,8 +26,6 @@ Planes = npt.NDArray[np.uint8]
 """Channels of an image, one below the other: sums over them are ten times as fast."""
 Pixels = npt.NDArray[np.bool_]
 Mask = npt.NDArray[np.uint8]
-Section = tuple[slice, slice]
-"""Rows and columns of an image."""
 
 _SAMPLES = 10
 """Colours that are remembered of each pixel. A choice: time and memory grow with them, and what
@@ -75,8 +72,6 @@ _STANDS = 0.2
 fast edges are blurred."""
 _AGAIN = 0.5
 """Share of a hole that the search before has found to be one, too: most of it."""
-_LEAST_HOLE = 20
-"""Least area of a hole, px: a smaller outline has as many edges by noise."""
 _AROUND = np.ones((7, 7), np.uint8)
 """Surroundings of a change that are not learnt either: the rim of a vehicle that is not told from
 the road would be given on to its neighbours, and eat into it."""
@@ -194,7 +189,7 @@ class Background:
         """
         suspected = np.zeros(changed.shape, np.uint8)
         found = np.zeros(changed.shape, np.uint8)
-        for section, part in _standing(changed, self._exposure, _STANDS / period):
+        for section, part in standing_parts(changed, self._exposure, _STANDS / period):
             if not is_hole(image[section][..., 1], self._green(section), part):
                 continue
             suspected[section] |= part
@@ -306,28 +301,6 @@ def _sum(planes: npt.NDArray[Any]) -> npt.NDArray[Any]:
     second = planes[height : 2 * height]
     third = planes[2 * height :]
     return np.asarray(cv2.add(cv2.add(first, second), third), planes.dtype)
-
-
-def _standing(
-    changed: Mask, exposure: npt.NDArray[np.float32], least: float
-) -> Iterator[tuple[Section, Mask]]:
-    """Find parts of a change that have been there for `least` images: sections, and their pixels.
-
-    Of what the border cuts half an outline tells nothing, and it is left out.
-    """
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(changed)
-    height, width = changed.shape
-    for index in range(1, count):
-        x, y, across, down, area = stats[index].tolist()
-        is_free = x > 0 and y > 0 and x + across < width and y + down < height
-        if area < _LEAST_HOLE or not is_free:
-            continue
-        # With its surroundings, in which are edges of the outline.
-        rows = slice(max(y - 2, 0), min(y + down + 2, height))
-        section = (rows, slice(max(x - 2, 0), min(x + across + 2, width)))
-        part = (labels[section] == index).view(np.uint8)
-        if cv2.mean(exposure[section], part)[0] >= least:
-            yield section, part
 
 
 def _sparse(planes: Planes) -> npt.NDArray[np.float64]:

@@ -34,10 +34,12 @@ _SPREAD = 0.07
 whole's size, up to which they are one body: .06 of a real lorry and its cab. Another vehicle that
 drives through the box at constant speed spreads over 1 / sqrt(12) of its way in it, so that this
 one has the same speed up to a quarter."""
-SHORT_DRIVE, LONG_DRIVE = 0.4, 1.0
-"""Way, of the whole's size, from which on that is told of a track without a number, as it is asked
-of a drive (`birth.displacement`), and from which on two numbers become one: a choice, as the second
-takes a number away."""
+SHORT_DRIVE = 0.4
+"""Way, of the whole's size, that shows a track without a number to be part of a vehicle: that of a
+drive (`birth.displacement`)."""
+LONG_DRIVE = 1.0
+"""Way, of the whole's size, after which two numbers become one: a choice, longer than the other as
+it takes a number away."""
 
 
 class Together(NamedTuple):
@@ -123,7 +125,8 @@ def _added(
     before: Together | None, small: list[float], large: list[float], share: float
 ) -> Together:
     """Add an image with these edges of both, and this share of the smaller one in the other."""
-    width, height = large[2] - large[0], large[3] - large[1]
+    width = large[2] - large[0]
+    height = large[3] - large[1]
     centre = (large[0] + large[2]) / 2, (large[1] + large[3]) / 2
     across = ((small[0] + small[2]) / 2 - centre[0]) / width
     down = ((small[1] + small[3]) / 2 - centre[1]) / height
