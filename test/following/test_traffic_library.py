@@ -264,7 +264,7 @@ numbers, classes = tracked.tracker_id.tolist(), tracked.class_id.tolist()
 print(numbers, sorted(classes), sorted(tracked.data["class_name"].tolist()))
 print(type(tracked) is sv.Detections, len(tracked[tracked.data["mode"] == "TRACKING"]))
 print(tracked.xyxy.round().astype(int).tolist())
-empty = tracker.update_with_detections(frame[:, :, ::-1], sv.Detections.empty())
+empty = tracker.update_with_detections(frame, sv.Detections.empty())
 print(len(empty), sv.VideoInfo.from_video_path("seen.mp4").total_frames)
 """
 
@@ -334,6 +334,23 @@ def test_corners_taken_for_sizes_are_warned_of_once():
         tracker.update(frame, [[60, 50, 120, 90]])
         TrafficTracker(25.0).update(frame, [[150, 50, 30, 20]])  # a vehicle that drives in
         TrafficTracker(25.0).update(frame, [[60, 50, 120, 90]], format="xyxy")
+
+
+def test_one_of_several_corners_beyond_the_image_is_enough():
+    frame = np.zeros((120, 160, 3), np.uint8)
+    corners = [[10, 10, 50, 40], [90, 60, 130, 90]]  # as sizes the second one ends at x = 220
+    tracker = TrafficTracker(25.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        tracker.update(frame, corners)
+        tracker.update(frame, corners)  # of four boxes only
+    with pytest.warns(UserWarning, match="3 of 6 boxes reach beyond"):
+        tracker.update(frame, corners)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        true = TrafficTracker(25.0)
+        for _ in range(10):  # one drives in from the right, none could be two corners
+            true.update(frame, [[60, 30, 40, 30], [140, 60, 40, 30]])
 
 
 def test_images_of_opencv_are_said_once():

@@ -24,7 +24,7 @@ from vehicle_pf_tracker.detection.parameters import MODEL_DETECTOR
 from vehicle_pf_tracker.following.counted_vehicles import CountedVehicles, session_and_counter
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.table import unknown_name
-from vehicle_pf_tracker.recordings.box_sizes import misfit
+from vehicle_pf_tracker.recordings.box_sizes import MOST_BEYOND, misfit
 from vehicle_pf_tracker.recordings.footage import check_fps
 from vehicle_pf_tracker.results.traffic_results import mot_numbers
 from vehicle_pf_tracker.trackers.image_stream import checked_stamp
@@ -45,13 +45,16 @@ _CXCYWH = "cxcywh"
 """Form of a box: centre, width, height."""
 _JUDGED = 50
 """Boxes by which their form is judged, a choice: some images, in which not all vehicles leave."""
+_ENOUGH = 5
+"""Boxes, all of which could be two corners, of which one beyond the image is enough to warn. A
+choice: as sizes, all are of vehicles in the upper left corner, wider than their way to it."""
 
 
 class TrafficTracker(CountedVehicles):
     """Follow and count every vehicle of a stream of RGB images, or of BGR with ``colour="bgr"``.
 
-    It can be copied and pickled, as for a pool of processes or a checkpoint: the copy goes on with
-    the same numbers.
+    It can be deep-copied and pickled, as for a pool of processes or a checkpoint: the copy goes on
+    with the same numbers.
 
     Parameters
     ----------
@@ -123,7 +126,7 @@ class TrafficTracker(CountedVehicles):
             the tracker looks for vehicles itself.
         scores : array-like, shape (N,), optional
             Their scores: between 0 and 1 the probability of a vehicle, by which one that stands is
-            reported, too; of another scale only their order counts. None: all alike.
+            reported, too; of another scale only their order counts. None: all alike, once driving.
         labels : sequence of str, optional
             Their classes.
         format : str
@@ -168,9 +171,10 @@ class TrafficTracker(CountedVehicles):
             return
         # Gathered over images: a few boxes of one image may fit either form.
         self._boxes = np.concatenate([self._boxes, boxes])
-        doubt = misfit(self._boxes, size)
         # A vehicle that drives in from the right reaches beyond the image, too, but not as corners.
         are_corners = (self._boxes[:, 2:] > self._boxes[:, :2]).all(axis=1)
+        is_likely = are_corners.all() and len(self._boxes) >= _ENOUGH
+        doubt = misfit(self._boxes, size, 0.0 if is_likely else MOST_BEYOND)
         if doubt is not None and (doubt.is_fatal or 2 * are_corners.sum() > len(self._boxes)):
             self._is_warned = True
             warnings.warn(f"{doubt.sentence} (format=)", stacklevel=3)
@@ -217,7 +221,7 @@ class TrafficTracker(CountedVehicles):
         Parameters
         ----------
         frame : Frame
-            RGB image.
+            Image, as for `update`.
         rows : array-like, shape (N, 6 or more)
             Detections of this image: frame, id (neither is used), left, top, width, height, and a
             score if there is one.

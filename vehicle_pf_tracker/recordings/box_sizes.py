@@ -11,7 +11,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 
-_MOST = 0.5
+MOST_BEYOND = 0.5
 """Fraction of the boxes that reach beyond the image above which a notice is given: of vehicles that
 drive out of it, a few boxes do."""
 _REACH_PX = 1.0
@@ -34,7 +34,7 @@ class Misfit:
     is_fatal: bool
 
 
-def misfit(boxes: Array, size: tuple[int, int]) -> Misfit | None:
+def misfit(boxes: Array, size: tuple[int, int], most_beyond: float = MOST_BEYOND) -> Misfit | None:
     """Return why boxes do not fit images of a size; None where they do.
 
     Parameters
@@ -43,6 +43,8 @@ def misfit(boxes: Array, size: tuple[int, int]) -> Misfit | None:
         Left, top, width and height, px; at least one.
     size : (int, int)
         Width and height of the images, px.
+    most_beyond : float
+        Fraction of the boxes that may reach beyond the image.
     """
     count = len(boxes)
     if not count:
@@ -60,7 +62,7 @@ def misfit(boxes: Array, size: tuple[int, int]) -> Misfit | None:
     if not ((boxes[:, :2] < size) & (ends > 0)).all(axis=1).any():
         return Misfit(f"no box lies in {image}; are they of another image size?", True)
     beyond = int((ends > np.add(size, _REACH_PX)).any(axis=1).sum())
-    if beyond > _MOST * count:
+    if beyond > most_beyond * count:
         return Misfit(
             f"{beyond} of {count} boxes reach beyond {image}; a box is left, top, width, height in "
             "px of this image, not two corners",
