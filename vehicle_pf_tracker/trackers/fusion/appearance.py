@@ -132,7 +132,8 @@ class View:
         column, row = (min(max(place, reach + 1), inner) for place in self.place(position))
         near = self.response[row - reach : row + reach + 1, column - reach : column + reach + 1]
         dy, dx = divmod(int(near.argmax()), 2 * reach + 1)
-        y, x = row - reach + dy, column - reach + dx
+        x = column - reach + dx
+        y = row - reach + dy
         (_, above, _), (left, top, right), (_, below, _) = self.response[
             y - 1 : y + 2, x - 1 : x + 2
         ].tolist()

@@ -24,10 +24,11 @@ from vehicle_pf_tracker.trackers.fusion.perspective import KEPT_FRAMES, Perspect
 _SPEEDS = 0.4, 1.6
 """Bounds of the speed of what comes out, fractions of the vehicle's before: it may brake to less
 than half or accelerate by half while hidden; a stranger of any other speed is excluded."""
-_LEAST_AREA, _LARGEST_AREA = 0.2, 2.0
-"""Bounds of the area of its bounding box, fractions of the vehicle's. End on, a car has half of the
-area that it has from aside, and twice as much the other way round; a part of it may still be
-hidden."""
+_LEAST_AREA = 0.2
+"""Least area of its bounding box, fraction of the vehicle's: end on, a car has half of the area
+that it has from aside, and a part of it may still be hidden."""
+_LARGEST_AREA = 2.0
+"""Largest such area: from aside, a car has twice the area that it has end on."""
 _LEAST_MOVING = 0.03
 """Least area of something that moves, fraction of the vehicle's: less flickers, by the noise of the
 camera. Of a vehicle of 30 x 30 px that is 27 px squared."""

@@ -59,14 +59,17 @@ long as a vehicle waits behind a hedge."""
 _TURNING_STIFFNESS = 0.5
 """Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
 turn by 90 degrees nothing that was learnt before stays right (scene `turn`, seed 100)."""
-_LEAST_LEVEL, _TURNING_LEVEL_RATE = 0.3, 0.3
-"""Least response that the usual one follows in a turn, below which the filter may answer to the
-road; and its rate per frame: a new level in 3 frames."""
-_TURNING_SHARE, _TURNING_RESPONSE = 0.85, 0.7
-"""Share of the surface above which, and response below which, a visible vehicle turns. The filter
-then learns faster the lower the response. With the survival of points in place of the share, 57 of
-81 occlusions are recovered instead of 62; from a response of .85 down, turns gain nothing
-(laboratory/notes/fusion_tried.md)."""
+_LEAST_LEVEL = 0.3
+"""Least response that the usual one follows in a turn: below it the filter may answer to the
+road."""
+_TURNING_LEVEL_RATE = 0.3
+"""Rate per frame at which the usual response follows that in a turn: a new level in 3 frames."""
+_TURNING_SHARE = 0.85
+"""Share of the surface above which a visible vehicle may turn. With the survival of points in its
+place, 57 of 81 occlusions are recovered instead of 62 (laboratory/notes/fusion_tried.md)."""
+_TURNING_RESPONSE = 0.7
+"""Response below which such a vehicle turns: the filter then learns faster the lower it is. From
+.85 down, turns gain nothing (laboratory/notes/fusion_tried.md)."""
 _LEAST_STIFFNESS = 0.2
 """Least stiffness in such a turn, fraction of the usual one, however low the response. A choice:
 twice that of a turn that an outline proves (a tenth), since flow alone proves less."""

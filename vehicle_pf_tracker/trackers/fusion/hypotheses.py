@@ -51,10 +51,12 @@ _SPEED_SIGMA = 0.05
 """Spread of the predicted velocities, of the speed; about the error of the fit."""
 _GROWTH_SIGMA = 0.004
 """Spread of the predicted rates of growth per frame; a step of the fit's grid is 0.0025."""
-HIDING, RETURN = 0.02, 0.05
-"""Probabilities per frame that a visible vehicle is hidden, and that a hidden one is visible: an
-occlusion lasts 20 frames in the mean (13 of the ten total ones in 27 sequences). One begins every
-50 frames, a choice: in traffic vehicles are visible for most of the time."""
+HIDING = 0.02
+"""Probability per frame that a visible vehicle is hidden: an occlusion begins every 50 frames, a
+choice, as in traffic vehicles are visible for most of the time."""
+RETURN = 0.05
+"""Probability per frame that a hidden vehicle is visible: an occlusion lasts 20 frames in the mean
+(13 of the ten total ones in 27 sequences)."""
 
 
 def chain(elapsed: float) -> tuple[float, float]:

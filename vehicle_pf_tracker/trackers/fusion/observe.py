@@ -55,13 +55,16 @@ _WIDE_FROM = 0.5
 _SAME_VEHICLE = 0.5
 """Distance in sizes from the best hypothesis within which others are of the same vehicle: centres
 of two vehicles are farther apart than half of one."""
-CLIMB_FREELY, CLIMB_ON_PATH, STAY = (5, 3.0), (3, 1.0), (0, 1.0)
+CLIMB_FREELY = (5, 3.0)
 """Places of the response to each side within which a hypothesis is moved to a better one, and
-standard deviation that a move is paid for with. Where the path is known better than the place it
-has to keep to it: while hidden, else all would gather at clutter. A measured first motion is kept
-to exactly: a standing part of the first box answers better than the vehicle, and the filter cannot
-tell which of them it was shown. The reaches are choices of up to a quarter of the
-target's side."""
+standard deviation that a move is paid for with. The reach is a choice, a quarter of the target's
+side."""
+CLIMB_ON_PATH = (3, 1.0)
+"""The same while hidden, where the path is known better than the place: all would else gather at
+clutter. The reach is a choice."""
+STAY = (0, 1.0)
+"""The same where a first motion was measured, which is kept to exactly: a standing part of the
+first box answers better than the vehicle, and the filter cannot tell which of them it was shown."""
 
 
 def predict(state: State, step: Step) -> tuple[State, Prediction]:

@@ -20,9 +20,11 @@ _PAINTED = 0.6
 its area is a third of the box's."""
 _PAINT_SIDE = 8
 """Side in px that it is resampled to: the median of 64 px tolerates 31 of windows and lamps."""
-_OTHER_CHROMA, _OTHER_LIGHTNESS = 9.0, 18.0
-"""Differences of paint, in units of Lab, above which two vehicles are not the same. Over each of 25
-sequences a tenth of the differences is larger; of those between sequences two thirds are."""
+_OTHER_CHROMA = 9.0
+"""Difference in Lab's a and b above which two paints are not the same. Over each of 25 sequences a
+tenth of the differences is larger; of those between sequences two thirds are."""
+_OTHER_LIGHTNESS = 18.0
+"""The same of Lab's L."""
 _SHADED = 2.0
 """Factor of `_OTHER_LIGHTNESS` for single spots: sides of one vehicle differ more than medians. Two
 is a choice; chroma alone has to tell the rest."""

@@ -34,10 +34,12 @@ and 37 of 105 before moving cameras: laboratory/notes/fusion_tried.md)."""
 _MEMORY = 10.0
 """Frames after which an older position counts for 1 / e: a vehicle changes its speed. All sizes
 that are kept count alike, as the road stays what it is."""
-_POSITION_SIGMA, _SIZE_SIGMA = 0.03, 0.04
-"""Standard deviations of a sighting's position, fraction of the size, and of its log size. With
-positions believed a third as much, or sizes alone, as many walls are recovered (83 of 126 each:
-laboratory/notes/fusion_tried.md)."""
+_POSITION_SIGMA = 0.03
+"""Standard deviation of a sighting's position, fraction of the size. With positions believed a
+third as much, as many walls are recovered (83 of 126: laboratory/notes/fusion_tried.md)."""
+_SIZE_SIGMA = 0.04
+"""Standard deviation of a sighting's log size. By sizes alone, as many walls are recovered (83 of
+126: laboratory/notes/fusion_tried.md)."""
 _RATE_SIGMA = 0.02
 """Standard deviation of rates of approach, per frame: half of the largest tried. A prior half as
 wide predicts sizes no better (log error .161 and .162: laboratory/notes/fusion_tried.md)."""

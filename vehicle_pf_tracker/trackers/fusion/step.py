@@ -22,9 +22,11 @@ from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
 from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
 
-_LEAST_SIDE, _LARGEST_SIDE = 3.0, 1.5
-"""Least side of a box, px: less has no gradient inside. Largest side, as a multiple of the image's
-longer one: a vehicle that passes the camera is partly outside before it fills the image."""
+_LEAST_SIDE = 3.0
+"""Least side of a box, px: less has no gradient inside."""
+_LARGEST_SIDE = 1.5
+"""Largest side of a box, as a multiple of the image's longer one: a vehicle that passes the camera
+is partly outside before it fills the image."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

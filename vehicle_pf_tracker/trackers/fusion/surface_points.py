@@ -28,9 +28,11 @@ _GRID = 8
 _GRID_REACH = 0.4
 """Distance of the outermost points from the centre, fraction of the size. Their windows end at the
 box: half of one is a tenth of the canonical size, and the background is beyond."""
-_RENEWED_AFTER, _OLDEST = 5, 10
-"""Age in frames of points that are replaced, and the same where a part of the vehicle is hidden:
-points drift off their spots as they age, new ones may lie on the occluder. Both are choices."""
+_RENEWED_AFTER = 5
+"""Age in frames of points that are replaced: they drift off their spots as they age. A choice."""
+_OLDEST = 10
+"""The same where a part of the vehicle is hidden, as new points may lie on the occluder. A
+choice."""
 _STRAYED = 0.2
 """A point farther than this (fraction of the box size) from its predicted position in the box has
 left the vehicle; the prediction turns with the other points. That is 8 canonical px, a choice far
@@ -144,7 +146,8 @@ class SurfacePoints(NamedTuple):
         # Copied: the state of the frame before shares the arrays.
         positions = positions.copy()
         living = alive.copy()
-        positions[alive], living[alive] = after, found
+        positions[alive] = after
+        living[alive] = found
         living = box_motion.staying(places, (positions - position) / size, living, _STRAYED)
         return SurfacePoints(self.previous, _Points(places, positions, living, age + 1), stretch)
 

@@ -51,10 +51,12 @@ _OTHER_PAINT = 1.0
 _LARGEST_LOG_CHANGE = np.log(1.3)
 """Largest change of a side's logarithm in a frame; a merged outline changes by more. A choice:
 twice that of vehicles that pass a camera at 10 images a second (`box_motion.LARGEST_STRETCH`)."""
-_LEAST_COVERED, _MOST_COVERED = 0.6, 2.0
-"""Bounds of the area of the outline in the last clear sighting, of the box. The box holds some
-road, and the outline the shadow; beyond, parts are missing or another vehicle has merged. Both are
-choices: a shadow may be as large as the vehicle."""
+_LEAST_COVERED = 0.6
+"""Least area of the outline in the last clear sighting, of the box, which holds some road: below,
+parts of the vehicle are missing. A choice."""
+_MOST_COVERED = 2.0
+"""Largest such area: beyond, another vehicle has merged. A choice: a shadow may be as large as the
+vehicle."""
 _FURTHEST = 40.0
 """Frames after the last clear sighting within which a turn is proven, and its outline has to keep
 its shape: a turn by 90 degrees takes 20 (scene `turn`), and leaves the path in its first half."""
@@ -168,7 +170,8 @@ class Branch(NamedTuple):
     def box(self) -> tuple[Array, Array]:
         """Centre and size, px, of the box that the outline belongs to."""
         # Each side has its own margin: a shadow is on one side of the vehicle.
-        low, high = self.outline.low - self.margins[0], self.outline.high - self.margins[1]
+        low = self.outline.low - self.margins[0]
+        high = self.outline.high - self.margins[1]
         # An outline may have become smaller than its margins were.
         return (low + high) / 2, np.maximum(high - low, 1.0)
 
