@@ -121,7 +121,8 @@ class Background:
     def _unlike(self, planes: Planes) -> Pixels:
         """Mark the pixels whose colour too few samples have."""
         limit = self._thresholds.colour_threshold
-        height, width = len(planes) // 3, planes.shape[1]
+        height = len(planes) // 3
+        width = planes.shape[1]
         # Two rounds: few samples of all pixels, and the others of the few that are still in doubt.
         agreeing = np.zeros((height, width), np.uint8)
         for sample in self._samples[:_LOOKED_AT]:
@@ -319,7 +320,8 @@ def _give(planes: Planes, chosen: Pixels, sample: Planes, offset: tuple[int, int
     # Views shifted against each other: the neighbour's old colour is overwritten without a loop.
     dy, dx = offset
     height, width = chosen.shape
-    rows, columns = slice(max(-dy, 0), height - max(dy, 0)), slice(max(-dx, 0), width - max(dx, 0))
+    rows = slice(max(-dy, 0), height - max(dy, 0))
+    columns = slice(max(-dx, 0), width - max(dx, 0))
     mask = chosen[rows, columns].astype(np.uint8)
     for new, old in zip(np.split(planes, 3), np.split(sample, 3), strict=True):
         part = old[max(dy, 0) : height - max(-dy, 0), max(dx, 0) : width - max(-dx, 0)]

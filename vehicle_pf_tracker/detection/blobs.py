@@ -31,17 +31,23 @@ _LEAST_AREA = 0.0003
 """Smallest area of a vehicle, of the image, a choice: 23 px in 320 x 240, about five by five."""
 _LEAST_PIECE = 4
 """Smallest area in px of a piece of a vehicle: two by two, fewer have no shape."""
-_USUAL_FULLNESS, _ASPECT_SPREAD = 0.8, 0.3
-"""Usual share of a vehicle's box to start from, learnt soon; standard deviation of the aspect's
-logarithm. A choice: front and side of a car, .8 and .5, are one and a half apart."""
+_USUAL_FULLNESS = 0.8
+"""Share of its box that a vehicle usually fills, to start from. A choice: it is learnt soon."""
+_ASPECT_SPREAD = 0.3
+"""Standard deviation of the logarithm of height over width. A choice: front and side of a car, .8
+and .5, are one and a half apart."""
 _FROM_AHEAD = 0.8
 """Usual height over width, to start from, of vehicles that drive towards or away from the camera:
 that of cars from the front."""
-_FROM_THE_SIDE, _ACROSS = 0.5, 6
-"""Usual height over width, to start from, of vehicles that drive across the image; and power of the
-share of their motion across by which they are: of 76 clips, only a steep one fits."""
+_FROM_THE_SIDE = 0.5
+"""Usual height over width, to start from, of vehicles that drive across the image: that of cars
+from the side."""
+_ACROSS = 6
+"""Power of the share of their motion across by which they are seen from the side: of 76 clips only
+a steep one fits."""
 _FULLNESS_SPREAD = 0.2
-"""Standard deviation of the logarithm of this share. A choice: cars are alike within a fifth."""
+"""Standard deviation of the logarithm of the share of its box that a vehicle fills. A choice: cars
+are alike within a fifth."""
 _MEMBER = 0.5
 """Share of a predicted vehicle inside a blob's box above which the blob is of it: most of it."""
 _LEAST_PART = 0.15
@@ -242,10 +248,12 @@ def _cut(part: Mask, axis: int) -> list[tuple[Mask, int, int]]:
     """
     lines = np.ascontiguousarray(part if axis == 0 else part.T).view(np.bool_)
     count, length = lines.shape
-    low, high = lines.argmax(axis=1), length - lines[:, ::-1].argmax(axis=1)
+    low = lines.argmax(axis=1)
+    high = length - lines[:, ::-1].argmax(axis=1)
     # A row without pixels extends nothing.
     empty = ~lines[np.arange(count), low]
-    low[empty], high[empty] = length, 0  # neutral in minima and maxima
+    low[empty] = length  # neutral in minima, and 0 in maxima
+    high[empty] = 0
     before = np.maximum.accumulate(high) - np.minimum.accumulate(low)
     behind = (np.maximum.accumulate(high[::-1]) - np.minimum.accumulate(low[::-1]))[::-1]
     counts = np.arange(1, count)  # with the widths above, areas of the boxes

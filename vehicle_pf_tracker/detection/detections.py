@@ -95,7 +95,8 @@ class Detections:
         boxes = self.boxes
         scores = self.scores
         with np.errstate(invalid="ignore", over="ignore"):
-            right, bottom = boxes[:, 0] + boxes[:, 2], boxes[:, 1] + boxes[:, 3]
+            right = boxes[:, 0] + boxes[:, 2]
+            bottom = boxes[:, 1] + boxes[:, 3]
             good = np.isfinite(boxes).all(axis=1) & np.isfinite(scores)
             good &= (boxes[:, 2] >= 1) & (boxes[:, 3] >= 1)
             good &= boxes[:, 2] <= LARGEST_SHARE * width

@@ -27,7 +27,9 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.errors import InputError
 
-YOLOX, YOLOV8, SSD = "YOLOX", "YOLOv8", "SSD"
+YOLOX = "YOLOX"
+YOLOV8 = "YOLOv8"
+SSD = "SSD"
 
 _STRIDES = ((8, 16, 32), (8, 16, 32, 64))
 """Sizes of cells in px of the networks in the table above: those of their usual exports."""

@@ -10,7 +10,10 @@ from dataclasses import dataclass
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.parameters.table import parameter
 
-MOTION_DETECTOR, MODEL_DETECTOR, TOPIC_DETECTOR, NO_DETECTOR = "motion", "model", "topic", "none"
+MOTION_DETECTOR = "motion"
+MODEL_DETECTOR = "model"
+TOPIC_DETECTOR = "topic"
+NO_DETECTOR = "none"
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,10 +17,13 @@ from vehicle_pf_tracker.image.motion.shared_motion import shared_similarity
 
 Image: TypeAlias = npt.NDArray[np.uint8]
 
-_CORNERS, _QUALITY, _APART = 120, 0.01, 10
-"""Most corners that are followed, their least strength, of the strongest one's, and their least
-distance in px: of thirty that are hidden by vehicles, ninety are left. With 60 F falls from 34 to
-32."""
+_CORNERS = 120
+"""Most corners that are followed: of thirty that are hidden by vehicles, ninety are left. With 60 F
+falls from 34 to 32."""
+_QUALITY = 0.01
+"""Least strength of a corner, of the strongest one's. A choice: the number bounds them first."""
+_APART = 10
+"""Least distance between two corners, px. A choice: they spread over the image."""
 _STEADY_AFTER = 30
 """Images without a shake after which a camera is taken to be steady: one second of 30 Hz. The first
 shake after it is seen up to `_CHECKED_EVERY` images late."""

@@ -49,7 +49,8 @@ class UsualSize:
         self._count = 0
         self._slopes: list[float] = []
         self._is_settled = False
-        self._smallest, self._largest = math.inf, 0.0
+        self._smallest = math.inf
+        self._largest = 0.0
 
     @property
     def is_roughly_known(self) -> bool:

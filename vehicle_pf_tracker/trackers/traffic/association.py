@@ -35,9 +35,11 @@ from vehicle_pf_tracker.trackers.traffic.vehicle_state import PIXEL_NOISE
 GATE = 30.0
 """Largest cost of a pair: more than 23.5, the 0.9999 quantile of chi-squared with four degrees of
 freedom, since the noise of edges is an estimate."""
-_PARTIAL, _MISSING = 3.0, 12.0
-"""Cost of taking a detection for a part of the vehicle, and of all of it that it lacks. At 0 and 15
-IDF1 by motion behind the bridge falls by four: pieces of blobs are taken for the vehicle."""
+_PARTIAL = 3.0
+"""Cost of taking a detection for a part of the vehicle. At 0, and 15 for what it lacks, IDF1 by
+motion behind the bridge falls by four: pieces of blobs are taken for the vehicle."""
+_MISSING = 12.0
+"""Cost of all of the vehicle that a part lacks; tried with the one above."""
 _LEAST_PART = 0.15
 """Smallest share of a vehicle that is seen as a part of it. At a tenth IDF1 of YOLOX behind the
 bridge falls by six."""

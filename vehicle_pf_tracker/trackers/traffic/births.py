@@ -135,5 +135,7 @@ def _complete(
     # anchors it.
     at_low = (side < usual) & cut[:, low]
     at_high = (side < usual) & ~cut[:, low] & cut[:, high]
-    edges[at_low, low], spread[at_low, low] = (edges[:, high] - usual)[at_low], known[at_low]
-    edges[at_high, high], spread[at_high, high] = (edges[:, low] + usual)[at_high], known[at_high]
+    edges[at_low, low] = (edges[:, high] - usual)[at_low]
+    spread[at_low, low] = known[at_low]
+    edges[at_high, high] = (edges[:, low] + usual)[at_high]
+    spread[at_high, high] = known[at_high]

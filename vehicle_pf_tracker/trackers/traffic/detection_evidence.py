@@ -34,10 +34,12 @@ PLACE_COUNT = _GRID**2
 """Places of the image."""
 NOWHERE = -1
 """No place: an index that no place has."""
-_FALSE_ALARMS, _ASSUMED_FOR = 1.0, 30
-"""False alarms per image that are expected before any is seen, a choice: good detectors have fewer,
-poor ones more; and images, one second of 30 Hz, that this, and the mean of all places for the
-number of one, is worth."""
+_FALSE_ALARMS = 1.0
+"""False alarms per image that are expected before any is seen. A choice: good detectors have fewer,
+poor ones more."""
+_ASSUMED_FOR = 30
+"""Images, one second of 30 Hz, that this is worth, and the mean of all places for the number of
+one. A choice."""
 _CLUTTERED = 0.5
 """False alarms in a place from which it is said to be cluttered: one, halved once at most."""
 UNSAID = 0.5

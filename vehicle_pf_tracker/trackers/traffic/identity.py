@@ -82,7 +82,8 @@ def given(state: State) -> State:
     names = tracks.names
     log_odds = tracks.beliefs.log_odds.copy()
     by_hand = names.given.copy()
-    log_odds[row], by_hand[row] = CERTAIN_LOG_ODDS, True
+    log_odds[row] = CERTAIN_LOG_ODDS
+    by_hand[row] = True
     names = replace(names, given=by_hand)
     tracks = replace(tracks, names=names, beliefs=replace(tracks.beliefs, log_odds=log_odds))
     return state._replace(tracks=tracks, last_identity=identity)

@@ -99,7 +99,8 @@ def _give_known(look: Look, least: float) -> Look:
 def _give_new(look: Look) -> Look:
     """Give free detections to tracks that are not known yet to be vehicles."""
     state, free, candidates, step = look
-    rows, columns = np.flatnonzero(~state.tracks.confirmed), np.flatnonzero(free)
+    rows = np.flatnonzero(~state.tracks.confirmed)
+    columns = np.flatnonzero(free)
     pairs = pairs_of_new(state.tracks, rows, candidates, columns, step.size, step.edge_noise)
     return _take(look, pairs)
 

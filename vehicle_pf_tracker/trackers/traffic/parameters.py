@@ -43,7 +43,8 @@ class DetectionParameters:
     )  # fmt: skip
 
 
-REPORT_STANDING, IGNORE_STANDING = "report", "ignore"
+REPORT_STANDING = "report"
+IGNORE_STANDING = "ignore"
 
 
 @dataclass(frozen=True, slots=True)

@@ -89,7 +89,9 @@ def _filled(drives: Drives, rows: Integers, edges: Array) -> Drives:
     shown = extents.shown.copy()
     # The size is now all that is seen, so that no edge is taken for covered by what was a
     # neighbour.
-    crowded[rows], enclosed[rows], shown[rows] = 0, 0, 1.0
+    crowded[rows] = 0
+    enclosed[rows] = 0
+    shown[rows] = 1.0
     resized = drives.gaussians.take(rows).resized(edges)
     return replace(
         drives,

@@ -34,9 +34,10 @@ directions."""
 _OUTLIER = math.exp(-(_ASTRAY**2) / 2)
 """Likelihood of a point that went elsewhere, of that at the centre: as far as `_ASTRAY` both are
 alike, and farther the distance no longer counts."""
-_MOST_ALIVE, _MOST_AGREE = 0.5, 0.5
-"""Least share of the points found again that drive, and of these that agree with a box: most of
-them."""
+_MOST_ALIVE = 0.5
+"""Least share of the points found again that drive: most of them."""
+_MOST_AGREE = 0.5
+"""Least share of these that agree with a box: most of them."""
 _STANDS = 0.5
 """Share of the predicted way below which a point does not drive: nearer to standing than to
 driving."""
@@ -279,7 +280,8 @@ def _uncovered(points: Array, covers: Objects) -> Bools:
     shown = np.ones(points.shape[:2], np.bool_)
     for row, boxes in enumerate(covers.tolist()):
         if len(boxes):
-            x, y = points[row, :, :1], points[row, :, 1:]
+            x = points[row, :, :1]
+            y = points[row, :, 1:]
             inside = (x > boxes[:, 0]) & (x < boxes[:, 2]) & (y > boxes[:, 1]) & (y < boxes[:, 3])
             shown[row] = ~inside.any(axis=1)
     return shown

@@ -35,10 +35,12 @@ X, V, W, H, ACROSS, ALONG = range(6)
 _MOST_GROWTH = 2.0
 """Largest growth of a box from image to image, and largest fall. Beyond it the distance is down to
 the camera's own height, where the plane no longer describes what is seen."""
-_LEAST, _LARGEST = 1.0, 1e5
-"""Least distance from the horizon and least side, px; and largest of these, of places and of
-standard deviations, which bounds velocities in their units, too. No image has a third of it
-(`image.formats.encodings.LARGEST_SIDE_PX`), so that a vehicle there has left."""
+_LEAST = 1.0
+"""Least distance from the horizon, and least side, px: velocities are divided by both."""
+_LARGEST = 1e5
+"""Largest distance, side, place and standard deviation, px, which bounds velocities in their units,
+too. No image has a third of it (`image.formats.encodings.LARGEST_SIDE_PX`), so that a vehicle there
+has left."""
 _SIZE_WALK = 0.004
 """Change of a vehicle's shape as the camera sees it, of its size per nominal period: a vehicle that
 drives past is seen from behind and then from the side within some 5 s. It adds up to a twentieth in
@@ -153,7 +155,8 @@ class Gaussians(Rows):
         mean = columns((left + right) / 2, v, right - left, bottom - top, zero, zero)
         by_left, by_top, by_right, by_bottom = (deviations**2).T
         # Sides are differences of two independent edges, the centre is half of their sum.
-        width, height = by_left + by_right, by_top + by_bottom
+        width = by_left + by_right
+        height = by_top + by_bottom
         speed = (motion.top_speed * (right - left) / v) ** 2
         # A place on the road is (x / v, 1 / v): of the same length in m the second is shorter by
         # the focal length.
@@ -226,7 +229,8 @@ class Gaussians(Rows):
         # It is 0 where the vehicle passes the camera: bounded before it is divided by.
         divisor = 1 + v * along * elapsed
         bounded = np.minimum(np.maximum(divisor, 1 / _MOST_GROWTH), _MOST_GROWTH)
-        growth, free = 1 / bounded, bounded == divisor  # else the growth depends on nothing
+        growth = 1 / bounded
+        free = bounded == divisor  # else the growth depends on nothing
         by_v = free * -along * elapsed * growth**2
         by_along = free * -v * elapsed * growth**2
         # 2. Jacobian of this map, as in an extended Kalman filter.
@@ -239,8 +243,10 @@ class Gaussians(Rows):
         step[:, X, ALONG] = moved * by_along
         step[:, V, V] = growth + v * by_v
         step[:, V, ALONG] = v * by_along
-        step[:, W, V], step[:, W, ALONG] = w * by_v, w * by_along
-        step[:, H, V], step[:, H, ALONG] = h * by_v, h * by_along
+        step[:, W, V] = w * by_v
+        step[:, W, ALONG] = w * by_along
+        step[:, H, V] = h * by_v
+        step[:, H, ALONG] = h * by_along
         # 3. Mean by the map itself, covariance by its Jacobian.
         mean = columns(moved * growth, v * growth, w * growth, h * growth, across, along)
         covariance = _transformed(self.covariance, step)
@@ -257,7 +263,8 @@ class Gaussians(Rows):
         """Take another row (px) for the horizon; box and velocity of the lower edge stay."""
         if np.all(self.horizon == horizon):
             return self
-        x, v = self.mean[:, X], self.mean[:, V]
+        x = self.mean[:, X]
+        v = self.mean[:, V]
         new = np.maximum(v + self.horizon - horizon, _LEAST)
         # The edge's speed in px is v² along, so that along changes by the square; that across, v
         # across - x v along, fixes the other one.
@@ -319,7 +326,8 @@ def _along(values: Array, edge: Edge) -> Array:
 def _observed(covariances: Array) -> Array:
     """Product of `OBSERVATION` with covariances (N, 6, ...): (N, 4, ...)."""
     half = 0.5 * covariances[:, W]
-    left, right = covariances[:, X] - half, covariances[:, X] + half
+    left = covariances[:, X] - half
+    right = covariances[:, X] + half
     return np.stack([left, covariances[:, V] - covariances[:, H], right, covariances[:, V]], axis=1)
 
 
