@@ -77,7 +77,8 @@ def missed_at(
         return None
     # 3. Where a straight drive meets the endless line: beside the ends it is no crossing.
     share = begin / (begin - end)  # of a straight drive at the line, beyond 0 to 1 before or after
-    (x, y), (to_x, to_y) = first.point, last.point
+    x, y = first.point
+    to_x, to_y = last.point
     at = x + share * (to_x - x), y + share * (to_y - y)
     if not ((is_over or gap < _NEAR) and edge.has(at)):
         return None

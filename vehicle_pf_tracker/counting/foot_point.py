@@ -93,7 +93,8 @@ class FootPoint:
 
     def towards(self, other: FootPoint, share: float) -> FootPoint:
         """Return the point that lies `share` of the path to `other`, with the facts of that one."""
-        (x, y), (to_x, to_y) = self.point, other.point
+        x, y = self.point
+        to_x, to_y = other.point
         point = x + share * (to_x - x), y + share * (to_y - y)
         stamp_ns = self.stamp_ns + round(share * (other.stamp_ns - self.stamp_ns))
         return replace(other, point=point, stamp_ns=stamp_ns)

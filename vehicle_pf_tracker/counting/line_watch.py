@@ -29,7 +29,8 @@ class LineEdge:
 
     def __init__(self, line: CountingLine) -> None:
         self.line = line
-        (x, y), (to_x, to_y) = line.start, line.end
+        x, y = line.start
+        to_x, to_y = line.end
         # The line turned by a quarter to the right, as y points down in an image.
         self._normal = (y - to_y) / line.length, (to_x - x) / line.length
 

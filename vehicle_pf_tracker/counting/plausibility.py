@@ -17,8 +17,12 @@ from vehicle_pf_tracker.counting.foot_point import FootPoint
 from vehicle_pf_tracker.counting.recent_path import RecentPath
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 
-FASTER, AGAINST, TWICE = "faster", "against", "twice"
-"""Doubts: far faster than the others; against all others, and seldom detected; born twice."""
+FASTER = "faster"
+"""Doubt: it is far faster than the others."""
+AGAINST = "against"
+"""Doubt: it goes against all others, and was seldom detected."""
+TWICE = "twice"
+"""Doubt: it was born twice."""
 _KNOWN = 5
 """Crossings by which a place is known: of fewer, one in a hundred traffic jams is all one way."""
 _FASTEST = 3.0

@@ -179,10 +179,12 @@ class SideWatch:
         return self._between(before, side)
 
     def _between(self, before: SideWatch, side: int) -> Passage | None:
-        first, last = self._first, before._seen
+        first = self._first
+        last = before._seen
         if first is None or last is None:
             return None
-        begin, end = self.edge.distance(last.point), self.edge.distance(first.point)
+        begin = self.edge.distance(last.point)
+        end = self.edge.distance(first.point)
         # One of both may lie on the edge, within the noise, on the side that it did not come to.
         at = last.towards(first, begin / (begin - end)) if begin * end < 0 else first
         seen = min(abs(begin), abs(before._furthest))  # the rest of the way was predicted

@@ -16,8 +16,10 @@ from vehicle_pf_tracker.counting.recent_path import RecentPath
 from vehicle_pf_tracker.counting.side_watch import Passage, SideWatch
 from vehicle_pf_tracker.parameters.counting_plan import CountingZone
 
-ZONE_ENTRY, ZONE_EXIT = "entry", "exit"
-"""Directions of a zone."""
+ZONE_ENTRY = "entry"
+"""Direction of what drives into a zone."""
+ZONE_EXIT = "exit"
+"""Direction of what drives out of it."""
 _GRID = 32
 """Points across a zone among which its middle is looked for: it is then known to a few percent."""
 _MOST_STEPS = 64
@@ -44,7 +46,8 @@ class ZoneEdge:
     def __init__(self, zone: CountingZone) -> None:
         self.zone = zone
         self._outline = np.array(zone.corners, np.float32)
-        low, high = self._outline.min(axis=0), self._outline.max(axis=0)
+        low = self._outline.min(axis=0)
+        high = self._outline.max(axis=0)
         steps = (np.arange(_GRID) + 0.5) / _GRID
         across, down = (low + np.outer(steps, high - low)).T.tolist()
         # At least a px, as the grid may miss the inside of a sliver.
