@@ -355,3 +355,57 @@ def test_a_hidden_vehicle_that_joins_a_track_goes_on_where_that_one_was():
         assert counter.update([old, new], LATE + index * PERIOD_NS) == ()
     (crossing,) = counter.update([replace(vehicle(1, 100, 118), joined=2)], LATE + 7 * PERIOD_NS)
     assert (crossing.identity, crossing.stamp_ns) == (1, LATE + 4 * PERIOD_NS + PERIOD_NS // 2)
+
+
+def both_over(counter):
+    """Let two tracks cross one after the other, which then turn out to be one vehicle."""
+    found = []
+    for index in range(8):
+        cab = vehicle(1, 100, 80 + 6 * index)
+        lorry = vehicle(2, 200, 68 + 6 * index, label="truck")
+        found += counter.update([cab, lorry], LATE + index * PERIOD_NS)
+    return found, replace(vehicle(1, 200, 116, label="truck"), joined=2)
+
+
+def test_what_two_tracks_of_one_vehicle_have_counted_is_one_crossing():
+    counter = line_counter()
+    (first, second), one = both_over(counter)
+    assert (first.identity, second.identity) == (1, 2)
+    assert counter.count("across", "in") == 2
+    assert counter.update([one], LATE + 8 * PERIOD_NS) == ()
+    assert counter.withdrawn == (second,)
+    assert counter.by_class("across", "in") == {"car": 1}
+    assert counter.signs("across", "in").total() == 1
+    assert counter.update([replace(one, joined=2)], LATE + 9 * PERIOD_NS) == ()
+    assert counter.withdrawn == ()
+    assert counter.count("across", "in") == 1
+
+
+def test_a_vehicle_keeps_what_only_its_other_track_has_counted():
+    counter = line_counter()
+    for index in range(8):
+        before = vehicle(1, 100, 20 + 2 * index)
+        over = vehicle(2, 100, 80 + 6 * index)
+        counter.update([before, over], LATE + index * PERIOD_NS)
+    counter.update([replace(vehicle(1, 100, 128), joined=2)], LATE + 8 * PERIOD_NS)
+    assert counter.withdrawn == ()
+    assert counter.count("across", "in") == 1
+    # Known to have counted, a third track of it that has counted, too, repeats it.
+    for index in range(8):
+        third = vehicle(3, 100, 80 + 6 * index)
+        counter.update([vehicle(1, 100, 134), third], LATE + (9 + index) * PERIOD_NS)
+    assert counter.count("across", "in") == 2
+    counter.update([replace(vehicle(1, 100, 140), joined=3)], LATE + 17 * PERIOD_NS)
+    assert counter.count("across", "in") == 1
+
+
+def test_nothing_is_withdrawn_for_a_crossing_that_was_in_no_total():
+    counter = line_counter()
+    for index in range(8):
+        known = vehicle(1, 100, 80 + 6 * index, MODES["T" if index < 2 else "O"])
+        again = [vehicle(2, 104, 76 + 6 * index)] if index > 2 else []
+        counter.update([known, *again], LATE + index * PERIOD_NS)
+    assert counter.count("across", "in") == 1  # the second one is in doubt
+    counter.update([replace(vehicle(1, 104, 124), joined=2)], LATE + 8 * PERIOD_NS)
+    assert counter.withdrawn == ()
+    assert counter.count("across", "in") == 1

@@ -38,6 +38,14 @@ def test_a_doubtful_crossing_is_in_no_count():
     assert not recent.at("gate", "in")
 
 
+def test_a_crossing_that_is_withdrawn_is_in_no_count():
+    recent = RecentCrossings()
+    first, second = crossing(1), crossing(2)
+    recent.add([first, second], 2 * SECOND)
+    recent.withdraw([second, crossing(0)])
+    assert recent.at("gate", "in") == [first]
+
+
 def test_stamps_that_jump_back_begin_anew():
     recent = RecentCrossings()
     recent.add([crossing(500)], 500 * SECOND)

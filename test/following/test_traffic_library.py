@@ -56,6 +56,29 @@ def test_without_boxes_what_moves_is_followed():
     assert upper.box.centre == pytest.approx((10 + 4 * 39 + 20, 75), abs=4)
 
 
+@pytest.mark.parametrize("at", [150, 230])
+def test_a_lorry_that_its_cab_and_all_of_it_have_counted_counts_once(tmp_path, at):
+    """Cab and trailer are 1 and 2; the box of all of it takes the latter's number for a while."""
+    ground = np.repeat(GROUND, 2, axis=1)  # 640 px
+    lines = tmp_path / "lines.yaml"
+    lines.write_text(f"lines:\n  stop: {{from: [{at}, 240], to: [{at}, 0]}}\n")
+    tracker = TrafficTracker(frame_rate=30, lines=lines)
+    crossed, withdrawn, counts = [], [], []
+    for index in range(75):
+        x = 8 * index - 100
+        boxes = np.array(
+            [[x, 60, x + (100 if index > 28 else 60), 140], [x + 65, 75, x + 100, 140]]
+        )
+        boxes = boxes.clip(0, 640)
+        boxes = boxes[boxes[:, 2] - boxes[:, 0] > 8]
+        tracker.update(ground, boxes, [0.9] * len(boxes), format="xyxy")
+        crossed += [one.identity for one in tracker.crossings]
+        withdrawn += [one.identity for one in tracker.withdrawn]
+        counts.append(tracker.counter.count("stop", "in"))
+    assert (crossed, withdrawn) == ([1, 2], [2])
+    assert (max(counts), counts[-1]) == (2, 1)
+
+
 def test_stamps_tell_a_dropped_frame_and_mistakes_are_said():
     tracker = TrafficTracker(frame_rate=25)
     for index, (frame, *found) in enumerate(drive(50)):

@@ -4,6 +4,7 @@
 """Files of a run over many vehicles."""
 
 import csv
+import io
 import math
 from dataclasses import replace
 
@@ -12,7 +13,7 @@ import pytest
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.counting.crossing import Crossing
-from vehicle_pf_tracker.results.traffic_results import track_files
+from vehicle_pf_tracker.results.traffic_results import TrackFiles, track_files
 from vehicle_pf_tracker.trackers.traffic.estimate import SCENE_OCCLUDER, TrackEstimate, TrackMode
 
 SEEN = TrackEstimate(
@@ -120,3 +121,28 @@ def test_a_run_that_fails_leaves_the_earlier_one_and_one_that_does_not_replaces_
 def test_a_folder_that_cannot_be_written_is_named(tmp_path):
     with pytest.raises(InputError, match="cannot write"), track_files(tmp_path / "none"):
         pass
+
+
+def test_a_crossing_that_is_withdrawn_is_in_doubt(tmp_path):
+    first, second = (
+        Crossing(1000 * at, "stop", "in", at, "car", TrackMode.TRACKING, None, None, (9.0, 8.0))
+        for at in (1, 2)
+    )
+    with track_files(tmp_path, counting=True) as files:
+        files.write(1, 1000, ALL, [first])
+        files.write(2, 2000, ALL, [second])
+        files.write(3, 3000, ALL, withdrawn=[second])
+    with (tmp_path / "counts.csv").open() as file:
+        rows = [(row["frame"], row["id"], row["doubt"]) for row in csv.DictReader(file)]
+    assert rows == [("1", "1", ""), ("2", "2", "twice")]
+
+
+def test_crossings_wait_for_ten_minutes_and_no_longer():
+    counts = io.StringIO()
+    files = TrackFiles(io.StringIO(), io.StringIO(), counts)
+    crossing = Crossing(0, "stop", "in", 1, "car", TrackMode.TRACKING, None, None, (9.0, 8.0))
+    files.write(1, 0, ALL, [crossing])
+    files.write(2, 600 * 10**9, ALL)
+    assert len(counts.getvalue().splitlines()) == 1  # the names of the columns
+    files.write(3, 601 * 10**9, ALL)
+    assert len(counts.getvalue().splitlines()) == 2

@@ -9,6 +9,7 @@ import math
 from collections import Counter as Tally
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
+from typing import NamedTuple
 
 from vehicle_pf_tracker.counting.count_signs import Sign
 from vehicle_pf_tracker.counting.crossing import Crossing
@@ -18,18 +19,25 @@ from vehicle_pf_tracker.counting.plausibility import Life, Plausibility
 from vehicle_pf_tracker.counting.recent_path import RecentPath
 from vehicle_pf_tracker.counting.sign_tally import SignTally
 from vehicle_pf_tracker.counting.trust import OF_BLOBS, OF_BOXES
-from vehicle_pf_tracker.counting.watched_vehicle import Passages, WatchedVehicle
+from vehicle_pf_tracker.counting.watched_vehicle import Counted, Passages, WatchedVehicle
 from vehicle_pf_tracker.counting.zone_watch import ZONE_ENTRY, ZONE_EXIT, ZoneEdge, ZoneWatch
 from vehicle_pf_tracker.parameters.counting_plan import CountingPlan
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 
-_REMEMBERED_NS = 600 * 10**9
+REMEMBERED_NS = 600 * 10**9
 """Time in ns that a vehicle which is not among the estimates is remembered: the longest that a
 tracker keeps the number of a lost one for."""
 
 COUNTED_MODES = (TrackMode.TRACKING, TrackMode.OCCLUDED)
 """Modes of vehicles that count."""
+
+
+class _Edges(NamedTuple):
+    """All lines and zones of a plan."""
+
+    lines: list[LineEdge]
+    zones: list[ZoneEdge]
 
 
 class Counter:
@@ -38,7 +46,8 @@ class Counter:
     A vehicle has crossed a line when it has gone from clearly before it to clearly behind it, so
     that one which shakes on the line counts once. Crossings under an occluder count at the time
     that is predicted; those of a tentative vehicle count when it is confirmed. An implausible
-    crossing is marked, and left out of the totals.
+    crossing is marked, and left out of the totals. Where two tracks turn out to be one vehicle, as
+    of a lorry and its cab, what both have counted is one crossing: the later track's is withdrawn.
 
     Parameters
     ----------
@@ -53,6 +62,8 @@ class Counter:
     ----------
     totals : Counter of (str, str, str)
         Crossings by place, direction and class, but those in doubt.
+    withdrawn : tuple of Crossing
+        Crossings, as they were returned, that the last image has taken back from the totals.
     plane : RoadPlane or None
         The road, for vehicles that come from now on.
     """
@@ -65,10 +76,12 @@ class Counter:
     ) -> None:
         self.plan = plan
         self._apart = apart
-        self._lines = [LineEdge(line) for line in plan.lines]
-        self._zones = [ZoneEdge(zone) for zone in plan.zones]
+        self._edges = _Edges(
+            [LineEdge(line) for line in plan.lines], [ZoneEdge(zone) for zone in plan.zones]
+        )
         # Crossings by place, direction and class; a Counter of the standard library, not this one.
         self.totals: Tally[tuple[str, str, str]] = Tally()
+        self.withdrawn: tuple[Crossing, ...] = ()
         self.plane = plane
         self.vehicles: dict[int, WatchedVehicle] = {}  # by their tracks
         self._plausibility = Plausibility()
@@ -172,6 +185,7 @@ class Counter:
         """
         if self._last_ns is not None and stamp_ns < self._last_ns:
             self.forget_vehicles()
+        self.withdrawn = ()
         # 1. Shift the stamps first: `_follow` tells by them who was in the image before.
         self._before_ns = self._last_ns
         self._last_ns = stamp_ns
@@ -212,7 +226,7 @@ class Counter:
         # earlier.
         joined = self.vehicles.pop(estimate.joined, None)
         self._signs.withdraw(estimate.joined)
-        passages = [] if joined is None else vehicle.join(joined)
+        passages = [] if joined is None else self._join(vehicle, joined)
         # 3. Its next point. A vehicle that was once confirmed stays one, whatever its mode
         # becomes.
         foot = replace(FootPoint.of(estimate, stamp_ns), mode=mode)
@@ -230,24 +244,36 @@ class Counter:
             self._occupancy[zone.zone.name] += is_one_more
         counted = vehicle.waiting
         vehicle.waiting = []
-        # Kept for `join`: a tentative track of the same vehicle may have passed here, too.
-        vehicle.counted.update((one.place, one.direction) for one in counted)
-        return [self._judged(one, estimate, vehicle.life) for one in counted]
+        judged = [self._judged(one, estimate, vehicle.life) for one in counted]
+        # Kept for `join`: another track of the same vehicle may have passed here, too.
+        vehicle.counted.update({one.sign[:2]: one for one in judged})
+        return [one.crossing for one in judged]
 
-    def _judged(self, one: Crossing, estimate: TrackEstimate, life: Life) -> Crossing:
-        """Return a crossing by what is known of its vehicle now."""
+    def _join(self, vehicle: WatchedVehicle, other: WatchedVehicle) -> Passages:
+        """Go on as `other`, and take back what both have counted."""
+        repeats = vehicle.repeats(other)
+        # In place, and without a class that is left at 0.
+        self.totals -= Tally(one.sign[:3] for one in repeats)
+        for _, sign in repeats:
+            self._signs.remove(sign)
+        self.withdrawn += tuple(one.crossing for one in repeats)
+        return vehicle.join(other)
+
+    def _judged(self, one: Crossing, estimate: TrackEstimate, life: Life) -> Counted:
+        """Judge a crossing by what is known of its vehicle now."""
         is_vague = life.is_vague or one.mode in (TrackMode.OCCLUDED, TrackMode.LOST)
         # Number and class of now: when it crossed it may have been tentative, without either.
         one = replace(one, identity=estimate.identity, label=estimate.label or one.label)
         doubt = self._plausibility.doubt(one, life)
         # Doubt first: such a crossing is in no total, however well it was seen.
-        sign = Sign.DOUBTED if doubt else Sign.VAGUE if is_vague else Sign.SEEN
-        self._signs.add((one.place, one.direction, one.label, sign))
-        return replace(one, doubt=doubt)
+        kind = Sign.DOUBTED if doubt else Sign.VAGUE if is_vague else Sign.SEEN
+        sign = one.place, one.direction, one.label, kind
+        self._signs.add(sign)
+        return Counted(replace(one, doubt=doubt), sign)
 
     def _made(self, first: FootPoint) -> WatchedVehicle:
-        lines = [LineWatch(edge) for edge in self._lines]
-        zones = [ZoneWatch(edge) for edge in self._zones]
+        lines = [LineWatch(edge) for edge in self._edges.lines]
+        zones = [ZoneWatch(edge) for edge in self._edges.zones]
         path = RecentPath(self.plane)
         return WatchedVehicle(lines, zones, path, first.stamp_ns, Life(first, first, path))
 
@@ -255,7 +281,7 @@ class Counter:
         old = [
             identity
             for identity, vehicle in self.vehicles.items()
-            if stamp_ns - vehicle.last_ns > _REMEMBERED_NS
+            if stamp_ns - vehicle.last_ns > REMEMBERED_NS
         ]
         for identity in old:
             del self.vehicles[identity]

@@ -32,6 +32,10 @@ class SignTally:
         """Add the sign of a crossing."""
         self._total[sign] += 1
 
+    def remove(self, sign: PlacedSign) -> None:
+        """Take back the sign of a crossing that turned out to be none."""
+        self._total[sign] -= 1
+
     def end(self, serial: int, signs: list[PlacedSign]) -> None:
         """Add the signs of a track that is not followed any more."""
         if signs:

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from vehicle_pf_tracker.counting.count_signs import Sign
 from vehicle_pf_tracker.counting.crossing import Crossing
@@ -22,6 +23,13 @@ false alarms follow each other twice or three times."""
 
 Passages = list[tuple[str, str, FootPoint]]
 """Lines and zones that a vehicle has passed: name, direction, and the point and time."""
+
+
+class Counted(NamedTuple):
+    """Crossing that has been returned, and the sign that it has left."""
+
+    crossing: Crossing
+    sign: PlacedSign
 
 
 @dataclass(slots=True)
@@ -46,8 +54,8 @@ class WatchedVehicle:
         Its class, empty before it has one.
     waiting : list of Crossing
         Crossings that count once it is confirmed.
-    counted : set of (str, str)
-        Places and directions at which it has counted.
+    counted : dict of (str, str) to Counted
+        What has counted of it, or is in doubt, by place and direction; the latest of a zone.
     """
 
     lines: list[LineWatch]
@@ -58,7 +66,7 @@ class WatchedVehicle:
     is_confirmed: bool = False
     label: str = ""
     waiting: list[Crossing] = field(default_factory=list)
-    counted: set[tuple[str, str]] = field(default_factory=set)
+    counted: dict[tuple[str, str], Counted] = field(default_factory=dict)
 
     def follow(self, foot: FootPoint) -> Passages:
         """Follow it to its next point, and return what it has passed on the way."""
@@ -106,4 +114,14 @@ class WatchedVehicle:
         self.waiting = [
             one for one in other.waiting if (one.place, one.direction) not in self.counted
         ]
+        own = {at: one for at, one in self.counted.items() if not one.crossing.doubt}
+        self.counted = self.counted | other.counted | own
         return lines + zones
+
+    def repeats(self, other: WatchedVehicle) -> list[Counted]:
+        """Return what has counted of `other`, and of this vehicle before; none is in doubt."""
+        return [
+            one
+            for at, one in other.counted.items()
+            if at in self.counted and not (one.crossing.doubt or self.counted[at].crossing.doubt)
+        ]

@@ -99,6 +99,7 @@ class CountedVehicles:
             # What is counted by class must not change its class in later rows.
             self.classes.decide(crossing.identity)
         self._recent.add(crossings, stamp_ns)
+        self._recent.withdraw(self.counter.withdrawn)
         return crossings
 
     @property

@@ -32,6 +32,12 @@ class RecentCrossings:
         while self._of and not 0 <= stamp_ns - self._of[0].stamp_ns < _MINUTE_NS:
             self._of.popleft()
 
+    def withdraw(self, crossings: Iterable[Crossing]) -> None:
+        """Take out crossings that turned out to be none."""
+        for crossing in crossings:
+            if crossing in self._of:
+                self._of.remove(crossing)
+
     def at(self, place: str, direction: str) -> list[Crossing]:
         """Return the recent crossings at a place in a direction."""
         return [

@@ -129,7 +129,8 @@ class TrafficRun(CountedVehicles):
                 estimates = self.estimates
                 # Rows of vehicles whose class may change wait in `files`.
                 undecided = self.classes.undecided
-                files.write(number, stamped.stamp_ns, estimates, crossings, undecided)
+                withdrawn = self.counter.withdrawn
+                files.write(number, stamped.stamp_ns, estimates, crossings, undecided, withdrawn)
                 self.summary.add(estimates)
                 files.write_zones(self.summary.zones.add(stamped.stamp_ns, self.counter.occupancy))
                 if overview is not None:

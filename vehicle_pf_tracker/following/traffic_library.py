@@ -104,6 +104,14 @@ class TrafficTracker(CountedVehicles):
         self._is_warned = False
         self._boxes: Array = np.empty((0, 4))
 
+    @property
+    def withdrawn(self) -> tuple[Crossing, ...]:
+        """Earlier crossings that the last image has taken back from the counts.
+
+        They are of numbers that turned out to be another one's vehicle.
+        """
+        return self.counter.withdrawn
+
     def update(
         self,
         frame: Frame,

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections import deque
+from collections.abc import Collection, Iterable, Iterator, Sequence, Set
 from contextlib import ExitStack, contextmanager
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from pathlib import Path
 from typing import Any, TextIO
 
-from vehicle_pf_tracker.counting.counter import COUNTED_MODES
+from vehicle_pf_tracker.counting.counter import COUNTED_MODES, REMEMBERED_NS
 from vehicle_pf_tracker.counting.crossing import Crossing
+from vehicle_pf_tracker.counting.plausibility import TWICE
 from vehicle_pf_tracker.counting.zone_occupancy import ZoneInterval
 from vehicle_pf_tracker.results.backdating import Backdating, Frames
 from vehicle_pf_tracker.results.output_files import replacing
@@ -77,6 +79,8 @@ IN_TRACKS = frozenset({TrackMode.TENTATIVE, *COUNTED_MODES})
 class TrackFiles:
     """Writer of the estimates of frame after frame, tentative ones once they are confirmed.
 
+    Crossings wait for as long as their vehicles are remembered: until then they may be withdrawn.
+
     Parameters
     ----------
     csv_file, mot_file : text streams
@@ -99,6 +103,7 @@ class TrackFiles:
         self._counts = csv.writer(counts_file, lineterminator="\n") if counts_file else None
         self._zones = csv.writer(zones_file, lineterminator="\n") if zones_file else None
         self._backdating = Backdating()
+        self._waiting: deque[tuple[int, Crossing]] = deque()  # with the frames they counted in
         self._tracks.writerow(TRACK_COLUMNS)
         if self._counts:
             self._counts.writerow(COUNT_COLUMNS)
@@ -112,11 +117,21 @@ class TrackFiles:
         estimates: Sequence[TrackEstimate],
         crossings: Iterable[Crossing] = (),
         undecided: Set[int] = frozenset(),
+        withdrawn: Collection[Crossing] = (),
     ) -> None:
-        """Take what is known of a frame, whose number counts from 1; see `Backdating`."""
+        """Take what is known of a frame, whose number counts from 1; see `Backdating`.
+
+        Earlier crossings that are `withdrawn` are in doubt, as counted twice.
+        """
         self._write(self._backdating.add(frame, stamp_ns, estimates, undecided))
-        if self._counts:
-            self._counts.writerows(_count_row(frame, crossing) for crossing in crossings)
+        if withdrawn:
+            self._waiting = deque(
+                (number, replace(one, doubt=TWICE) if one in withdrawn else one)
+                for number, one in self._waiting
+            )
+        self._waiting.extend((frame, crossing) for crossing in crossings)
+        while self._waiting and stamp_ns - self._waiting[0][1].stamp_ns > REMEMBERED_NS:
+            self._write_crossing()
 
     def write_zones(self, intervals: Iterable[ZoneInterval]) -> None:
         """Write the occupancy of zones in intervals that have ended."""
@@ -126,6 +141,13 @@ class TrackFiles:
     def finish(self) -> None:
         """Write what was held back."""
         self._write(self._backdating.rest())
+        while self._waiting:
+            self._write_crossing()
+
+    def _write_crossing(self) -> None:
+        row = _count_row(*self._waiting.popleft())
+        if self._counts:
+            self._counts.writerow(row)
 
     def _write(self, frames: Frames) -> None:
         for frame, stamp_ns, estimates in frames:
