@@ -8,7 +8,7 @@ import pytest
 from measured_vehicle import BOX, SIZE, STILL
 
 from vehicle_pf_tracker.trackers.traffic.births import first_gaussians
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge
+from vehicle_pf_tracker.trackers.traffic.edge_observation import Edge
 
 
 def first(*edges):

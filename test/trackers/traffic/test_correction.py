@@ -11,9 +11,10 @@ from traffic_samples import changed, step_of, track_of
 from vehicle_pf_tracker.core.overlaps import overlaps
 from vehicle_pf_tracker.trackers.traffic.births import first_gaussians
 from vehicle_pf_tracker.trackers.traffic.correction import Comparison, correct, which_edges
+from vehicle_pf_tracker.trackers.traffic.edge_observation import Edge
 from vehicle_pf_tracker.trackers.traffic.prediction import driven
 from vehicle_pf_tracker.trackers.traffic.report import estimates_of
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge, Motion
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Motion
 
 ROAD = Motion(0.002, 0.5, 768.0)
 PART = BOX - (0, 0, 0, 12)

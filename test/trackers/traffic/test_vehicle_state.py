@@ -8,15 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
+from vehicle_pf_tracker.trackers.traffic.edge_observation import (
     ACROSS,
     ALONG,
     OBSERVATION,
     Edge,
-    Gaussians,
-    Motion,
     V,
 )
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import Gaussians, Motion
 
 STILL = Motion(acceleration=0.0, top_speed=0.5, focal=400.0)
 MOVING = Motion(acceleration=0.01, top_speed=0.5, focal=400.0)

@@ -14,6 +14,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import NO_BOXES
 from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges, deviations
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates
+from vehicle_pf_tracker.trackers.traffic.edge_observation import Edge
 from vehicle_pf_tracker.trackers.traffic.existence import believed
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.state import State, Step
@@ -21,7 +22,6 @@ from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import (
     ANY_SPEED,
     USUAL_ASPECT,
-    Edge,
     Gaussians,
     Motion,
 )

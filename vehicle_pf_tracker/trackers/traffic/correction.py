@@ -23,9 +23,9 @@ from vehicle_pf_tracker.trackers.traffic.box_edges import (
     opposites,
     sides_of,
 )
+from vehicle_pf_tracker.trackers.traffic.edge_observation import ACROSS, Edge, W
 from vehicle_pf_tracker.trackers.traffic.rows import Bools
 from vehicle_pf_tracker.trackers.traffic.tracks import Drives, Tracks
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import ACROSS, Edge, W
 
 _WHOLE = 0.85
 """Share of the width or height, of the predicted and of the latest detections, below which one of

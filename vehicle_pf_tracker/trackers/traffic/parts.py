@@ -16,9 +16,9 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas
+from vehicle_pf_tracker.trackers.traffic.edge_observation import Edge
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.tracks import Drives, Tracks
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import Edge
 
 _INSIDE = 0.7
 """Share of a box inside another one above which it is a part of it: a bonnet, a second box. A

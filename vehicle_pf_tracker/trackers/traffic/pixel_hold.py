@@ -20,10 +20,11 @@ from vehicle_pf_tracker.core.overlaps import NO_BOXES, areas
 from vehicle_pf_tracker.image.motion.point_flow import PointFlow
 from vehicle_pf_tracker.trackers.traffic.box_edges import both_ends, sides_of
 from vehicle_pf_tracker.trackers.traffic.colours import BACKGROUND_RIM, similarities
+from vehicle_pf_tracker.trackers.traffic.edge_observation import V, X
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Objects
 from vehicle_pf_tracker.trackers.traffic.state import Grey, State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Sights, Tracks
-from vehicle_pf_tracker.trackers.traffic.vehicle_state import PIXEL_NOISE, V, X
+from vehicle_pf_tracker.trackers.traffic.vehicle_state import PIXEL_NOISE
 
 _GRID = 5
 """Points along each side of a box, a choice; the fewest that a motion is taken from, and as many as

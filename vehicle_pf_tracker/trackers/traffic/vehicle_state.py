@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""State of one vehicle on the plane of the road, and its measurement edge by edge.
+"""States of vehicles on the plane of the road, as Gaussians.
 
 A box stands on the road where its lower edge is. Its distance from the horizon, v px, is inversely
 proportional to the distance from the camera, so that a vehicle of constant speed on the road has a
@@ -14,11 +14,21 @@ carried exactly where measurements are linear in it (boxes), and by particles wh
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from enum import IntEnum
 
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.traffic.edge_observation import (
+    ACROSS,
+    ALONG,
+    Edge,
+    H,
+    V,
+    W,
+    X,
+    edge_of,
+    edge_rows,
+)
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Rows, columns
 
 PIXEL_NOISE = 0.7
@@ -28,9 +38,6 @@ pixels, on both sides."""
 USUAL_ASPECT = 0.8
 """Height of a vehicle over its width: that of cars from the front. Only boxes that a border cuts at
 first are completed by it."""
-
-X, V, W, H, ACROSS, ALONG = range(6)
-"""Components of the state: centre and distance from the horizon, size (px), road velocities."""
 
 _MOST_GROWTH = 2.0
 """Largest growth of a box from image to image, and largest fall. Beyond it the distance is down to
@@ -46,25 +53,6 @@ _SIZE_WALK = 0.004
 drives past is seen from behind and then from the side within some 5 s. It adds up to a twentieth in
 that time; without it IDF1 of YOLOX behind the bridge falls by 7."""
 
-
-class Edge(IntEnum):
-    """Edges of a box, in the order of measurements."""
-
-    LEFT = 0
-    TOP = 1
-    RIGHT = 2
-    BOTTOM = 3
-
-
-OBSERVATION = np.array(
-    [
-        [1.0, 0.0, -0.5, 0.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0, -1.0, 0.0, 0.0],
-        [1.0, 0.0, 0.5, 0.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-    ]
-)
-"""Edges of the box as linear functions of the state (relative to the horizon)."""
 
 _UNCHANGED = np.eye(6)
 """Jacobian of a map that changes no component of the state."""
@@ -174,8 +162,8 @@ class Gaussians(Rows):
     @property
     def edge_covariance(self) -> Array:
         """Covariance of the edges, (N, 4, 4) in px²."""
-        rows = _observed(self.covariance)
-        return np.stack([_along(rows, edge) for edge in Edge], axis=-1)
+        rows = edge_rows(self.covariance)
+        return np.stack([edge_of(rows, edge) for edge in Edge], axis=-1)
 
     @property
     def edge_variances(self) -> Array:
@@ -297,9 +285,9 @@ class Gaussians(Rows):
         measured[:, Edge.TOP :: 2] -= self.horizon[:, np.newaxis]
         for edge in Edge:
             # Edge by edge, as noises of edges are independent: no matrix has to be inverted.
-            spread = _along(covariance, edge)
-            residual = measured[:, edge] - _along(mean, edge)
-            variance = _along(spread, edge) + noises[:, edge]
+            spread = edge_of(covariance, edge)
+            residual = measured[:, edge] - edge_of(mean, edge)
+            variance = edge_of(spread, edge) + noises[:, edge]
             mean = mean + spread * (residual / variance)[:, np.newaxis]
             sides = mean[:, V:ACROSS]
             np.maximum(sides, _LEAST, out=sides)  # they stay positive
@@ -311,24 +299,6 @@ class Gaussians(Rows):
     def widened(self, factors: Array) -> Gaussians:
         """Multiply each covariance by a factor (N,)."""
         return replace(self, covariance=self.covariance * factors[:, np.newaxis, np.newaxis])
-
-
-def _along(values: Array, edge: Edge) -> Array:
-    """Product of an edge's row of `OBSERVATION` with the last axis of values (..., 6)."""
-    if edge is Edge.BOTTOM:
-        return values[..., V]
-    if edge is Edge.TOP:
-        return np.asarray(values[..., V] - values[..., H])
-    half = 0.5 * values[..., W]
-    return np.asarray(values[..., X] - half if edge is Edge.LEFT else values[..., X] + half)
-
-
-def _observed(covariances: Array) -> Array:
-    """Product of `OBSERVATION` with covariances (N, 6, ...): (N, 4, ...)."""
-    half = 0.5 * covariances[:, W]
-    left = covariances[:, X] - half
-    right = covariances[:, X] + half
-    return np.stack([left, covariances[:, V] - covariances[:, H], right, covariances[:, V]], axis=1)
 
 
 def _transformed(covariance: Array, step: Array) -> Array:
