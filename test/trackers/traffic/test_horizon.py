@@ -23,8 +23,8 @@ def grown(horizon, bottoms, factor=0.4):
 
 
 def row(assumed, *growths):
-    told = [growth.told(HEIGHT) for growth in growths]
-    return explaining_row(assumed, np.concatenate([np.empty((0, 3)), *told]))
+    regressions = [growth.regressions(HEIGHT) for growth in growths]
+    return explaining_row(assumed, np.concatenate([np.empty((0, 3)), *regressions]))
 
 
 def test_one_vehicle_that_is_followed_tells_the_horizon():
@@ -38,7 +38,7 @@ def test_the_more_vehicles_the_nearer():
         for factor in range(factors):
             grows = grown(48, range(80, 200), 0.3 + 0.1 * factor)
             horizon = horizon.learnt(grows, HEIGHT)
-        horizon = horizon.looked(-0.2, Growths.unknown(0), (320, HEIGHT), None)
+        horizon = horizon.updated(-0.2, Growths.unknown(0), (320, HEIGHT), None)
     assert horizon.row / HEIGHT == pytest.approx(0.2, abs=0.02)
 
 
@@ -49,8 +49,8 @@ def test_widths_of_different_vehicles_are_not_compared():
 
 
 def test_what_did_not_move_tells_nothing():
-    assert len(grown(24, [100.0] * 50).told(HEIGHT)) == 0
-    assert len(grown(24, range(60, 70)).told(HEIGHT)) == 0
+    assert len(grown(24, [100.0] * 50).regressions(HEIGHT)) == 0
+    assert len(grown(24, range(60, 70)).regressions(HEIGHT)) == 0
     assert row(-50.0, grown(24, [100.0] * 50)) == -50.0
 
 
@@ -68,5 +68,5 @@ def test_one_that_is_wrong_does_not_move_it():
 
 def test_of_sparse_images_fewer_boxes_tell():
     growth = grown(24, range(60, 160, 12))
-    assert len(growth.told(HEIGHT)) == 0
-    assert len(growth.told(HEIGHT, sparsity=8.0)) == 1
+    assert len(growth.regressions(HEIGHT)) == 0
+    assert len(growth.regressions(HEIGHT, sparsity=8.0)) == 1

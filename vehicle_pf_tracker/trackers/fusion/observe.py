@@ -60,11 +60,12 @@ CLIMB_FREELY = (5, 3.0)
 standard deviation that a move is paid for with. The reach is a choice, a quarter of the target's
 side."""
 CLIMB_ON_PATH = (3, 1.0)
-"""The same while hidden, where the path is known better than the place: all would else gather at
-clutter. The reach is a choice."""
+"""Reach and deviation of a move while hidden, where the path is known better than the place: all
+would else gather at clutter. The reach is a choice."""
 STAY = (0, 1.0)
-"""The same where a first motion was measured, which is kept to exactly: a standing part of the
-first box answers better than the vehicle, and the filter cannot tell which of them it was shown."""
+"""Reach and deviation of a move where a first motion was measured, which is kept to exactly: a
+standing part of the first box answers better than the vehicle, and the filter cannot tell which of
+them it was shown."""
 
 
 def predict(state: State, step: Step) -> tuple[State, Prediction]:

@@ -24,7 +24,7 @@ _OTHER_CHROMA = 9.0
 """Difference in Lab's a and b above which two paints are not the same. Over each of 25 sequences a
 tenth of the differences is larger; of those between sequences two thirds are."""
 _OTHER_LIGHTNESS = 18.0
-"""The same of Lab's L."""
+"""Difference in Lab's L above which two paints are not the same, by the same sequences."""
 _SHADED = 2.0
 """Factor of `_OTHER_LIGHTNESS` for single spots: sides of one vehicle differ more than medians. Two
 is a choice; chroma alone has to tell the rest."""

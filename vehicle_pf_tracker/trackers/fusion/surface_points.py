@@ -31,8 +31,8 @@ box: half of one is a tenth of the canonical size, and the background is beyond.
 _RENEWED_AFTER = 5
 """Age in frames of points that are replaced: they drift off their spots as they age. A choice."""
 _OLDEST = 10
-"""The same where a part of the vehicle is hidden, as new points may lie on the occluder. A
-choice."""
+"""Age in frames of points that are replaced where a part of the vehicle is hidden: new ones may lie
+on the occluder. A choice."""
 _STRAYED = 0.2
 """A point farther than this (fraction of the box size) from its predicted position in the box has
 left the vehicle; the prediction turns with the other points. That is 8 canonical px, a choice far

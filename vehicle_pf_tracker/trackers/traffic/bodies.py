@@ -25,7 +25,8 @@ _INSIDE = 0.7
 a cab at the end of its lorry sticks out by the noise of three edges, a seventh, and a car in the
 lane before a lorry by a third."""
 _APART = 0.5
-"""The same in one image, below which all that spoke for it is void: most of it is beside."""
+"""Share of the smaller box in the larger one, in one image, below which all that spoke for one body
+is void: most of it is beside."""
 MISSED_FOR = 4
 """Images with both boxes by which two may be one, and without that of the elder by which the other
 is now all of it: fewer may be wrong."""

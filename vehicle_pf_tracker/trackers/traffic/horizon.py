@@ -22,9 +22,10 @@ _LEAST_BOXES = 20
 """Boxes below which a vehicle does not tell how it grows. At 30, HOTA of `traffic-overtaking` falls
 by 13: the horizon has to be known soon."""
 _LEAST_SPARSE = 6
-"""The same where images are sparse: a second of them has fewer boxes, whose errors are independent.
-The first value tried. At 20 no vehicle tells at 3 images/s; IDF1 by motion of four samplings of a
-dusk is then 35.6 in the mean instead of 37.6, 29.8 instead of 40.9 in the worst."""
+"""Boxes below which a vehicle does not tell how it grows where images are sparse: a second of them
+has fewer boxes, whose errors are independent. The first value tried. At 20 no vehicle tells at 3
+images/s; IDF1 by motion of four samplings of a dusk is then 35.6 in the mean instead of 37.6, 29.8
+instead of 40.9 in the worst."""
 _REMEMBERED = 50
 """Vehicles that are remembered. A choice: enough to average `_TURN` out, to a seventh, and few
 enough for a camera that is turned to forget."""
@@ -73,8 +74,8 @@ class Growths(Rows):
         terms = columns(once, bottom, bottom * bottom, width, bottom * width)
         return Growths(self.sums + np.where(whole[:, np.newaxis], terms, 0.0))
 
-    def told(self, height: int, sparsity: float = 1.0) -> Array:
-        """Summarise those of enough boxes in units of the image's height.
+    def regressions(self, height: int, sparsity: float = 1.0) -> Array:
+        """Regress widths on lower edges, in image heights; vehicles of too few boxes are left out.
 
         Parameters
         ----------
@@ -97,8 +98,8 @@ class Growths(Rows):
         kept = scatter > 0
         # Least squares, over the mean width: relative growth, the same for cars and lorries.
         slope = (products - total * widths / count) / np.where(kept, scatter, 1.0) * count / widths
-        told = columns(total / count / height, slope * height, scatter / height**2)
-        return np.asarray(told[kept])
+        regressions = columns(total / count / height, slope * height, scatter / height**2)
+        return np.asarray(regressions[kept])
 
 
 def calibrated_row(road: RoadPlane, size: tuple[int, int]) -> float:
@@ -127,18 +128,18 @@ class Horizon:
     row : float
         The row in px.
     ended : (K, 3) array
-        Growth of vehicles whose ways have ended, as `Growths.told` has it.
+        Growth of vehicles whose ways have ended, as `Growths.regressions` has it.
     """
 
     row: float = 0.0
     ended: Array = field(default_factory=lambda: np.empty((0, 3)))
 
     def learnt(self, growths: Growths, height: int, sparsity: float = 1.0) -> Horizon:
-        """Add vehicles whose ways have ended; see `Growths.told`."""
-        ended = np.concatenate([self.ended, growths.told(height, sparsity)])
+        """Add vehicles whose ways have ended; see `Growths.regressions`."""
+        ended = np.concatenate([self.ended, growths.regressions(height, sparsity)])
         return replace(self, ended=ended[-_REMEMBERED:])
 
-    def looked(
+    def updated(
         self,
         assumed: float,
         followed: Growths,
@@ -165,23 +166,23 @@ class Horizon:
             return replace(self, row=calibrated_row(road, size) * size[1])
         # Those that are followed are not stored: they count once, with all that they have grown so
         # far.
-        told = np.concatenate([self.ended, followed.told(size[1], sparsity)])
-        return replace(self, row=explaining_row(assumed, told) * size[1])
+        regressions = np.concatenate([self.ended, followed.regressions(size[1], sparsity)])
+        return replace(self, row=explaining_row(assumed, regressions) * size[1])
 
 
-def explaining_row(assumed: float, told: Array) -> float:
+def explaining_row(assumed: float, regressions: Array) -> float:
     """Row of the horizon that explains growths (K, 3) best, of the image's height.
 
     Parameters
     ----------
     assumed : float
         Horizon assumed before vehicles show it.
-    told : (K, 3) array
-        Mean lower edge, relative growth and scatter of each vehicle, see `Growths.told`.
+    regressions : (K, 3) array
+        Mean lower edge, relative growth and scatter of each vehicle, see `Growths.regressions`.
     """
-    if not len(told):
+    if not len(regressions):
         return assumed
-    middle, growth, scatter = told.T[..., np.newaxis]
+    middle, growth, scatter = regressions.T[..., np.newaxis]
     centre = float(middle.mean())
     # The assumed horizon as a growth; one below the vehicles would make it negative.
     usual = 1 / (centre - min(assumed, centre - 1 / _GROWTHS[-1]))

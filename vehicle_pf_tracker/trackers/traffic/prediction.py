@@ -18,7 +18,7 @@ def find_horizon(state: State, step: Step) -> State:
     # Tentative tracks may be leaves, whose boxes grow by chance.
     followed = state.tracks.drives.growths.take(state.tracks.confirmed)
     assumed = step.parameters.motion.horizon
-    horizon = state.horizon.looked(assumed, followed, step.size, step.road, step.sparsity)
+    horizon = state.horizon.updated(assumed, followed, step.size, step.road, step.sparsity)
     return state._replace(horizon=horizon)
 
 
