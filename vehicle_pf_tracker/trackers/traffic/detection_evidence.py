@@ -19,8 +19,9 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.traffic.rows import Integers
 
 _MEMORY = 2000
-"""Detections that are remembered, some minutes of a few vehicles; and images after which what is
-known of places is halved: light and wind change in a minute."""
+"""Detections that are remembered. A choice: some minutes of a few vehicles."""
+_PLACES_FOR = 2000
+"""Images after which what is known of places is halved: light and wind change in a minute."""
 _NEIGHBOURS = 40
 """Detections of about the same score, by rank, that a probability is taken from: of 40 the share
 has a standard deviation of .08 at most, and rarer scores are still told apart."""
@@ -108,7 +109,7 @@ class DetectionEvidence:
         """Note that the detector has looked at another image, and whether it reports shapes."""
         self.are_shapes = are_shapes
         self._images += 1
-        if self._images > _MEMORY:
+        if self._images > _PLACES_FOR:
             self._images /= 2
             self._false /= 2
             # Halved, but for the prior, which stays what it is.

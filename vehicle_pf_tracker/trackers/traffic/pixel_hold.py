@@ -63,6 +63,8 @@ _PARTICLES_AT_ONCE = 1000
 """Particles of several vehicles that are weighed at once: with 25 points each they fill a cache of
 half a MB, and more would only need more memory."""
 _AXIS = ((np.arange(_GRID) + 0.5) / _GRID - 0.5) * (1 - 2 * BACKGROUND_RIM)
+"""Places of the points along one axis, of the side from its centre: none on the rim, which may be
+background."""
 _PLACES = np.column_stack([np.tile(_AXIS, _GRID), np.repeat(_AXIS, _GRID)])
 """Places of the points in a box, of its sides from its centre, (G², 2)."""
 # A small window and one halving: the prediction is the guess, and distant vehicles are small.
