@@ -21,7 +21,7 @@ from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
 from vehicle_pf_tracker.trackers.traffic.ending import end
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.identity import given
-from vehicle_pf_tracker.trackers.traffic.looking import look
+from vehicle_pf_tracker.trackers.traffic.observe import observe
 from vehicle_pf_tracker.trackers.traffic.occlusion import hide
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.pixel_hold import hold
@@ -187,7 +187,7 @@ def _advanced(state: State, step: Step, detections: Detections | None) -> State:
     state = hide(state, step)
     # 3. Correct by detections, which tell more than pixels.
     if detections is not None:
-        state = look(state, step, detections)
+        state = observe(state, step, detections)
     # 4. Hold by pixels what nothing detected. Even without such vehicles the frame is kept for the
     # next one.
     state = hold(state, step)

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Detections of an image given to the vehicles; those left over may be new ones."""
+"""Observation of vehicles: detections are given to them, and those left over may be new ones."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ _LIKELY = 0.0
 HOTA / IDF1 of YOLOX from .1 fall by 1.3 / 2.5."""
 
 
-class Look(NamedTuple):
-    """A look of the detector while its detections are given to vehicles.
+class Assignment(NamedTuple):
+    """State of the tracker while detections are given to its vehicles.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Look(NamedTuple):
     step: Step
 
 
-def look(state: State, step: Step, detections: Detections) -> State:
+def observe(state: State, step: Step, detections: Detections) -> State:
     """Associate the detections of this frame, correct and doubt tracks, and begin new ones.
 
     The order of the steps is load-bearing: each works on what those before it left over.
@@ -61,78 +61,78 @@ def look(state: State, step: Step, detections: Detections) -> State:
     # The image is counted before: false alarms are a rate per image.
     state.experience.detections.look(are_shapes=detections.are_shapes)
     candidates = weighed(detections.usable(*step.size), state.experience.detections, step.size)
-    seen = Look(state, np.ones(len(candidates), np.bool_), candidates, step)
+    assignment = Assignment(state, np.ones(len(candidates), np.bool_), candidates, step)
     # 2. Vehicles that are known choose first, and among likely detections first: else a false
     # alarm near by would be taken by one, and its own detection would be left to another.
     # What is left over inside a vehicle that was seen is a part of it. Parts go after each pass:
     # in the second one a bonnet of one vehicle would be a likely detection of its neighbour.
     for least in (_LIKELY, -np.inf):
-        seen = _without_parts(_give_known(seen, least))
+        assignment = _without_parts(_give_known(assignment, least))
     # 3. What is not known yet to be a vehicle chooses by density against clutter: whether it is
     # one is not to depend on whether one is expected. After the known ones, as a tentative track
     # beside a vehicle would otherwise take its detection and be confirmed by it.
-    seen = _give_new(seen)
+    assignment = _give_new(assignment)
     # 4. One vehicle has one number: one that was hidden may have been taken for a new one, and
     # one that was known by a part is not the box around it. Before step 5, since a vehicle that is
     # found again here was not missed.
     if step.parameters.returning:
-        seen = seen._replace(state=merged(seen.state))
-    seen = _give_outgrown(seen)
-    seen = _united(seen)
+        assignment = assignment._replace(state=merged(assignment.state))
+    assignment = _give_outgrown(assignment)
+    assignment = _united(assignment)
     # 5. Only now it is known who was missed, in plain sight.
-    seen = seen._replace(state=doubt(seen.state, step))
+    assignment = assignment._replace(state=doubt(assignment.state, step))
     # 6. A box around a vehicle that has its own is no new one either. The others may be. Here
     # missed vehicles count, too: step 4 had the first call on the boxes around them.
-    seen = _without_parts(seen, either=True)
-    return begun(seen.state, candidates, np.flatnonzero(seen.free), step)
+    assignment = _without_parts(assignment, either=True)
+    return begun(assignment.state, candidates, np.flatnonzero(assignment.free), step)
 
 
-def _give_known(look: Look, least: float) -> Look:
+def _give_known(assignment: Assignment, least: float) -> Assignment:
     """Give free detections of log odds from `least` to vehicles that have none."""
-    state, free, candidates, step = look
+    state, free, candidates, step = assignment
     rows = np.flatnonzero(state.tracks.confirmed & ~state.tracks.detected)
     columns = np.flatnonzero(free & (candidates.log_odds >= least))
     pairs = pairs_of_known(state.tracks, rows, candidates, columns, step.size, step.edge_noise)
-    return _take(look, pairs)
+    return _take(assignment, pairs)
 
 
-def _give_new(look: Look) -> Look:
+def _give_new(assignment: Assignment) -> Assignment:
     """Give free detections to tracks that are not known yet to be vehicles."""
-    state, free, candidates, step = look
+    state, free, candidates, step = assignment
     rows = np.flatnonzero(~state.tracks.confirmed)
     columns = np.flatnonzero(free)
     pairs = pairs_of_new(state.tracks, rows, candidates, columns, step.size, step.edge_noise)
-    return _take(look, pairs)
+    return _take(assignment, pairs)
 
 
-def _give_outgrown(look: Look) -> Look:
+def _give_outgrown(assignment: Assignment) -> Assignment:
     """Give boxes around vehicles that were known by a part only to these."""
-    state, free, candidates, step = look
+    state, free, candidates, step = assignment
     columns = np.flatnonzero(free)
     if not len(columns):
-        return look
+        return assignment
     tracks, rows = outgrown(state.tracks, candidates.edges[columns])
-    look = look._replace(state=state._replace(tracks=tracks))
+    assignment = assignment._replace(state=state._replace(tracks=tracks))
     return _take(
-        look, pairs_of_known(tracks, rows, candidates, columns, step.size, step.edge_noise)
+        assignment, pairs_of_known(tracks, rows, candidates, columns, step.size, step.edge_noise)
     )
 
 
-def _united(look: Look) -> Look:
+def _united(assignment: Assignment) -> Assignment:
     """Let a lorry and its cab, which were both detected, be one; shapes are joined as blobs are."""
-    state, _, candidates, step = look
+    state, _, candidates, step = assignment
     if candidates.are_shapes:
-        return look
+        return assignment
     companions = watched(state.companions, state.tracks, step.size, step.edge_noise)
-    return look._replace(state=unified(state._replace(companions=companions)))
+    return assignment._replace(state=unified(state._replace(companions=companions)))
 
 
-def _take(look: Look, pairs: Pairs) -> Look:
+def _take(assignment: Assignment, pairs: Pairs) -> Assignment:
     """Correct tracks by their detections, believe in them the more, and number new vehicles."""
-    state, free, candidates, step = look
+    state, free, candidates, step = assignment
     rows, columns, fits = pairs
     if not len(rows):
-        return look
+        return assignment
     free = free.copy()
     free[columns] = False
     tracks = state.tracks.take(rows)
@@ -154,7 +154,7 @@ def _take(look: Look, pairs: Pairs) -> Look:
         every = np.zeros(len(state.tracks), np.bool_)
         every[rows[proven]] = True
         state = named(state, every, returning=step.parameters.returning)
-    return look._replace(state=state, free=free)
+    return assignment._replace(state=state, free=free)
 
 
 def _shown(
@@ -178,19 +178,19 @@ def _shown(
     )
 
 
-def _without_parts(look: Look, *, either: bool = False) -> Look:
+def _without_parts(assignment: Assignment, *, either: bool = False) -> Assignment:
     """Drop free detections inside vehicles, bonnets or second boxes, or `either` in the other."""
-    state, free, candidates, _ = look
+    state, free, candidates, _ = assignment
     tracks = state.tracks
     columns = np.flatnonzero(free)
     if not len(columns):
-        return look
+        return assignment
     boxes = tracks.edges[tracks.confirmed & (either | tracks.detected)]
     parts = columns[inside_of(boxes, candidates.edges[columns], either=either)]
     if not len(parts):
-        return look
+        return assignment
     # They stood beside a vehicle: their place is none where false alarms come from nothing.
     state.experience.detections.learn(candidates.samples(parts), False, alone=False)
     free = free.copy()
     free[parts] = False
-    return look._replace(free=free)
+    return assignment._replace(free=free)
