@@ -5,13 +5,13 @@
 
 `tracker` has its step, in the order of the chart in docs/fusion.md.
 
-- step: `observe` predicts and observes, `flow_evidence` weighs, `visibility` judges, `follow` follows
-  and learns; `schedule` says which costly tasks a frame has
+- step: `observe` predicts and observes, `flow_evidence` weighs, `visibility` judges, `follow`
+  follows and learns; `schedule` says which costly tasks a frame has
 - belief: `state` has the `hypotheses`, and the `verdict` on the frame; `step` the frame, and the
   memory that all share
 - measured: `appearance` (filter) and `paint`; `surface_flow`, `surface_points`; `size_search`
 - hidden: `perspective` predicts, by sightings that `standing_occluder` restores
-- before a standing camera outlines (`outline_boxes`) show what turns (`turning`, `unfolding`), comes
-  out (`emergence`, `reappearance`) or is another vehicle (`known_others`)
+- before a standing camera outlines (`outline_boxes`) show what turns (`turning`, `unfolding`),
+  comes out (`emergence`, `reappearance`) or is another vehicle (`known_others`)
 - gone: `departure`
 """

@@ -8,9 +8,9 @@
 - state: `state` has the `tracks`, frozen `rows` of arrays: Gaussians (`vehicle_state`), whose edges
   `edge_observation` has, and `way`s; and the `horizon`
 - step: `prediction`, `occlusion`, `observe`, `pixel_hold`, `ending`, `recognition`
-- detections: `candidates` weighs them by `detection_evidence`, and `association` pairs them; `parts`
-  divides boxes, `correction` measures their edges (`box_edges`), `existence` adds up evidence, and
-  `births` begins tracks that drive by the `speeds` of this road
+- detections: `candidates` weighs them by `detection_evidence`, and `association` pairs them;
+  `parts` divides boxes, `correction` measures their edges (`box_edges`), `existence` adds up
+  evidence, and `births` begins tracks that drive by the `speeds` of this road
 - one number for one vehicle: `identity`, by `colours`, and `bodies`
 - results: `report` makes an `estimate` of each; `session` follows a stream of images
 """
