@@ -60,6 +60,22 @@ def test_a_vehicle_confirmed_a_second_time_is_the_first_unless_there_were_two():
     assert (one.identity, one.joined) == (1, 2)
 
 
+@pytest.mark.parametrize(
+    ("age", "box", "expected"),
+    [
+        (23.0, (100.0, 100.0, 140.0, 130.0), 0),  # from three periods before
+        (24.0, (119.0, 100.0, 159.0, 130.0), 0),  # from four, with most of the box in common
+        (24.0, (120.0, 100.0, 160.0, 130.0), None),
+    ],
+    ids=["just before", "a second box of it", "beside it"],
+)
+def test_a_new_one_that_was_detected_beside_the_hidden_vehicle_is_another_one(age, box, expected):
+    where = np.array([[100.0, 100.0, 140.0, 130.0]])
+    hidden = changed(confirmed(1, 100.0, undetected=20.0), detection=where)
+    new = changed(track(2, 115.0, colours=RED, age=age), detection=np.array([box]))
+    assert found_again(hidden, new) == expected
+
+
 def test_of_two_hidden_vehicles_the_nearer_one_has_come_back():
     far, near = (confirmed(1, left, undetected=20.0) for left in (80.0, 120.0))
     assert found_again(far, near, confirmed(3, 130.0)) == 1

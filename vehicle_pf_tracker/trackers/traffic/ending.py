@@ -76,7 +76,10 @@ def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) 
     # as a bridge is. Shapes are refuted even so, as many were pieces.
     hidden = tracks.beliefs.has_driven & ~absences.seen
     hidden &= not experience.detections.are_shapes
-    known = (inside >= _LEFT) & (hidden | (log_odds >= _REFUTED))
+    # What is detected in this image has not left it: the box of a vehicle that passes close by is
+    # larger than what is seen of it, and a new one would get a number of its own.
+    in_image = (inside >= _LEFT) | (tracks.detected & (inside > 0))
+    known = in_image & (hidden | (log_odds >= _REFUTED))
     longest = parameters.lost_after + parameters.forgotten_after  # predicted, then kept in mind
     remembered = absences.unseen * step.period <= longest
     return remembered & np.where(tracks.confirmed, known, tentative)

@@ -188,8 +188,7 @@ def former(tracks: Tracks, row: int, others: Bools) -> int | None:
     hidden &= tracks.sights.visible >= _OUT_OF_SIGHT
     hidden[row] = False
     is_named = bool(tracks.confirmed[row])
-    if is_named:  # one that was detected beside the other is another one
-        hidden &= undetected > tracks.beliefs.ways.age[row]
+    hidden &= ~_beside(tracks, row)
     rows = np.flatnonzero(hidden)
     looks = tracks.sights.looks
     # Without colours nothing but the distance speaks: too little for a number.
@@ -211,6 +210,19 @@ def former(tracks: Tracks, row: int, others: Bools) -> int | None:
     # The nearest, of equally near ones the oldest track, so that runs repeat.
     nearest = np.lexsort((tracks.names.serial[rows], distance))
     return int(rows[nearest[0]])
+
+
+def _beside(tracks: Tracks, row: int) -> Bools:
+    """Find the tracks (N,) beside which the one at `row` was detected: they are other vehicles."""
+    together = tracks.beliefs.ways.age[row] - tracks.sights.absences.undetected
+    if tracks.confirmed[row]:
+        return np.asarray(together >= 0)
+    # A new one may have been a second box of the vehicle that it is, which shares most of it.
+    detections = tracks.sights.looks.detection
+    own = detections[row]
+    smaller = np.minimum(areas(detections), areas(own))
+    apart = intersections(own, detections) <= _SHARED * smaller
+    return np.asarray((together >= _HIDDEN_FOR) & apart)
 
 
 def _apart(new: Array, old: Array) -> tuple[Array, Array]:
