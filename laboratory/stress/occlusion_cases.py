@@ -78,6 +78,7 @@ def _cases(
         done.add(placed.path)
         occluder = _with_texture(placed, footage, own)
         more = {**labels, "path": placed.path, "hidden": str(placed.hidden)}
+        more["course"] = placed.course
         more["carried_by"] = _carrier(background)
         yield Case(
             origin,

@@ -32,6 +32,17 @@ _HEADING_FRAMES = 15
 """Frames before and after an occlusion that headings are taken over, half a second."""
 _TURNING_DEGREES = 15.0
 """Change of heading that leaves a constant velocity a quarter of the way beside the vehicle."""
+TURNING = "turning"
+"""Course of a vehicle whose heading changes while something covers it."""
+NEAR = "coming near"
+"""Course of one that grows meanwhile."""
+AWAY = "going away"
+"""Course of one that shrinks meanwhile."""
+ACROSS = "across"
+"""Course of one that keeps its size meanwhile."""
+_GROWN = 1.1
+"""Factor of the size by which it comes near, or its inverse by which it goes away, while something
+covers it: a tenth, above the noise of true boxes. In between it drives across."""
 _LEAST_WAY = 0.15, 4.0
 """Way in diagonals, and in px, below which a heading is noise of the truth."""
 _POLE_SHARES = (0.3, 0.5)
@@ -72,6 +83,8 @@ class Placed:
         Totally hidden frames, of the exact truth.
     path : str
         ``straight`` or ``turning``: the vehicle's way across the occlusion.
+    course : str
+        `TURNING`, or of a straight way `NEAR`, `AWAY` or `ACROSS`.
     """
 
     occluder: Occluder
@@ -79,6 +92,7 @@ class Placed:
     count: int
     hidden: int
     path: str
+    course: str
 
 
 class Placer:
@@ -200,12 +214,20 @@ class Placer:
         if last - (span.start + int(core[-1])) < LEAST_TAIL:
             return None
         path = self._path(occluder.motion, span, int(core[0]), int(core[-1]))
-        return Placed(occluder, first, last + 1 - first, len(hidden), path)
+        # While it is touched: the tracker has no clear view of its size then.
+        begin = self._box(span[int(touched[0])])
+        end = self._box(span[int(touched[-1])])
+        course = TURNING if path == TURNING else course_of(begin, end)
+        return Placed(occluder, first, last + 1 - first, len(hidden), path, course)
 
     def _share(self, occluder: Occluder, index: int) -> float:
+        return occluder.visible_share(self._box(index), index, self._size)
+
+    def _box(self, index: int) -> Box:
+        """Return the true box of a frame of the span, all of which have truth."""
         truth = self._truth[index]
         assert truth is not None
-        return occluder.visible_share(truth.box, index, self._size)
+        return truth.box
 
     def _in_view(self, first: int, last: int) -> bool:
         """Return whether the sequence itself shows the vehicle, in full where the case begins."""
@@ -230,7 +252,16 @@ class Placer:
             headings.append(math.atan2(way[1], way[0]))
         # The shorter way round, within 180 degrees.
         turn = math.degrees(abs(math.remainder(headings[1] - headings[0], 2 * math.pi)))
-        return "turning" if turn > _TURNING_DEGREES else "straight"
+        return TURNING if turn > _TURNING_DEGREES else "straight"
+
+
+def course_of(first: Box, last: Box) -> str:
+    """Tell by its true boxes whether a vehicle has come near, gone away, or driven across."""
+    # Of areas, hence the square.
+    grown = last.width * last.height / (first.width * first.height)
+    if grown > _GROWN**2:
+        return NEAR
+    return AWAY if grown < 1 / _GROWN**2 else ACROSS
 
 
 def _rectangles(

@@ -24,6 +24,7 @@ _TITLES = {
     ALL_CASES: "All cases",
     "kind": "Kinds of cases",
     "path": "Painted total occlusions, by the vehicle's path",
+    "course": "Painted total occlusions, by the vehicle's course",
     "occlusion": "Painted total occlusions, by occluder",
     "camera": "Cameras",
 }

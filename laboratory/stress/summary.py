@@ -66,7 +66,8 @@ class Group:
     system : str
         Label of the system.
     by : str
-        Property that they share: ``kind``, ``path``, ``occlusion``, ``camera`` or `ALL_CASES`.
+        Property that they share: ``kind``, ``path``, ``course``, ``occlusion``, ``camera`` or
+        `ALL_CASES`.
     name : str
         Value of that property.
     results : tuple of Result
@@ -163,6 +164,7 @@ def _occlusion(result: Result) -> str:
 _GROUPINGS: dict[str, Callable[[Result], str]] = {
     "kind": lambda result: result.case.kind,
     "path": lambda result: result.case.label("path") if _occlusion(result) else "",
+    "course": lambda result: result.case.label("course") if _occlusion(result) else "",
     "occlusion": _occlusion,
     "camera": lambda result: result.case.camera,
 }

@@ -16,6 +16,7 @@ from laboratory.stress.coverage import visible_share
 from laboratory.stress.footage import open_footage
 from laboratory.stress.occluder import Motion, Occluder
 from laboratory.stress.painting import Texture
+from laboratory.stress.placing import course_of
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.truth import Occlusion, Truth
 
@@ -89,6 +90,18 @@ def test_straight_and_turning_stretches_are_told_apart(tmp_path, battery):
             assert case.label("path") == "turning"
     straight = of_kinds(battery, "wall", "lorry", "pole")
     assert {case.label("path") for case in straight} == {"straight"}
+    assert {case.label("course") for case in straight} == {"across"}  # of one size all the time
+    assert all(
+        case.label("course") == "turning" for case in cases if case.label("path") == "turning"
+    )
+
+
+def test_a_vehicle_comes_near_by_a_tenth_of_its_size():
+    first = Box(0, 0, 40, 20)
+    assert course_of(first, Box(90, 50, 44.1, 22)) == "coming near"
+    assert course_of(first, Box(90, 50, 44, 21.9)) == "across"
+    assert course_of(first, Box(90, 50, 40 / 1.1, 20 / 1.11)) == "going away"
+    assert course_of(first, Box(90, 50, 20, 40)) == "across"  # another side of the same area
 
 
 def test_a_standing_wall_moves_with_the_background_of_a_panning_camera(tmp_path):

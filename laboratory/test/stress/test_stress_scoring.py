@@ -145,10 +145,13 @@ def test_differences_are_paired_by_case_and_seed():
 
 def test_occlusions_are_told_apart_by_path_and_speed():
     results = [
-        result("a", "A", [0], kind="lorry", path="turning", speed="fast", hidden="5"),
+        result(
+            "a", "A", [0], kind="lorry", path="turning", course="turning", speed="fast", hidden="5"
+        ),
         result("b", "A", [0], kind="pole", path="straight", hidden="0"),
     ]
     names = {(group.by, group.name) for group in groups(results)}
     assert ("occlusion", "fast lorry turning") in names
     assert ("path", "turning") in names
+    assert ("course", "turning") in names
     assert ("path", "straight") not in names
