@@ -109,3 +109,50 @@ def test_near_a_box_only_what_is_within_three_of_its_longer_sides_has_a_box():
     (near,) = foreground.boxes_near(np.array([150.0, 60.0]), np.array([20.0, 10.0]))
     assert near.ravel() == pytest.approx([100, 50, 124, 64], abs=2)
     assert not len(foreground.boxes_near(np.array([400.0, 60.0]), np.array([20.0, 10.0])))
+
+
+@pytest.mark.parametrize("zoom", [1.0, 0.5])
+def test_what_is_left_of_a_vehicle_in_its_box(zoom):
+    """The left half of 24 px: of a box at 100 to 124 the blurred rim takes a px more."""
+    foreground, _ = watched(zoom)
+    foreground.learn_background()
+    foreground.keep(scene((100, 50, 112, 64), zoom=zoom), still=True)
+    part = foreground.part_in(np.array([112.0, 57.0]) / zoom, SIZE / zoom)
+    assert part.share == pytest.approx(0.5, abs=1.5 / 24)
+    assert part.bare == pytest.approx(0.5, abs=1.5 / 24)
+    assert part.sides[0] == pytest.approx(np.array([100.0, 50.0]) / zoom, abs=1 / zoom)
+    assert part.sides[1] == pytest.approx(np.array([112.0, 64.0]) / zoom, abs=2 / zoom)
+
+
+def test_where_all_of_the_box_moves_no_end_of_it_is_bare():
+    foreground, _ = watched()
+    foreground.learn_background()
+    foreground.keep(scene((100, 50, 124, 64)), still=True)
+    part = foreground.part_in(np.array([112.0, 57.0]), SIZE)
+    assert (part.share, part.bare) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("boxes", "centre"),
+    [
+        ([(104, 40, 180, 80)], (112.0, 57.0)),  # a lorry, mostly beside the box
+        ([(140, 50, 150, 64)], (112.0, 57.0)),  # another one, a length ahead
+        ([], (112.0, 57.0)),
+        ([(100, 50, 124, 64)], (400.0, 57.0)),
+    ],
+)
+def test_what_drives_by_is_no_part_of_a_vehicle(boxes, centre):
+    foreground, _ = watched()
+    foreground.learn_background()
+    foreground.keep(scene(*boxes), still=True)
+    assert foreground.part_in(np.array(centre), SIZE) is None
+
+
+def test_beside_what_is_left_a_lorry_leaves_no_end_bare():
+    """The lorry covers the right half of the box, 5 px beside the rest."""
+    foreground, _ = watched()
+    foreground.learn_background()
+    foreground.keep(scene((100, 50, 108, 64), (113, 40, 180, 72)), still=True)
+    part = foreground.part_in(np.array([112.0, 57.0]), SIZE)
+    assert part.share == pytest.approx(8 / 24, abs=2 / 24)
+    assert part.bare < 0.05
