@@ -1,14 +1,25 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""First states of vehicles, which borders of the image may cut."""
+"""First states of vehicles, which borders of the image may cut, and tracks that go on."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from measured_vehicle import BOX, SIZE, STILL
+from traffic_samples import changed, step_of
 
-from vehicle_pf_tracker.trackers.traffic.births import first_gaussians
+from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.trackers.traffic.births import begun, begun_in, first_gaussians
+from vehicle_pf_tracker.trackers.traffic.candidates import weighed
 from vehicle_pf_tracker.trackers.traffic.edge_observation import Edge
+from vehicle_pf_tracker.trackers.traffic.state import Experience, State
+from vehicle_pf_tracker.trackers.traffic.tracks import no_tracks
+
+STEP = step_of(SIZE)
+AT_THE_BORDER = (0, 100, 40, 140)
+LARGER = (0, 96, 48, 142)
 
 
 def first(*edges):
@@ -42,3 +53,55 @@ def test_vehicles_begin_together_as_each_alone_would():
     for row, box in enumerate(boxes):
         assert (every.mean[row] == first(*box).mean[0]).all()
         assert (every.covariance[row] == first(*box).covariance[0]).all()
+
+
+def begin(waiting, shapes, *, are_shapes=True):
+    """Tracks after the first of shapes began, where tracks of one detection each wait."""
+    former = np.array(waiting, float)
+    state = begun_in(State(no_tracks(), Experience()), former, STEP)
+    tracks = changed(state.tracks, undetected=1.0)
+    looks = replace(tracks.sights.looks, detection=former)
+    tracks = replace(
+        tracks,
+        sights=replace(tracks.sights, looks=looks),
+        beliefs=replace(tracks.beliefs, ways=tracks.beliefs.ways.added(former)),
+    )
+    boxes = [(left, top, right - left, bottom - top) for left, top, right, bottom in shapes]
+    detections = replace(Detections.make(boxes), are_shapes=are_shapes)
+    evidence = state.experience.detections
+    evidence.look(are_shapes=are_shapes)
+    candidates = weighed(detections, evidence, SIZE)
+    return begun(state._replace(tracks=tracks), candidates, np.array([0]), STEP).tracks
+
+
+def test_a_vehicle_that_the_border_cuts_goes_on_from_its_former_track():
+    tracks = begin([AT_THE_BORDER], [LARGER])
+    assert tracks.names.serial.tolist() == [1]
+    # With the way of before, and the shape of now.
+    assert tracks.beliefs.ways.matches.tolist() == [2]
+    assert tracks.beliefs.ways.first.tolist() == [list(AT_THE_BORDER)]
+    assert tracks.sights.looks.detection.tolist() == [list(LARGER)]
+    assert tracks.detected.all()
+
+
+@pytest.mark.parametrize(
+    ("former", "shapes", "are_shapes"),
+    [
+        (AT_THE_BORDER, [LARGER], False),  # a network's boxes are whole
+        (AT_THE_BORDER, [(0, 160, 40, 200)], True),  # elsewhere
+        (AT_THE_BORDER, [LARGER, (50, 96, 90, 142)], True),  # a piece, with its rest
+        (BOX, [(100, 96, 148, 132)], True),  # nothing cuts it
+        (AT_THE_BORDER, [(8, 100, 48, 140)], True),  # nothing cuts it any more
+    ],
+)
+def test_other_shapes_begin_tracks_of_their_own(former, shapes, are_shapes):
+    tracks = begin([former], shapes, are_shapes=are_shapes)
+    assert tracks.names.serial.tolist() == [1, 2]
+    assert tracks.beliefs.ways.matches.tolist() == [1, 1]
+
+
+def test_of_two_tracks_the_nearer_one_goes_on():
+    tracks = begin([AT_THE_BORDER, (0, 104, 46, 144)], [(0, 105, 48, 145)])
+    # The first one waits on, the second has the shape.
+    assert tracks.names.serial.tolist() == [1, 2]
+    assert tracks.detected.tolist() == [False, True]

@@ -151,7 +151,7 @@ def believed(
     if candidates.are_shapes:
         is_old = beliefs.ways.age >= _WAIT / step.period
         # A piece drives as straight as its vehicle, whose rest is beside it until both are joined.
-        now_drives &= is_old | ~_have_rest(edges, candidates.edges)
+        now_drives &= is_old | ~have_rest(edges, candidates.edges)
         # Scores say how full they are, and the hole of what has left, or a digit of a clock, is as
         # full image after image: part of a drive besides.
         shared = beliefs.ways.shared_lengths(tracks.edges, step.size, step.edge_noise)
@@ -198,7 +198,7 @@ def _weighed(
     return replace(tracks, beliefs=beliefs), lengths
 
 
-def _have_rest(edges: Array, others: Array) -> Bools:
+def have_rest(edges: Array, others: Array) -> Bools:
     """Find boxes (N, 4) among `others` (M, 4), all, that have another one beside them."""
     reach = _REACH * both_ends(sides_of(edges))
     near = intersections((edges - reach * INWARD_SIGNS)[:, np.newaxis], others) > 0
