@@ -19,18 +19,20 @@ ROAD = grey_road(400, 120)
 BODY = np.random.default_rng(1).integers(160, 255, (24, 120)).astype(np.uint8)
 
 
-def looks(left, rate=30):
+def looks(left, rate=30, stops=FRAMES):
     """Drive to the right and look; `left(time)` px of it are beyond the box's left side.
 
-    Gives time and left side in each frame, and the looks up to it.
+    Once it `stops`, others pass before it, so that its surface changes as if it drove. Gives time
+    and left side in each frame, and the looks up to it.
     """
     foreground, unfolding, right = Foreground(), Unfolding(), 90
     for time in range(FRAMES):
-        right += 2
+        right += 2 if time < stops else 0
         picture = ROAD.copy()
         width = 30 + left(time)
         # Its surface moves with it.
-        picture[40:64, right - width : right] = BODY[:, 120 - width :]
+        body = np.roll(BODY, 2 * max(time - stops, 0), axis=1)
+        picture[40:64, right - width : right] = body[:, 120 - width :]
         foreground.keep(SmallGrey(picture, 1.0), still=True)
         if foreground.is_known:
             position = np.array([right - 15.0, 52.0])
@@ -38,9 +40,10 @@ def looks(left, rate=30):
         yield time, right - width, unfolding
 
 
-def drive(left):
+def drive(left, stops=FRAMES):
     """Drive until a side has unfolded; None if none does."""
-    return next((found for found in looks(left) if found[2].outline is not None), None)
+    found = looks(left, stops=stops)
+    return next((one for one in found if one[2].outline is not None), None)
 
 
 @pytest.mark.parametrize(("rate", "frames"), [(10, 2), (30, 4), (60, 8)])
@@ -63,6 +66,14 @@ def test_a_side_that_unfolds_is_found_and_followed():
     assert branch.is_proven
     centre, size = branch.box
     assert abs(centre[0] - size[0] / 2 - left) <= 2
+
+
+def test_what_comes_up_beside_one_that_stands_is_another():
+    def left(time):
+        return min(max(time - BEGINS, 0), 60)
+
+    assert drive(left, stops=BEGINS + 4) is None
+    assert drive(left, stops=BEGINS + 20) is not None
 
 
 def test_what_joins_at_once_is_another():
