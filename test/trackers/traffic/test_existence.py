@@ -12,19 +12,16 @@ from traffic_samples import changed, step_of, together, track
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import birth_odds
 from vehicle_pf_tracker.trackers.traffic.candidates import weighed
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, PLACE_COUNT
+from vehicle_pf_tracker.trackers.traffic.detection_rate import DetectionRate
 from vehicle_pf_tracker.trackers.traffic.ending import end
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackMode
 from vehicle_pf_tracker.trackers.traffic.existence import (
-    CERTAIN_LOG_ODDS,
     believed,
     doubt,
     drives,
     fits_of_known,
 )
-from vehicle_pf_tracker.trackers.traffic.identity import resumed
 from vehicle_pf_tracker.trackers.traffic.prediction import driven
-from vehicle_pf_tracker.trackers.traffic.returns import DetectionRate
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
@@ -339,69 +336,11 @@ def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
     assert min(missed([200.0, 200.0])) > 0
 
 
-def vanish(experience, left, *, given=False):
-    """Return a vehicle that the detector missed several times in plain sight."""
-    facts = {"confirmed": True, "has_driven": True, "given": given}
-    state = State(track(1, left, **facts, log_odds=CERTAIN_LOG_ODDS, undetected=1.0), experience)
-    for _ in range(4):
-        state = end(doubt(state, STEP), STEP)
-    return state.tracks
-
-
-def is_lost(tracks):
-    return bool(tracks.sights.absences.lost[0])
-
-
-def ended(experience, left):
-    """Let a vehicle vanish and never come back."""
-    gone = changed(vanish(experience, left), unseen=1e3)
-    assert len(end(State(gone, experience), STEP).tracks) == 0
-
-
-def come_back(experience, left):
-    """Let a vehicle vanish and be found again."""
-    resumed(together(vanish(experience, left), track(2, left)), 0, 1, experience)
-
-
-def test_what_vanished_where_vehicles_come_back_is_occluded_and_elsewhere_lost():
-    experience = Experience()
-    assert not is_lost(vanish(experience, 100.0))  # nothing is known
-    for _ in range(3):
-        come_back(experience, 20.0)
-        ended(experience, 200.0)
-    assert not is_lost(vanish(experience, 20.0))
-    assert is_lost(vanish(experience, 200.0))
-    come_back(experience, 20.0)
-    assert not is_lost(vanish(experience, 120.0))  # most came back, wherever that was
-
-
-def test_the_share_of_a_place_is_a_beta_binomial_estimate():
-    experience = Experience()
-    ended(experience, 20.0)
-    ended(experience, 20.0)
-    come_back(experience, 200.0)
-    usual = (1 + 1) / (3 + 2)
-    places = [vanish(experience, left).sights.absences.vanished[0] for left in (20.0, 200.0)]
-    assert all(0 <= place < PLACE_COUNT for place in places)
-    shares = [experience.reappearances.share(int(place)) for place in places]
-    assert shares == pytest.approx([2 * usual / 4, (1 + 2 * usual) / 3])
-
-
-def test_a_place_is_learnt_anew():
-    experience = Experience()
-    for _ in range(500):
-        come_back(experience, 100.0)
-    for _ in range(40):
-        ended(experience, 100.0)
-    assert is_lost(vanish(experience, 100.0))
-
-
-def test_one_that_was_given_by_hand_stays_and_teaches_nothing():
-    experience = Experience()
-    ended(experience, 100.0)
-    one = vanish(experience, 100.0, given=True)
-    assert not is_lost(one)
-    assert one.sights.absences.vanished[0] == NOWHERE
+@pytest.mark.parametrize(("log_odds", "is_lost"), [(0.1, False), (-0.1, True)])
+def test_a_hidden_vehicle_is_lost_once_it_is_rather_not_there(log_odds, is_lost):
+    facts = {"confirmed": True, "has_driven": True, "unseen": 30.0, "undetected": 30.0}
+    state = State(track(1, 100.0, **facts, passed=30, log_odds=log_odds), Experience())
+    assert end(state, STEP).tracks.sights.absences.lost.tolist() == [is_lost]
 
 
 def evidence_of(fit, *, drives=True, log_odds=0.0, are_shapes=False, experience=None):

@@ -10,7 +10,6 @@ from traffic_samples import changed, together, track
 from vehicle_pf_tracker.image.windows.box_colours import COLOUR_BINS
 from vehicle_pf_tracker.trackers.traffic.identity import former, resumed
 from vehicle_pf_tracker.trackers.traffic.report import estimates_of
-from vehicle_pf_tracker.trackers.traffic.state import Experience
 
 RED, BLUE = np.eye(COLOUR_BINS)[:2]
 
@@ -29,7 +28,7 @@ def test_a_vehicle_that_reappears_a_little_off_is_the_hidden_one():
     hidden, new = confirmed(1, 100.0, undetected=20.0), confirmed(2, 130.0)
     both = together(hidden, changed(new, detection=new.edges))
     assert found_again(hidden, new) == 0
-    one = resumed(both, 0, 1, Experience()).take(np.array([0]))
+    one = resumed(both, 0, 1).take(np.array([0]))
     assert one.sights.looks.detection[0, 0] == pytest.approx(130)
     assert one.names.identity == 1
     assert one.edges[0, 0] == pytest.approx(130)
@@ -55,7 +54,7 @@ def test_a_vehicle_confirmed_a_second_time_is_the_first_unless_there_were_two():
     assert found_again(ghost, born) == 0
     assert found_again(ghost, confirmed(2, 115.0, age=21.0)) is None  # detected beside it
     assert found_again(ghost, confirmed(2, 140.0, age=12.0)) is None  # near, not beside it
-    both = resumed(together(ghost, born), 0, 1, Experience())
+    both = resumed(together(ghost, born), 0, 1)
     one, _ = estimates_of(both)
     assert (one.identity, one.joined) == (1, 2)
 

@@ -33,8 +33,6 @@ _GRID = 16
 larger places a tree would speak against the road beside it, smaller ones are seldom learnt."""
 PLACE_COUNT = _GRID**2
 """Places of the image."""
-NOWHERE = -1
-"""No place: an index that no place has."""
 _FALSE_ALARMS = 1.0
 """False alarms per image that are expected before any is seen. A choice: good detectors have fewer,
 poor ones more."""

@@ -11,9 +11,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import inside_image
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE
 from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN_LOG_ODDS, drives
-from vehicle_pf_tracker.trackers.traffic.returns import Returns
 from vehicle_pf_tracker.trackers.traffic.rows import Bools
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
@@ -25,8 +23,6 @@ _LEAVES = 0.5
 """Share in the image below which an unseen vehicle has left it: most of it is outside."""
 _LEFT = 0.1
 """Share in the image below which a vehicle is forgotten: none of it will be seen."""
-_RETURNS = 0.5
-"""Share of what vanished in a place that was seen again, below which it is gone: even odds."""
 _DRIVE_MATCHES = 4
 """Detections of a track below which its way tells no drive: fewer lie on a line by chance."""
 _PATIENCE = 4
@@ -41,12 +37,10 @@ def end(state: State, step: Step) -> State:
     # 1. Shares in the image are taken anew: corrections and holds have moved the boxes.
     inside = inside_image(tracks.edges, step.size)
     goes_on = _goes_on(tracks, inside, experience, step)
-    # 2. What came back where a vehicle vanished tells whether it is gone; those that end teach it.
-    gone = _gone(tracks, inside, goes_on, experience)
-    tracks = _with_lost(tracks, gone, step)
+    tracks = _with_lost(tracks, step)
     if goes_on.all():
         return state._replace(tracks=tracks)
-    # 3. Tentative tracks that end were false alarms, and teach how such look. What drove may have
+    # 2. Tentative tracks that end were false alarms, and teach how such look. What drove may have
     # been a vehicle, and tells nothing about its detections: by the same bounds as for a number,
     # as of shapes that are less straight seven in eight are leaves or light.
     are_shapes = experience.detections.are_shapes
@@ -54,7 +48,7 @@ def end(state: State, step: Step) -> State:
     never_drove |= ~drives(tracks, step, are_shapes=are_shapes)
     for row in np.flatnonzero(~goes_on & ~tracks.confirmed & never_drove).tolist():
         experience.detections.learn(tracks.beliefs.samples[row], False)
-    # 4. Vehicles teach the horizon once each, when all of their growth is known, and how fast new
+    # 3. Vehicles teach the horizon once each, when all of their growth is known, and how fast new
     # ones may be.
     ends = tracks.confirmed & ~goes_on
     grown = tracks.drives.growths.take(ends)
@@ -85,31 +79,12 @@ def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) 
     return remembered & np.where(tracks.confirmed, known, tentative)
 
 
-def _gone(tracks: Tracks, inside: Array, goes_on: Bools, experience: Experience) -> Bools:
-    """Find vehicles that vanished where most do not come back; learn from those that end."""
-    vanished = tracks.sights.absences.vanished
-    ends = tracks.confirmed & ~goes_on & (inside > _LEFT)
-    gone = np.zeros(len(tracks), np.bool_)
-    for row in np.flatnonzero((vanished != NOWHERE) | ends).tolist():
-        place = int(vanished[row])
-        if place != NOWHERE:
-            gone[row] = experience.reappearances.share(place) < _RETURNS
-        if ends[row]:
-            _note_end(experience.reappearances, place)
-    return gone
-
-
-def _note_end(returns: Returns, place: int) -> None:
-    if place != NOWHERE:
-        returns.learn(place, found=False)
-
-
-def _with_lost(tracks: Tracks, gone: Bools, step: Step) -> Tracks:
+def _with_lost(tracks: Tracks, step: Step) -> Tracks:
     """Say of which vehicles nothing is predicted any more."""
     sights = tracks.sights
     absences = tracks.sights.absences
     is_old = absences.unseen * step.period > step.parameters.lost_after
     has_left = (sights.inside < _LEAVES) & ~absences.seen
-    lost = is_old | has_left | gone | (tracks.beliefs.log_odds < 0)
+    lost = is_old | has_left | (tracks.beliefs.log_odds < 0)
     sights = replace(sights, absences=replace(absences, lost=lost))
     return replace(tracks, sights=sights)

@@ -15,7 +15,6 @@ from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas
 from vehicle_pf_tracker.trackers.traffic.box_edges import INWARD_SIGNS, both_ends, sides_of
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE, places_of
 from vehicle_pf_tracker.trackers.traffic.parameters import IGNORE_STANDING
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.state import DENSE, Experience, State, Step
@@ -47,8 +46,6 @@ _MISSED = 0.3
 """Log odds that a detection missed in plain sight takes off a vehicle: something unknown may hide
 it, so that only 25 take off all that it can have. At .15 ghosts stay twice as long: 1660 images at
 dusk have IDF1 81.2 instead of 84.6; cameras left out hardly tell both apart."""
-_VANISHED_AFTER = 4
-"""Misses in plain sight in a row by which it vanished: 1 in 16 by chance at a rate of a half."""
 _WAIT = 0.5
 """Time in s before a shape is a vehicle that has a rest beside it, or no straight drive: the pieces
 of a blob are soon joined. 34 public clips of 24 to 30 Hz, before a lone one was excepted: IDF1
@@ -137,8 +134,7 @@ def believed(
         The frame, and inputs that all parts of a step share.
     """
     edges = candidates.edges[columns]
-    # 1. Learn from what had vanished, before the absence ends.
-    note_found(tracks, experience)
+    # 1. Add what this detection tells.
     tracks = _seen(tracks, edges)
     tracks, lengths = _weighed(tracks, candidates, columns, fits, step)
     # 2. All evidence makes it ripe, a drive or sure scores prove it.
@@ -214,13 +210,6 @@ def _seen(tracks: Tracks, edges: Array) -> Tracks:
     absences = sights.absences.ended()
     sights = replace(sights, hidden_by=hidden_by, absences=absences, looks=looks)
     return replace(tracks, sights=sights)
-
-
-def note_found(tracks: Tracks, experience: Experience) -> None:
-    """Learn which of tracks that are detected now had vanished in plain sight."""
-    vanished = tracks.sights.absences.vanished
-    for place in vanished[vanished != NOWHERE].tolist():
-        experience.reappearances.learn(place, found=True)
 
 
 def drives(tracks: Tracks, step: Step, *, are_shapes: bool = False) -> Bools:
@@ -305,12 +294,13 @@ def doubt(state: State, step: Step) -> State:
     """Take off evidence from tracks that a detector has missed in plain sight."""
     tracks = state.tracks
     elapsed = step.elapsed
-    sights = tracks.sights
     confirmed = tracks.confirmed
     detected = tracks.detected
     # Every look counts for all that it has not detected.
-    passed = np.where(detected, 0, sights.absences.passed + 1)
-    absences = replace(sights.absences, passed=passed)
+    absences = tracks.sights.absences
+    absences = replace(absences, passed=np.where(detected, 0, absences.passed + 1))
+    sights = replace(tracks.sights, absences=absences)
+    tracks = replace(tracks, sights=sights)
     # 1. A detector that misses all it could see has failed, and says nothing.
     in_sight = tracks.in_sight
     is_seen = absences.seen
@@ -319,7 +309,7 @@ def doubt(state: State, step: Step) -> State:
     # boxes that pixels hold on an empty road would excuse each other.
     watched &= absences.undetected == absences.undetected[watched].min(initial=np.inf)
     if not (confirmed & detected).any() and watched.sum() >= _BLIND_FROM:
-        return state._replace(tracks=replace(tracks, sights=replace(sights, absences=absences)))
+        return state._replace(tracks=tracks)
     # 2. Confirmed: a fixed price, the unknown may hide it. Tentative: a sequential test.
     asked = tracks.beliefs.has_driven & in_sight & is_seen
     rates = state.experience.rate.learn(asked, detected)
@@ -333,11 +323,5 @@ def doubt(state: State, step: Step) -> State:
         taken[lost] = np.maximum(elapsed * _MISSED, _sparse_price(absences, rates, step))[lost]
     for row in (missed & ~confirmed).nonzero()[0].tolist():
         taken[row] = elapsed * -math.log(1 - rates[row])
-    count = absences.missed + missed  # 3. note where it vanished
-    vanishes = missed & confirmed & ~tracks.names.given & (count == _VANISHED_AFTER)
-    vanished = absences.vanished
-    if vanishes.any():
-        vanished = np.where(vanishes, places_of(tracks.edges, step.size), vanished)
     beliefs = replace(tracks.beliefs, log_odds=tracks.beliefs.log_odds - taken)
-    sights = replace(sights, absences=replace(absences, missed=count, vanished=vanished))
-    return state._replace(tracks=replace(tracks, beliefs=beliefs, sights=sights))
+    return state._replace(tracks=replace(tracks, beliefs=beliefs))

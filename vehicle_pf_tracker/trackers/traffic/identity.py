@@ -18,9 +18,9 @@ from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas
 from vehicle_pf_tracker.trackers.traffic.bodies import LONG_DRIVE, MISSED_FOR, SHORT_DRIVE
 from vehicle_pf_tracker.trackers.traffic.colours import similarities
-from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN_LOG_ODDS, note_found
+from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN_LOG_ODDS
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, objects
-from vehicle_pf_tracker.trackers.traffic.state import Experience, State
+from vehicle_pf_tracker.trackers.traffic.state import State
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks, added_votes
 
 _HIDDEN_FOR = 4.0
@@ -59,12 +59,12 @@ def named(state: State, proven: Bools, *, returning: bool) -> State:
         if hidden is not None:
             # The number stays with the old row, the new one goes: rows are dropped at the end, so
             # that the others keep their indices meanwhile.
-            tracks = resumed(tracks, hidden, row, state.experience)
+            tracks = resumed(tracks, hidden, row)
             kept[row] = False
         elif (body := body_of(state._replace(tracks=tracks), row)) is not None:
             # Beside a part that is still detected it is no more than a double at first.
             if _replaces(state._replace(tracks=tracks), body, row):
-                tracks = _as_body(tracks, body, row, state.experience)
+                tracks = _as_body(tracks, body, row)
                 kept[row] = False
         elif not is_double(tracks, row, are_shapes=state.experience.detections.are_shapes):
             # A double gets no number, and stays tentative.
@@ -110,7 +110,7 @@ def merged(state: State) -> State:
     for row in np.flatnonzero(young).tolist():
         twin = former(tracks, row, missed) if tracks.detected[row] else None
         if twin is not None:
-            tracks = resumed(tracks, twin, row, state.experience)
+            tracks = resumed(tracks, twin, row)
             # Either can be merged once: a vehicle has one twin.
             kept[row] = missed[twin] = False
     return state if kept.all() else state._replace(tracks=tracks.take(kept))
@@ -124,7 +124,7 @@ def unified(state: State) -> State:
     for row in np.flatnonzero(confirmed & tracks.detected).tolist():
         elder = body_of(state._replace(tracks=tracks), row, LONG_DRIVE)
         if elder is not None and kept[elder]:
-            tracks = _as_body(tracks, elder, row, state.experience)
+            tracks = _as_body(tracks, elder, row)
             kept[row] = False
     return state if kept.all() else state._replace(tracks=tracks.take(kept))
 
@@ -151,13 +151,13 @@ def _replaces(state: State, elder: int, row: int) -> bool:
     return bool(size > _MOST_GROWN * known) and body_of(state, row, LONG_DRIVE) == elder
 
 
-def _as_body(tracks: Tracks, elder: int, row: int, experience: Experience) -> Tracks:
+def _as_body(tracks: Tracks, elder: int, row: int) -> Tracks:
     """Let the vehicle at `elder` go on in the larger box of its own and the track's at `row`."""
     detections = tracks.sights.looks.detection
     drives = tracks.drives
     larger = row if areas(detections[row]) > areas(detections[elder]) else elder
     new = tracks.take(np.array([larger]))
-    tracks = resumed(tracks, elder, row, experience)
+    tracks = resumed(tracks, elder, row)
     # With its growth: that of a part is not the whole's.
     return replace(tracks, drives=drives.put(np.array([elder]), new.drives))
 
@@ -234,17 +234,15 @@ def _apart(new: Array, old: Array) -> tuple[Array, Array]:
     return np.hypot(*away.T) / width, size.prod() / sizes.prod(axis=1)
 
 
-def resumed(tracks: Tracks, hidden: int, row: int, experience: Experience) -> Tracks:
+def resumed(tracks: Tracks, hidden: int, row: int) -> Tracks:
     """Let the vehicle at `hidden` go on as the new track at `row` that it turned out to be."""
-    # 1. The absence is learnt from: what vanished here came back.
     at = np.array([hidden])
     new = tracks.take(np.array([row]))
     old = tracks.take(at)
-    note_found(old, experience)
-    # 2. Number, given or not, and growth are the old ones; classes are voted by both.
+    # 1. Number, given or not, and growth are the old ones; classes are voted by both.
     votes = added_votes(old.names.votes[0], new.names.votes[0])
     names = replace(old.names, joined=new.names.serial, votes=objects([votes]))
-    # 3. Place and speed are the new ones: the old prediction was wrong, or the detections would
+    # 2. Place and speed are the new ones: the old prediction was wrong, or the detections would
     # have been associated with it.
     extents = replace(
         old.drives.extents,
@@ -254,13 +252,13 @@ def resumed(tracks: Tracks, hidden: int, row: int, experience: Experience) -> Tr
     gaussians = new.drives.gaussians
     before = new.drives.before
     drives = replace(old.drives, gaussians=gaussians, before=before, extents=extents)
-    # 4. The better of both beliefs: either track is evidence for the same vehicle.
+    # 3. The better of both beliefs: either track is evidence for the same vehicle.
     beliefs = replace(
         old.beliefs,
         has_driven=old.beliefs.has_driven | new.beliefs.has_driven,
         log_odds=np.maximum(old.beliefs.log_odds, new.beliefs.log_odds),
     )
-    # 5. Colours are those of before, learnt for longer; the detection is of now.
+    # 4. Colours are those of before, learnt for longer; the detection is of now.
     looks = replace(
         old.sights.looks, score=new.sights.looks.score, detection=new.sights.looks.detection
     )

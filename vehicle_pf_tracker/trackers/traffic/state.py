@@ -16,9 +16,9 @@ from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.bodies import NO_COMPANIONS, Companions
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
+from vehicle_pf_tracker.trackers.traffic.detection_rate import DetectionRate
 from vehicle_pf_tracker.trackers.traffic.horizon import Horizon
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.returns import DetectionRate, Returns
 from vehicle_pf_tracker.trackers.traffic.speeds import Speeds
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Motion
@@ -44,8 +44,6 @@ class Experience:
     ----------
     detections : DetectionEvidence
         Outcomes of detections, by their scores and places.
-    reappearances : Returns
-        Share of the vehicles that vanished in plain sight and returned.
     rate : DetectionRate
         Share of the vehicles in plain sight that the detector finds.
     speeds : Speeds
@@ -53,7 +51,6 @@ class Experience:
     """
 
     detections: DetectionEvidence = field(default_factory=DetectionEvidence)
-    reappearances: Returns = field(default_factory=Returns)
     rate: DetectionRate = field(default_factory=DetectionRate)
     speeds: Speeds = field(default_factory=Speeds)
 

@@ -16,7 +16,6 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import NO_BOXES
 from vehicle_pf_tracker.image.windows.box_colours import COLOUR_BINS
-from vehicle_pf_tracker.trackers.traffic.detection_evidence import NOWHERE
 from vehicle_pf_tracker.trackers.traffic.horizon import Growths
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Objects, Rows, filled
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Gaussians
@@ -156,11 +155,8 @@ class Absences(Rows):
     ----------
     unseen, undetected : (N,) arrays
         Nominal periods since it was last seen, and last detected.
-    passed, missed : (N,) arrays
-        Number of looks of the detector since its latest detection, and of those, in a row, that
-        missed it in plain sight.
-    vanished : (N,) array
-        Place where it was missed several times in a row; `NOWHERE` if it was not.
+    passed : (N,) array
+        Number of looks of the detector since its latest detection.
     lost : (N,) array
         True where it was hidden for too long to be predicted, has left, or is rather not there.
     """
@@ -168,8 +164,6 @@ class Absences(Rows):
     unseen: Array
     undetected: Array
     passed: Integers
-    missed: Integers
-    vanished: Integers
     lost: Bools
 
     @property
@@ -180,11 +174,9 @@ class Absences(Rows):
     def ended(self) -> Absences:
         """End all absences, as of tracks that were just detected."""
         count = len(self)
-        none = np.full(count, NOWHERE)
         zero = np.zeros(count)
         # `lost` stays: `ending.end` judges it anew in every frame.
-        number = np.zeros(count, np.intp)
-        return Absences(zero, zero, number, number, none, self.lost)
+        return Absences(zero, zero, np.zeros(count, np.intp), self.lost)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -250,7 +242,6 @@ class Tracks(Rows):
         count = len(gaussians)
         # Arrays are shared between fields: none is ever written in place.
         numbers = np.zeros(count, np.intp)
-        none = np.full(count, NOWHERE)
         zero = np.zeros(count)
         no = np.zeros(count, np.bool_)
         edges = np.zeros((count, 4))
@@ -259,7 +250,7 @@ class Tracks(Rows):
         looks = Looks(
             np.zeros((count, COLOUR_BINS)), np.ones(count), detections, np.full(count, np.nan)
         )
-        absences = Absences(zero, zero, numbers, numbers, none, no)
+        absences = Absences(zero, zero, numbers, no)
         return cls(
             Names(serial, numbers, no, numbers, filled(count, {})),
             Drives(gaussians, edges, edges, edges, extents, Growths.unknown(count)),
