@@ -85,6 +85,17 @@ def test_what_has_stood_drives_off_as_if_it_had_just_come(before):
     assert not stood.stands
 
 
+def test_a_stand_that_shakes_by_too_much_to_be_told_is_no_debt():
+    # An eighth of its width from the middle, so that each is too far from the one before.
+    stand = [(1.25 * (-1) ** step, 0) for step in range(30)]
+    drive = [(0.5 * step, 0) for step in range(1, 21)]
+    assert not way(*stand).stands
+    assert way(*stand).latest_evidence() == 0
+    # One in a thousand by the latest 20, though all 50 lie on no line.
+    assert evidence(*stand, *drive) == 0
+    assert way(*stand, *drive).latest_evidence() > 7
+
+
 def test_what_creeps_by_a_third_of_its_width_in_a_second_does_not_stand():
     assert not way(*[(0.11 * step, 0) for step in range(100)]).stands
     assert way(*[(0.05 * step, 0) for step in range(100)]).stands

@@ -25,6 +25,9 @@ _STANDS_FROM = 15
 """Detections in a row within this distance, half a second of 30 Hz, by which a vehicle stands: one
 that is slower than a fifth of its width per second is taken for one that does. By time IDF1 of
 three phases of every fifth image at dusk is 79.9, 66.8 and 80.4 instead of 72.3, 82.6 and 78.6."""
+_BLOCK = 15
+"""Detections of a block: the latest one to two tell a drive apart from a stand before it that shook
+by more. A choice: as many as tell a stand."""
 _STRAIGHT = 0.8
 """Straightness of a drive, above the .75 that a leap between two places that flicker reaches at
 most."""
@@ -43,6 +46,8 @@ class Ways(Rows):
     sums : (N, 8) array
         Sums over the detections since it stood: one, time, its square, x, y, time x, time y, x² +
         y².
+    blocks : (N, 16) array
+        The same over the latest detections, at most `_BLOCK`, and over as many before these.
     matches : (N,) array
         Number of its detections.
     halt : (N, 2) array
@@ -54,6 +59,7 @@ class Ways(Rows):
     age: Array
     first: Array
     sums: Array
+    blocks: Array
     matches: Integers
     halt: Array
     stood: Integers
@@ -64,7 +70,9 @@ class Ways(Rows):
         number = np.zeros(count, np.intp)
         edges = np.zeros((count, 4))
         halt = np.zeros((count, 2))
-        return cls(np.zeros(count), edges, np.zeros((count, 8)), number, halt, number)
+        sums = np.zeros((count, 8))
+        blocks = np.zeros((count, 16))
+        return cls(np.zeros(count), edges, sums, blocks, number, halt, number)
 
     @property
     def stands(self) -> Bools:
@@ -93,7 +101,11 @@ class Ways(Rows):
         halt = np.where(stays[:, np.newaxis], self.halt, here)
         # Detections of one place tell nothing about the drive that follows, however many they are.
         sums = np.where((stood >= _STANDS_FROM)[:, np.newaxis], 0.0, self.sums) + terms
-        return Ways(self.age, first, sums, self.matches + 1, halt, stood)
+        is_full = (self.matches % _BLOCK == 0)[:, np.newaxis]
+        before = np.where(is_full, self.blocks[:, :8], self.blocks[:, 8:])
+        latest = np.where(is_full, 0.0, self.blocks[:, :8]) + terms
+        blocks = np.concatenate([latest, before], axis=1)
+        return Ways(self.age, first, sums, blocks, self.matches + 1, halt, stood)
 
     def lengths(self, edges: Array) -> Array:
         """Distance (N,) of boxes (N, 4) from the first detection, in their widths; 0 before it."""
@@ -121,23 +133,32 @@ class Ways(Rows):
 
         They shake independently, and a drive has constant speed; 0 where they are not straight.
         """
-        count, time, squared, x, y, time_x, time_y, places = self.sums.T
-        # Centred sums: scatter of places, and of times, and what both share.
-        known = np.maximum(count, 1.0)
-        scatter = places - (x * x + y * y) / known
-        duration = squared - time * time / known
-        along_x = time_x - time * x / known
-        along_y = time_y - time * y / known
-        # One place, or one moment, has no line.
-        is_told = (scatter > 0) & (duration > 0)
-        # Share of their scatter that the drive explains.
-        explained = (along_x**2 + along_y**2) / np.where(is_told, duration, 1.0)
-        straightness = explained / np.where(is_told, scatter, 1.0)
-        is_told &= straightness >= _STRAIGHT
-        # The share is distributed as Beta(1, count - 2): two slopes, of twice as many coordinates.
-        rest = np.maximum(1 - np.where(is_told, straightness, 0.0), math.ulp(1.0))
-        # Its tail is (1 - share)^(count - 2): more detections make the same straightness rarer.
-        return np.asarray(np.where(is_told, (2 - count) * np.log(rest), 0.0))
+        return _straight(self.sums)
+
+    def latest_evidence(self) -> Array:
+        """Evidence (N,) of the latest detections alone: a stand before them is no debt."""
+        return _straight(self.blocks[:, :8] + self.blocks[:, 8:])
+
+
+def _straight(sums: Array) -> Array:
+    """Evidence (N,) of `Ways.evidence`, of such sums (N, 8)."""
+    count, time, squared, x, y, time_x, time_y, places = sums.T
+    # Centred sums: scatter of places, and of times, and what both share.
+    known = np.maximum(count, 1.0)
+    scatter = places - (x * x + y * y) / known
+    duration = squared - time * time / known
+    along_x = time_x - time * x / known
+    along_y = time_y - time * y / known
+    # One place, or one moment, has no line.
+    is_told = (scatter > 0) & (duration > 0)
+    # Share of their scatter that the drive explains.
+    explained = (along_x**2 + along_y**2) / np.where(is_told, duration, 1.0)
+    straightness = explained / np.where(is_told, scatter, 1.0)
+    is_told &= straightness >= _STRAIGHT
+    # The share is distributed as Beta(1, count - 2): two slopes, of twice as many coordinates.
+    rest = np.maximum(1 - np.where(is_told, straightness, 0.0), math.ulp(1.0))
+    # Its tail is (1 - share)^(count - 2): more detections make the same straightness rarer.
+    return np.asarray(np.where(is_told, (2 - count) * np.log(rest), 0.0))
 
 
 def _centres(edges: Array) -> Array:
