@@ -10,7 +10,7 @@
 - step: `prediction`, `occlusion`, `observe`, `pixel_hold`, `ending`, `recognition`
 - detections: `candidates` weighs them by `detection_evidence`, and `association` pairs them;
   `parts` divides boxes, `correction` measures their edges (`box_edges`), `existence` adds up
-  evidence, and `births` begins tracks that drive by the `speeds` of this road
+  evidence, of misses by the `detection_rate`, and `births` begins tracks by the road's `speeds`
 - one number for one vehicle: `identity`, by `colours`, and `bodies`
 - results: `report` makes an `estimate` of each; `session` follows a stream of images
 """
