@@ -56,16 +56,14 @@ _SAME_VEHICLE = 0.5
 """Distance in sizes from the best hypothesis within which others are of the same vehicle: centres
 of two vehicles are farther apart than half of one."""
 CLIMB_FREELY = (5, 3.0)
-"""Places of the response to each side within which a hypothesis is moved to a better one, and
-standard deviation that a move is paid for with. The reach is a choice, a quarter of the target's
-side."""
+"""Places of the response to each side within which a hypothesis is moved to a better one, a choice
+(a quarter of the target's side), and standard deviation that a move is paid for with."""
 CLIMB_ON_PATH = (3, 1.0)
 """Reach and deviation of a move while hidden, where the path is known better than the place: all
 would else gather at clutter. The reach is a choice."""
 STAY = (0, 1.0)
-"""Reach and deviation of a move where a first motion was measured, which is kept to exactly: a
-standing part of the first box answers better than the vehicle, and the filter cannot tell which of
-them it was shown."""
+"""Reach and deviation of a move after a measured first motion, which is kept to exactly: a standing
+part of the first box answers better than the vehicle, and the filter cannot tell the two apart."""
 
 
 def predict(state: State, step: Step) -> tuple[State, Prediction]:
