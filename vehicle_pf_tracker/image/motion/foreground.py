@@ -20,7 +20,6 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.motion.median_image import median
-from vehicle_pf_tracker.image.motion.part_of_box import Part, box_in, mostly_inside, part_of
 from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 
 _KEPT_EVERY = 4
@@ -192,28 +191,6 @@ class Foreground:
         if min(piece.shape) < 3:
             return np.empty((0, 2, 2))
         return (_pieces(_moving(piece, self._whole[rows, columns])) + corner) / small.zoom
-
-    def part_in(self, centre: Array, size: Array) -> Part | None:
-        """Find what moves now in a box (px), and lies mostly within it; None where nothing does.
-
-        The background has to be learnt.
-        """
-        small = self._latest[-1].small
-        rows, columns, corner = _neighbourhood(small, centre, size)
-        piece = small.image[rows, columns]
-        if min(piece.shape) < 3:
-            return None
-        # From here on in px of the piece. The box first: behind an occluder there is nothing in it.
-        background = self._whole[rows, columns]
-        inner = centre * small.zoom - corner
-        half = size * small.zoom / 2
-        box = box_in(piece.shape, inner - half, inner + half)
-        if not (cv2.absdiff(piece[box], background[box]) > _LEAST_CONTRAST).any():
-            return None
-        # What is around the box tells the noise: in a full one most pixels have changed.
-        moving = _moving(piece, background)
-        part = part_of(moving, box, mostly_inside(_pieces(moving), inner, _GROWN * half))
-        return part and part._replace(sides=(part.sides + corner) / small.zoom)
 
     def _boxes(self, small: SmallGrey) -> Array:
         return _pieces(_moving(small.image, self._whole)) / small.zoom

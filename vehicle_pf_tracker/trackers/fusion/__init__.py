@@ -12,7 +12,6 @@
 - measured: `appearance` (filter) and `paint`; `surface_flow`, `surface_points`; `size_search`
 - hidden: `perspective` predicts, by sightings that `standing_occluder` restores
 - before a standing camera outlines (`outline_boxes`) show what turns (`turning`, `unfolding`),
-  comes out (`emergence`, `reappearance`), is left in view (`part_in_view`) or is another vehicle
-  (`known_others`)
+  comes out (`emergence`, `reappearance`) or is another vehicle (`known_others`)
 - gone: `departure`
 """

@@ -11,8 +11,7 @@ on, and `step.py` the frame and the memory that they share.
 - Partly hidden: climb to the peak, predict the size, learn nothing unless flow shows a turn.
 - Turning: follow the outline of what moves, learn fast.
 - Hidden: predict along the road, learn nothing, and wait until hypotheses gather evidence, or an
-  outline comes out on the way (`reappearance.py`). What is left of it in view counts for the
-  reported confidence only (`part_in_view.py`).
+  outline comes out on the way (`reappearance.py`).
 - Gone: learn nothing, and wait until something comes back from where the vehicle left.
 
 The filter response at each hypothesis is a calibrated log-likelihood ratio of visible against
@@ -38,7 +37,6 @@ from vehicle_pf_tracker.trackers.fusion.follow import follow, learn
 from vehicle_pf_tracker.trackers.fusion.hypotheses import PRIOR_DOUBT, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import observe, predict
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.part_in_view import part_in_view
 from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
 from vehicle_pf_tracker.trackers.fusion.state import State, Wholeness
 from vehicle_pf_tracker.trackers.fusion.step import Memory, Step
@@ -162,8 +160,6 @@ def _outcome(state: State, response: float, step: Step, *, has_left: bool) -> Ou
     x, y = state.position.tolist()
     vx, vy = particles.mean_velocity.tolist()
     width, height = state.size.tolist()
-    # Only reported: a part of it cannot be measured, so that all else goes on as hidden.
-    part = 0.0 if has_left else part_in_view(state, step)
     match state.verdict:
         case Gone(departure=departure):
             regime = departure.reason
@@ -182,7 +178,7 @@ def _outcome(state: State, response: float, step: Step, *, has_left: bool) -> Ou
         (x, y),
         (vx, vy),
         regime,
-        max(particles.probability_visible, part),
+        particles.probability_visible,
         values,
         left_image=has_left,
         size=(width, height),
