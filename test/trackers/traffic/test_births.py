@@ -92,6 +92,7 @@ def test_a_vehicle_that_the_border_cuts_goes_on_from_its_former_track():
         (AT_THE_BORDER, [LARGER, (50, 96, 90, 142)], True),  # a piece, with its rest
         (BOX, [(100, 96, 148, 132)], True),  # nothing cuts it
         (AT_THE_BORDER, [(8, 100, 48, 140)], True),  # nothing cuts it any more
+        ((100, 200, 140, 240), [(98, 190, 144, 240)], True),  # the lower border cuts it
     ],
 )
 def test_other_shapes_begin_tracks_of_their_own(former, shapes, are_shapes):
