@@ -38,6 +38,8 @@ _THIN = 0.5
 """Share of the usual side below which most of a vehicle is out of sight, so that neither edge tells
 where it is."""
 _SIDES = [Edge.LEFT, Edge.RIGHT]
+"""Borders at which vehicles come in that drive across. With the upper and lower one *highway* behind
+a bridge has IDF1 73.2 instead of 74.8: chosen there."""
 _GOES_ON = 0.5
 """Overlap with the prediction of a track that is not yet confirmed from which a shape may be the
 same vehicle: no other is as near. A choice, as in `association`. In all places instead of at the
@@ -88,16 +90,15 @@ def _that_go_on(
 ) -> tuple[Integers, Integers]:
     """Find tracks that go on in new shapes: rows (K,), and indices (K,) into `columns` (N,).
 
-    How large a vehicle is that a side of the image cuts is a guess, and so is its speed: the prediction is
-    wrong where it comes in fast, but near. Only for what is not yet confirmed, has no detection,
-    and has nothing beside it that could be the rest of it.
+    How large a vehicle is that a side of the image cuts is a guess, and so is its speed: the
+    prediction is wrong where it comes in fast, but near. Only for what is not yet confirmed, has no
+    detection, and has nothing beside it that could be the rest of it.
     """
     none = np.zeros(0, np.intp)
     waits = ~tracks.confirmed & ~tracks.detected
     if not (candidates.are_shapes and waits.any()):
         return none, none
     size, noise = step.size, step.edge_noise
-    # At the sides: behind a bridge *highway* loses 1.6 of IDF1 by the same at the lower border.
     was_cut = cut_edges(tracks.sights.looks.detection, size, noise)[:, _SIDES]
     rows = np.flatnonzero(waits & was_cut.any(axis=1))
     edges = candidates.edges[columns]
