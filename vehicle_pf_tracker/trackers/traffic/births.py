@@ -38,8 +38,8 @@ _THIN = 0.5
 """Share of the usual side below which most of a vehicle is out of sight, so that neither edge tells
 where it is."""
 _SIDES = [Edge.LEFT, Edge.RIGHT]
-"""Borders at which vehicles come in that drive across. With the upper and lower one *highway* behind
-a bridge has IDF1 73.2 instead of 74.8: chosen there."""
+"""Borders at which vehicles come in that drive across. With the upper and lower one *highway*
+behind a bridge has IDF1 73.2 instead of 74.8: chosen there."""
 _GOES_ON = 0.5
 """Overlap with the prediction of a track that is not yet confirmed from which a shape may be the
 same vehicle: no other is as near. A choice, as in `association`. In all places instead of at the
@@ -50,7 +50,7 @@ of 47.9."""
 def begun(state: State, candidates: Candidates, columns: Integers, step: Step) -> State:
     """Take detections at `columns` for new vehicles, as yet with the evidence of one detection.
 
-    A vehicle that the border cuts goes on from its former track.
+    A vehicle that a side of the image cuts goes on from its former track.
     """
     if not len(columns):
         return state
