@@ -20,6 +20,9 @@ MOST_DETECTIONS = 300
 """Detections of a frame that are looked at, the highest scores first. No camera shows as many
 vehicles; a detector that reports more is out of order, and association would take seconds."""
 
+NO_SCORE = 1.0
+"""Score of a box that has none, as files of MOTChallenge have it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Detections:
@@ -60,7 +63,9 @@ class Detections:
         """Make them from anything that numpy takes; without scores all count alike."""
         array = np.asarray(boxes, dtype=np.float64).reshape(-1, 4)
         count = len(array)
-        values = np.ones(count) if scores is None else np.asarray(scores, dtype=np.float64).ravel()
+        values = np.full(count, NO_SCORE)
+        if scores is not None:
+            values = np.asarray(scores, dtype=np.float64).ravel()
         if len(values) != count or (labels is not None and len(labels) != count):
             raise ValueError("as many scores and labels as boxes are needed")
         return cls(array, values, tuple(labels) if labels is not None else ("",) * count)

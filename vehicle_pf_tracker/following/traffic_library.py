@@ -133,8 +133,8 @@ class TrafficTracker(CountedVehicles):
             Detections in px, in the form of `format`; empty where the detector saw nothing. None:
             the tracker looks for vehicles itself.
         scores : array-like, shape (N,), optional
-            Their scores: between 0 and 1 the probability of a vehicle, by which one that stands is
-            reported, too; of another scale only their order counts. None: all alike, once driving.
+            Their scores: from 0 to 1 the probability of a vehicle, by which one that stands is
+            reported, too; else only their order counts. None: what stands is after 21 images.
         labels : sequence of str, optional
             Their classes.
         format : str

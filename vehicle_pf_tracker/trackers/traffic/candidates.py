@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.detection.detections import Detections
+from vehicle_pf_tracker.detection.detections import NO_SCORE, Detections
 from vehicle_pf_tracker.trackers.traffic.box_edges import sides_of
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
     UNSAID,
@@ -20,11 +20,15 @@ from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
     claims_of,
     places_of,
 )
-from vehicle_pf_tracker.trackers.traffic.rows import Integers
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 
 _ORDINARY = 0.5
 """Share of the vehicles' detections with lower scores above which a score is better than most: the
 median."""
+_UNSCORED = math.log(2)
+"""Log odds, two to one, of a box without a score where nothing has moved: who gives none has cut
+what is doubtful. A choice, by which what stands is reported after 21 detections.
+laboratory/notes/traffic.md has what it gains and costs."""
 SIZE_SPREAD = 2.0
 """Logarithm of the ratio of the largest and the smallest false alarms, by which they are spread. At
 1 vehicles that pass close and fast are found late: IDF1 of three scenes is 67 instead of 83."""
@@ -101,6 +105,7 @@ def weighed(
     clutter = evidence.clutter(places)
     # 2. A shape's score is how full its box is, no probability.
     claims = np.full(len(scores), UNSAID) if detections.are_shapes else claims_of(scores)
+    has_none = (scores == NO_SCORE) & (not detections.are_shapes)
     by_score = evidence.by_score(scores, claims)
     log_odds = evidence.log_odds(by_score, places)
     # 3. Poisson clutter, as usual, in the space of the edges, of which (left, right) has the same
@@ -116,21 +121,22 @@ def weighed(
         places=places,
         log_odds=log_odds,
         gains=evidence.gains(by_score),
-        sure=_sure(log_odds, claims, evidence.ranks(scores)),
+        sure=_sure(log_odds, claims, evidence.ranks(scores), has_none),
         clutter=clutter,
         false=false,
     )
 
 
-def _sure(log_odds: Array, claims: Array, ranks: Array) -> Array:
+def _sure(log_odds: Array, claims: Array, ranks: Array, has_none: Bools) -> Array:
     """Log odds (N,) that scores are worth where nothing has moved.
 
     A spot that looks a little like a vehicle does so each time, and many such scores are worth one:
     both the detector and what became of such scores here have to be sure of each. Where a detector
-    makes no claims, most vehicles have to have lower scores.
+    makes no claims, most vehicles have to have lower scores. A box that `has_none` is believed a
+    little, unless what became of such boxes here speaks against it.
     """
     # Finite, as `claims_of` bounds claims away from 0 and 1.
     claimed = np.log(claims / (1 - claims))
     # Nothing claimed bounds nothing, of scores above the median; the lower half stays at even odds.
     claimed[(claims == UNSAID) & (ranks >= _ORDINARY)] = np.inf
-    return np.minimum(log_odds, claimed)
+    return np.where(has_none, np.minimum(log_odds, 0.0) + _UNSCORED, np.minimum(log_odds, claimed))
