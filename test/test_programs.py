@@ -52,7 +52,7 @@ PROGRAMS = {
         ("calibration.md", "left_out.md", "runs.jsonl"),
     ),
     "laboratory.fusion.ablation": Program(
-        f"{BATTERY} --changes no_camera_motion",
+        f"{BATTERY} --changes no~camera~motion",
         ("ablation.md", "ablation.jsonl"),
         "| no camera motion |",
     ),
@@ -71,6 +71,11 @@ PROGRAMS = {
     "benchmarks.memory_parts": Program("", printed="| kernels and step of `apf` | +"),
     "laboratory.fusion.fit": Program(
         f"{BATTERY} {ONE_CASE} --budget 2 --cases 1", ("fit.json", "leave_one_camera_out.md")
+    ),
+    "laboratory.fusion.mechanisms": Program(
+        f"{BATTERY} --seeds 1 --kinds plain --without no~side~unfolds",
+        ("mechanisms.md", "mechanisms.jsonl"),
+        "| no side unfolds |",
     ),
     "laboratory.fusion.reliability": Program(
         f"{BATTERY} {ONE_CASE}", ("shipped.md", "reliability.md", "reliability.png")
@@ -195,10 +200,7 @@ def skip_without(needs):
 def test_a_program_writes_its_output(name, toy, tmp_path):
     program = PROGRAMS[name]
     skip_without(program.needs)
-    words = [
-        word.format(toy=toy, out=tmp_path).replace("no_camera_motion", "no camera motion")
-        for word in program.words.split()
-    ]
+    words = [word.format(toy=toy, out=tmp_path).replace("~", " ") for word in program.words.split()]
     printed = run(name, *words)
     assert program.printed in printed
     for file in program.files:

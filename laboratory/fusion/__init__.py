@@ -7,7 +7,7 @@ Each is run by its name, as `python -m laboratory.fusion.fit`:
 
 - `fit`: its numbers, judged on cameras left out
 - `reliability`: what the shipped numbers reach, and how far the confidence is right
-- `ablation`: what each part contributes
+- `ablation`: what each part contributes, and `mechanisms` each of those before standing cameras
 - `clips`: whether it knows that its vehicle has left, in clips without truth
 - `scenes`: what it reaches on synthetic scenes, with `scene_pictures` of them
 

@@ -11,7 +11,15 @@ from types import SimpleNamespace
 import pytest
 
 from laboratory import readme_table
-from laboratory.fusion import ablation, case_lists, clips, fit, reliability, scene_pictures
+from laboratory.fusion import (
+    ablation,
+    case_lists,
+    clips,
+    fit,
+    mechanisms,
+    reliability,
+    scene_pictures,
+)
 from laboratory.fusion.case_lists import listed_cases
 from laboratory.fusion.objective import objective
 from laboratory.fusion.settings import fitted
@@ -54,6 +62,19 @@ def test_a_change_is_compared_with_the_default_camera_by_camera():
 def test_every_change_of_the_ablation_is_a_parameter():
     for change in ablation.CHANGES.values():
         ablation.variant_system("fusion", change).make(0)
+
+
+def test_without_a_mechanism_only_what_it_needs_is_replaced():
+    def values():
+        return [vars(one.owner)[one.name] for one in mechanisms.WHOLE]
+
+    whole = values()
+    for name, replaced in mechanisms.MECHANISMS.items():
+        mechanisms.made_without(name, 0)
+        changed = sum(now is not before for now, before in zip(values(), whole, strict=True))
+        assert changed == len(replaced)
+    mechanisms.made_without(mechanisms.DEFAULT, 0)
+    assert values() == whole
 
 
 def test_the_table_of_the_readme_has_means_and_sums(tmp_path):

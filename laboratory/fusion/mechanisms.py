@@ -1,0 +1,138 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Contribution of what `fusion` has before standing cameras: each mechanism off, over five seeds.
+
+    python -m laboratory.fusion.mechanisms SEQUENCES --kinds plain,wall -o results/fusion_mechanisms
+
+`laboratory.fusion.ablation` changes parameters. These mechanisms have none, so that a function or
+a bound of theirs is replaced while the tracker runs. The table has the same columns, with 95 %
+bootstrap intervals over cameras. Only sequences of standing cameras say anything.
+"""
+
+from __future__ import annotations
+
+import functools
+import sys
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from laboratory.fusion.ablation import DEFAULT, table
+from laboratory.fusion.case_lists import listed_cases
+from laboratory.fusion.options import make_parser, parsed, report_progress
+from laboratory.stress import StressSystem, run_battery, variant_system
+from laboratory.stress.systems import Follower
+from vehicle_pf_tracker.cli.main import exit_status
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.results.output_files import write_text
+from vehicle_pf_tracker.trackers.fusion import observe, reappearance, turning, visibility
+from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
+from vehicle_pf_tracker.trackers.fusion.reappearance import Reappearance
+from vehicle_pf_tracker.trackers.fusion.turning import Branch
+from vehicle_pf_tracker.trackers.fusion.verdict import Visible
+
+FRAMES = 200
+"""Frames of a case at most: a turn in full view is proven by the 122nd of its sequence."""
+
+
+class Replacement(NamedTuple):
+    """A name of a module or class, and what it is without a mechanism."""
+
+    owner: Any
+    name: str
+    value: Any
+
+
+def _nowhere(_way: Reappearance, positions: Array) -> Array:
+    """Exclude no position."""
+    return np.zeros(positions.shape[:-1], np.bool_)
+
+
+def _always(value: object) -> Any:
+    """Give the same for any arguments."""
+    return lambda *_arguments, **_named: value
+
+
+def _never_unfolding(_state: object, _seen: object, whole: float, _step: object) -> Visible:
+    """Judge a vehicle in full view by all but its outline."""
+    return Visible(whole)
+
+
+# One mechanism a row; the words are those of docs/fusion.md.
+MECHANISMS: Mapping[str, tuple[Replacement, ...]] = {
+    DEFAULT: (),
+    "no search for what comes out on the way": (
+        Replacement(Reappearance, "vehicle", property(_always(None))),
+    ),
+    "returns far ahead": (Replacement(reappearance, "_EARLY", np.inf),),
+    "returns behind": (Replacement(Reappearance, "is_behind", _nowhere),),
+    "returns in others in view": (Replacement(Reappearance, "is_another", _nowhere),),
+    "returns in another paint": (Replacement(observe, "LEAST_PAINT", -1.0),),
+    "hypotheses drawn to what stands": (Replacement(observe, "_is_covered", _always(False)),),
+    "turns in another paint": (Replacement(turning, "_OTHER_PAINT", np.inf),),
+    "turns behind the path": (Replacement(turning, "_BEHIND_PATH", np.inf),),
+    "no outline in a turn": (Replacement(Branch, "begun", classmethod(_always(None))),),
+    "nothing comes out beside the path": (Replacement(Emergence, "was_alone", _always(False)),),
+    "no side unfolds": (Replacement(visibility, "_judged_unfolding", _never_unfolding),),
+}
+
+WHOLE = tuple(
+    Replacement(one.owner, one.name, vars(one.owner)[one.name])
+    for each in MECHANISMS.values()
+    for one in each
+)
+"""All that is replaced, as it is in the tracker."""
+
+
+def made_without(name: str, seed: int) -> Follower:
+    """Make a tracker without a mechanism; until the next one is made, others are without it, too.
+
+    Each process runs one case at a time.
+    """
+    for one in (*WHOLE, *MECHANISMS[name]):
+        setattr(one.owner, one.name, one.value)
+    return variant_system("fusion").make(seed)
+
+
+def system_without(name: str) -> StressSystem:
+    """Make the system without a mechanism, by its name in `MECHANISMS`."""
+    whole = variant_system("fusion", {}, name)
+    facts = {**whole.facts, "without": name}
+    return StressSystem(name, functools.partial(made_without, name), facts, whole.modules)
+
+
+def main() -> int:
+    """Run all systems over all cases."""
+    parser = make_parser(__doc__, "seeds")
+    parser.add_argument("--kinds", default="plain,wall", help="kinds of cases, by commas")
+    parser.add_argument("--cases", type=int, help="cases of a kind and a sequence at most")
+    parser.add_argument("--without", nargs="+", default=list(MECHANISMS), choices=list(MECHANISMS))
+    options = parsed(parser)
+    # The default always runs: everything is compared with it.
+    systems = [system_without(name) for name in dict.fromkeys([DEFAULT, *options.without])]
+    limits = {"max_frames": FRAMES}
+    if options.cases:
+        limits["per_sequence"] = options.cases
+    cases = [
+        case
+        for kind in options.kinds.split(",")
+        for case in listed_cases(options, f"mechanisms_{kind}", (kind,), **limits)
+    ]
+    results = run_battery(
+        cases,
+        systems,
+        seeds=range(options.seed, options.seed + options.seeds),
+        workers=options.workers,
+        store=options.output / "mechanisms.jsonl",
+        on_progress=report_progress,
+    )
+    text = table(results)
+    write_text(options.output / "mechanisms.md", text)
+    print(text, end="")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(exit_status(main, "python -m laboratory.fusion.mechanisms"))
