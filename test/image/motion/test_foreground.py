@@ -47,23 +47,6 @@ def test_a_box_of_some_frames_ago_is_seen_there():
     assert foreground.outline(before, SIZE, ago=3).centre == pytest.approx(before, abs=1)
 
 
-def test_a_ghost_is_no_part_of_what_moves():
-    """It stood from x = 20 to 44 for most of the background, and has driven on by 10 px since."""
-    foreground = Foreground()
-    for time in range(50):
-        left = 20 + max(time - 40, 0)
-        foreground.keep(scene((left, 50, left + 24, 64)), still=True)
-    left = 20 + 9
-    centre = np.array([left + 12.0, 57.0])
-    ghost = foreground.outline(centre, SIZE + 12)
-    assert ghost.low[0] == pytest.approx(20, abs=1)
-    moving = foreground.moving_outline(centre, SIZE + 12, since=4)
-    # Where it was four frames ago the road has changed as well.
-    assert moving.low[0] == pytest.approx(left - 4, abs=1)
-    assert moving.high == pytest.approx([left + 24, 64], abs=1)
-    assert foreground.moving_outline(centre, SIZE + 12, since=24) is None
-
-
 def test_a_moving_camera_leaves_no_background():
     foreground, centre = watched()
     assert foreground.is_known

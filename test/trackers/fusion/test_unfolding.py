@@ -100,30 +100,5 @@ def test_the_ghost_of_where_it_stood_is_none():
     assert not any(found)
 
 
-def test_a_side_twice_as_long_as_the_box_is_still_seen():
-    """Two thirds of its outline lie beyond the box, which alone would show none."""
-    *_, (_, _, unfolding) = looks(lambda time: min(max(time - BEGINS, 0), 60))
-    assert unfolding.looks[-1].beyond[0, 0] * np.sqrt(BOX.prod()) == pytest.approx(60, abs=2)
-
-
-def test_one_that_has_joined_before_is_none_as_it_parts():
-    """The other one touches it, half as long again as the box, and falls behind."""
-    assert drive(lambda time: 45 + max(time - BEGINS, 0) // 2) is None
-    # Of half that length, it would count as a side.
-    assert drive(lambda time: 22 + max(time - BEGINS, 0) // 2) is not None
-
-
-def test_a_look_in_which_another_touches_is_left_out():
-    def left(time):
-        return min(max(time - BEGINS, 0), 60) + 40 * (BEGINS + 4 <= time < BEGINS + 8)
-
-    times, _, unfoldings = zip(*looks(left), strict=True)
-    counts = dict(zip(times, (len(each.looks) for each in unfoldings), strict=True))
-    assert counts[BEGINS + 7] <= counts[BEGINS + 3] + 1
-    beyond = np.array([look.beyond[0, 0] for each in unfoldings for look in each.looks])
-    assert beyond.max() * np.sqrt(BOX.prod()) < 62
-    assert any(each.outline is not None for each in unfoldings)
-
-
 def test_nothing_is_proven_before_an_outline_is_there():
     assert Unfolding().branch(PerspectiveMotion(np.zeros(2), np.zeros(2), 0.0), BOX) is None

@@ -7,6 +7,5 @@
 - `shared_motion`: the motion that most points share
 - `box_motion`: turn and stretch of the points in a box
 - `camera_motion`: motion of the background, measured by `camera_flow` in a `small_grey` frame
-- `foreground`: pixels that differ from the background of a standing camera, a `median_image`;
-  `changing_sides` ends them where nothing changes
+- `foreground`: pixels that differ from the background of a standing camera, a `median_image`
 """

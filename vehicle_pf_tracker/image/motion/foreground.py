@@ -19,7 +19,6 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.motion.changing_sides import LEAST_CONTRAST, changing_sides
 from vehicle_pf_tracker.image.motion.median_image import median
 from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 
@@ -50,6 +49,8 @@ _AROUND = 1.5
 may have moved by its length, and what reaches the rim has no outline."""
 _WIDER = 2.0
 """Times as far around what is hidden: it may be 1.5 diagonals away, and twice as large."""
+_LEAST_CONTRAST = 12.0
+"""Difference in grey levels from which a pixel is foreground, at least: that of a shadow's rim."""
 _NOISE_FACTOR = 4.0
 """Least difference of a foreground pixel in median differences around, each two thirds of the
 noise's standard deviation, so that the factor is 2.7 of these."""
@@ -194,6 +195,25 @@ class Foreground:
     def _boxes(self, small: SmallGrey) -> Array:
         return _pieces(_moving(small.image, self._whole)) / small.zoom
 
+    def changed(self, low: Array, high: Array, ago: int) -> float:
+        """Share of a part of the frame that has changed since `ago` frames before.
+
+        Zero where that one is not kept, or the part is outside.
+
+        Parameters
+        ----------
+        low, high : (2,) arrays
+            Left and upper, right and lower side of the part, px.
+        """
+        if ago >= len(self._latest):
+            return 0.0
+        small = self._latest[-1].small
+        left, top = np.floor(np.maximum(low * small.zoom, 0)).astype(int).tolist()
+        right, bottom = np.ceil(np.maximum(high * small.zoom, 0)).astype(int).tolist()
+        now = small.image[top:bottom, left:right]
+        before = self._latest[-1 - ago].small.image[top:bottom, left:right]
+        return float((cv2.absdiff(now, before) > _LEAST_CONTRAST).mean()) if now.size else 0.0
+
     def outline(self, centre: Array, size: Array, ago: int = 0) -> Outline | None:
         """Outline of what moves in a box of this centre and size, px, some frames `ago`.
 
@@ -220,20 +240,6 @@ class Foreground:
         low, high = bounds
         return Outline((low + corner) / small.zoom, (high + corner) / small.zoom)
 
-    def moving_outline(self, centre: Array, size: Array, since: int) -> Outline | None:
-        """Outline as `outline`, without what has stood at its sides for `since` frames.
-
-        A vehicle that was a part of the background leaves a ghost, which differs from the
-        background and stands. None where nothing changes, or that frame is not kept.
-        """
-        outline = self.outline(centre, size)
-        if outline is None or since >= len(self._latest):
-            return None
-        now, before = self._latest[-1].small, self._latest[-1 - since].small
-        box = centre - size / 2, centre + size / 2
-        sides = changing_sides(now, before, box, (outline.low, outline.high))
-        return None if sides is None else Outline(*sides)
-
 
 def _moving(
     image: npt.NDArray[np.uint8], background: npt.NDArray[np.uint8]
@@ -249,12 +255,12 @@ def _moving(
 def _level(change: npt.NDArray[np.uint8]) -> float:
     """Difference above which a pixel is foreground."""
     # The usual case first: the median is so low that it does not count.
-    if np.count_nonzero(change <= LEAST_CONTRAST / _NOISE_FACTOR) > change.size // 2:
-        return LEAST_CONTRAST
+    if np.count_nonzero(change <= _LEAST_CONTRAST / _NOISE_FACTOR) > change.size // 2:
+        return _LEAST_CONTRAST
     # The median by a histogram, in a tenth of the time of `np.median`.
     counts = cv2.calcHist([change], [0], None, [256], [0, 256]).cumsum()
     noise = np.searchsorted(counts, [(change.size - 1) // 2, change.size // 2], side="right").mean()
-    return max(LEAST_CONTRAST, _NOISE_FACTOR * float(noise))
+    return max(_LEAST_CONTRAST, _NOISE_FACTOR * float(noise))
 
 
 def _pieces(moving: npt.NDArray[np.uint8]) -> Array:

@@ -54,7 +54,7 @@ twice that of vehicles that pass a camera at 10 images a second (`box_motion.LAR
 _LEAST_COVERED = 0.6
 """Least area of the outline in the last clear sighting, of the box, which holds some road: below,
 parts of the vehicle are missing. A choice."""
-MOST_COVERED = 2.0
+_MOST_COVERED = 2.0
 """Largest such area: beyond, another vehicle has merged. A choice: a shadow may be as large as the
 vehicle."""
 _FURTHEST = 40.0
@@ -93,8 +93,6 @@ class Branch(NamedTuple):
         Frames in a row in which the filter has recognised it since, at a shape that stays.
     shape : float
         Logarithm of the outline's width over its height when these began.
-    since : int
-        Frames for which something has to stand to be no part of the outline; 0: all is.
     """
 
     motion: PerspectiveMotion
@@ -107,7 +105,6 @@ class Branch(NamedTuple):
     is_proven: bool = False
     clear: int = 0
     shape: float = 0.0
-    since: int = 0
 
     @classmethod
     def begun(
@@ -122,7 +119,7 @@ class Branch(NamedTuple):
         if first is None:
             return None
         # An outline that was not the vehicle's alone would leave the path for another's sake.
-        if not _LEAST_COVERED < float(first.size.prod() / last.size.prod()) < MOST_COVERED:
+        if not _LEAST_COVERED < float(first.size.prod() / last.size.prod()) < _MOST_COVERED:
             return None
         half = last.size / 2
         margins = first.low - (last.position - half), first.high - (last.position + half)
@@ -140,11 +137,7 @@ class Branch(NamedTuple):
         before = self.outline
         velocity = self.velocity
         # A lost outline ends the branch for good: what is found later may be another's.
-        place = before.centre + velocity * elapsed
-        if self.since:
-            after = foreground.moving_outline(place, before.size, self.since)
-        else:
-            after = foreground.outline(place, before.size, ago)
+        after = foreground.outline(before.centre + velocity * elapsed, before.size, ago)
         if after is None or np.abs(np.log(after.size / before.size)).max() > _LARGEST_LOG_CHANGE:
             return None
         # Where stamps repeat there is a displacement without a time.
