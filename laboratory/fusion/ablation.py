@@ -20,7 +20,7 @@ from collections.abc import Mapping, Sequence
 
 from laboratory.fusion.case_lists import listed_cases
 from laboratory.fusion.options import make_parser, parsed, report_progress
-from laboratory.stress import Case, Result, difference, run_battery
+from laboratory.stress import Case, Result, StressSystem, difference, run_battery
 from laboratory.stress.systems import variant_system
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.evaluation.statistics import Summary
@@ -89,6 +89,27 @@ def table(results: Sequence[Result]) -> str:
     return markdown(header, [row(name, results) for name in names])
 
 
+def compare(
+    name: str,
+    cases: Sequence[Case],
+    systems: Sequence[StressSystem],
+    seeds: Sequence[int],
+    options: argparse.Namespace,
+) -> None:
+    """Run all systems over all cases; write and print the table, and keep scores, as `name`."""
+    results = run_battery(
+        cases,
+        systems,
+        seeds=seeds,
+        workers=options.workers,
+        store=options.output / f"{name}.jsonl",
+        on_progress=report_progress,
+    )
+    text = table(results)
+    write_text(options.output / f"{name}.md", text)
+    print(text, end="")
+
+
 def main() -> int:
     """Run all systems over all cases."""
     parser = make_parser(__doc__)
@@ -97,13 +118,7 @@ def main() -> int:
     # The default always runs: everything is compared with it.
     names = dict.fromkeys([DEFAULT, *options.changes])
     systems = [variant_system("fusion", CHANGES[name], name) for name in names]
-    results = run_battery(
-        ablation_cases(options), systems, seeds=(options.seed,), workers=options.workers,
-        store=options.output / "ablation.jsonl", on_progress=report_progress,
-    )  # fmt: skip
-    text = table(results)
-    write_text(options.output / "ablation.md", text)
-    print(text, end="")
+    compare("ablation", ablation_cases(options), systems, (options.seed,), options)
     return 0
 
 

@@ -19,14 +19,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from laboratory.fusion.ablation import DEFAULT, table
+from laboratory.fusion.ablation import DEFAULT, compare
 from laboratory.fusion.case_lists import listed_cases
-from laboratory.fusion.options import make_parser, parsed, report_progress
-from laboratory.stress import StressSystem, run_battery, variant_system
+from laboratory.fusion.options import make_parser, parsed
+from laboratory.stress import StressSystem, variant_system
 from laboratory.stress.systems import Follower
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.results.output_files import write_text
 from vehicle_pf_tracker.trackers.fusion import observe, reappearance, turning, visibility
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
 from vehicle_pf_tracker.trackers.fusion.reappearance import Reappearance
@@ -120,17 +119,9 @@ def main() -> int:
         for kind in options.kinds.split(",")
         for case in listed_cases(options, f"mechanisms_{kind}", (kind,), **limits)
     ]
-    results = run_battery(
-        cases,
-        systems,
-        seeds=range(options.seed, options.seed + options.seeds),
-        workers=options.workers,
-        store=options.output / "mechanisms.jsonl",
-        on_progress=report_progress,
+    compare(
+        "mechanisms", cases, systems, range(options.seed, options.seed + options.seeds), options
     )
-    text = table(results)
-    write_text(options.output / "mechanisms.md", text)
-    print(text, end="")
     return 0
 
 
