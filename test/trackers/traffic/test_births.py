@@ -59,13 +59,9 @@ def begin(waiting, shapes, *, are_shapes=True):
     """Tracks after the first of shapes began, where tracks of one detection each wait."""
     former = np.array(waiting, float)
     state = begun_in(State(no_tracks(), Experience()), former, STEP)
-    tracks = changed(state.tracks, undetected=1.0)
-    looks = replace(tracks.sights.looks, detection=former)
-    tracks = replace(
-        tracks,
-        sights=replace(tracks.sights, looks=looks),
-        beliefs=replace(tracks.beliefs, ways=tracks.beliefs.ways.added(former)),
-    )
+    tracks = changed(state.tracks, undetected=1.0, detection=former)
+    beliefs = replace(tracks.beliefs, ways=tracks.beliefs.ways.added(former))
+    tracks = replace(tracks, beliefs=beliefs)
     boxes = [(left, top, right - left, bottom - top) for left, top, right, bottom in shapes]
     detections = replace(Detections.make(boxes), are_shapes=are_shapes)
     evidence = state.experience.detections
@@ -80,7 +76,7 @@ def test_a_vehicle_that_the_border_cuts_goes_on_from_its_former_track():
     # With the way of before, and the shape of now.
     assert tracks.beliefs.ways.matches.tolist() == [2]
     assert tracks.beliefs.ways.first.tolist() == [list(AT_THE_BORDER)]
-    assert tracks.sights.looks.detection.tolist() == [list(LARGER)]
+    assert tracks.latest.detection.tolist() == [list(LARGER)]
     assert tracks.detected.all()
 
 

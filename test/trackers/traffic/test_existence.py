@@ -329,7 +329,7 @@ def test_misses_refute_no_vehicle_that_has_driven_and_is_hidden(
     state = end(State(track(1, 100.0, **facts, log_odds=-20.0), experience), STEP)
     assert bool(len(state.tracks)) is is_known
     if is_known:
-        assert state.tracks.sights.absences.lost[0]
+        assert state.tracks.absences.lost[0]
 
 
 def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
@@ -340,7 +340,7 @@ def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
 def test_a_hidden_vehicle_is_lost_once_it_is_rather_not_there(log_odds, is_lost):
     facts = {"confirmed": True, "has_driven": True, "unseen": 30.0, "undetected": 30.0}
     state = State(track(1, 100.0, **facts, passed=30, log_odds=log_odds), Experience())
-    assert end(state, STEP).tracks.sights.absences.lost.tolist() == [is_lost]
+    assert end(state, STEP).tracks.absences.lost.tolist() == [is_lost]
 
 
 def evidence_of(fit, *, drives=True, log_odds=0.0, are_shapes=False, experience=None):

@@ -28,7 +28,7 @@ def held(left, cover=None):
     one = changed(track(1, left), usual_similarity=0.0)
     one = changed(one, before=one.edges - SHIFT + (1, 0, 1, 0))
     covers = [np.array([cover] if cover else []).reshape(-1, 4)]
-    return replace(one, sights=replace(one.sights, covers=objects(covers)))
+    return replace(one, visibility=replace(one.visibility, covers=objects(covers)))
 
 
 def test_a_vehicle_is_where_its_pixels_went():

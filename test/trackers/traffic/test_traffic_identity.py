@@ -29,7 +29,7 @@ def test_a_vehicle_that_reappears_a_little_off_is_the_hidden_one():
     both = together(hidden, changed(new, detection=new.edges))
     assert found_again(hidden, new) == 0
     one = resumed(both, 0, 1).take(np.array([0]))
-    assert one.sights.looks.detection[0, 0] == pytest.approx(130)
+    assert one.latest.detection[0, 0] == pytest.approx(130)
     assert one.names.identity == 1
     assert one.edges[0, 0] == pytest.approx(130)
     assert one.detected
@@ -41,7 +41,7 @@ def test_a_vehicle_that_reappears_a_little_off_is_the_hidden_one():
         confirmed(1, 100.0, undetected=2.0),
         confirmed(1, 300.0, undetected=20.0),
         confirmed(1, 100.0, BLUE, undetected=20.0),
-        confirmed(1, 100.0, undetected=20.0, visible=0.2),
+        confirmed(1, 100.0, undetected=20.0, uncovered=0.2),
     ],
     ids=["just seen", "far away", "of another colour", "still behind another"],
 )

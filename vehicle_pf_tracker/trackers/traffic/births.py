@@ -63,9 +63,11 @@ def begun(state: State, candidates: Candidates, columns: Integers, step: Step) -
     labels = [candidates.labels[column] for column in columns.tolist()]
     # A first box is taken as it is: who hides it is known from the next frame on.
     colours = step.colours.histograms(candidates.edges[columns], [NO_BOXES] * len(columns))
-    looks = replace(tracks.sights.looks, colours=colours, score=candidates.scores[columns])
     tracks = replace(
-        tracks, names=tracks.names.voted(labels), sights=replace(tracks.sights, looks=looks)
+        tracks,
+        names=tracks.names.voted(labels),
+        appearance=replace(tracks.appearance, colours=colours),
+        latest=replace(tracks.latest, score=candidates.scores[columns]),
     )
     # No prediction to fit yet: births against clutter, both per image, are its prior odds.
     fits = math.log(_NEW_VEHICLES) - candidates.clutter[columns]
@@ -98,8 +100,9 @@ def _that_go_on(
     waits = ~tracks.confirmed & ~tracks.detected
     if not (candidates.are_shapes and waits.any()):
         return none, none
-    size, noise = step.size, step.edge_noise
-    was_cut = cut_edges(tracks.sights.looks.detection, size, noise)[:, _SIDES]
+    size = step.size
+    noise = step.edge_noise
+    was_cut = cut_edges(tracks.latest.detection, size, noise)[:, _SIDES]
     rows = np.flatnonzero(waits & was_cut.any(axis=1))
     edges = candidates.edges[columns]
     is_cut = cut_edges(edges, size, noise)[:, _SIDES]

@@ -96,7 +96,7 @@ def watched(
         Standard deviation of an edge, fraction of the box's side.
     """
     rows = np.flatnonzero(tracks.detected)
-    boxes = tracks.sights.looks.detection[rows]
+    boxes = tracks.latest.detection[rows]
     sizes = areas(boxes)
     shares = intersections(boxes[:, np.newaxis], boxes) / np.minimum(sizes[:, np.newaxis], sizes)
     # 1. Those of tracks that have ended go, and those that this image shows apart.

@@ -191,7 +191,7 @@ def _recede(tracks: Tracks, compared: Comparison, noise: float) -> Bools:
     alike = np.abs(across - down) < 2 * noise  # that of four edges
     drawn_in = compared.inward[:, _ENDS] > 0
     lately = tracks.drives.drift[:, _ENDS] <= 0
-    in_sight = np.array([len(covers) == 0 for covers in tracks.sights.covers], np.bool_)
+    in_sight = np.array([len(covers) == 0 for covers in tracks.visibility.covers], np.bool_)
     smaller = (across < 0) & (down < 0) & (drawn_in & lately).all(axis=1)
     return np.asarray(in_sight & alike & smaller)
 

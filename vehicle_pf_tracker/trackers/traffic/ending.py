@@ -61,7 +61,7 @@ def end(state: State, step: Step) -> State:
 
 def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) -> Bools:
     """Find tracks that go on, by the shares (N,) of their boxes in the image."""
-    absences = tracks.sights.absences
+    absences = tracks.absences
     log_odds = tracks.beliefs.log_odds
     parameters = step.parameters
     waits = absences.passed <= _PATIENCE / experience.rate.share
@@ -81,10 +81,8 @@ def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) 
 
 def _with_lost(tracks: Tracks, step: Step) -> Tracks:
     """Say of which vehicles nothing is predicted any more."""
-    sights = tracks.sights
-    absences = tracks.sights.absences
+    absences = tracks.absences
     is_old = absences.unseen * step.period > step.parameters.lost_after
-    has_left = (sights.inside < _LEAVES) & ~absences.seen
+    has_left = (tracks.visibility.inside < _LEAVES) & ~absences.seen
     lost = is_old | has_left | (tracks.beliefs.log_odds < 0)
-    sights = replace(sights, absences=replace(absences, lost=lost))
-    return replace(tracks, sights=sights)
+    return replace(tracks, absences=replace(absences, lost=lost))

@@ -204,12 +204,12 @@ def have_rest(edges: Array, others: Array) -> Bools:
 
 def _seen(tracks: Tracks, edges: Array) -> Tracks:
     """End the absences of tracks detected in boxes (N, 4) in px: nothing hides them."""
-    sights = tracks.sights
-    looks = replace(sights.looks, detection=edges)
-    hidden_by = np.zeros(len(tracks), np.intp)
-    absences = sights.absences.ended()
-    sights = replace(sights, hidden_by=hidden_by, absences=absences, looks=looks)
-    return replace(tracks, sights=sights)
+    return replace(
+        tracks,
+        visibility=replace(tracks.visibility, hidden_by=np.zeros(len(tracks), np.intp)),
+        absences=tracks.absences.ended(),
+        latest=replace(tracks.latest, detection=edges),
+    )
 
 
 def drives(tracks: Tracks, step: Step, *, are_shapes: bool = False) -> Bools:
@@ -299,11 +299,10 @@ def doubt(state: State, step: Step) -> State:
     elapsed = step.elapsed
     confirmed = tracks.confirmed
     detected = tracks.detected
-    # Every look counts for all that it has not detected.
-    absences = tracks.sights.absences
-    absences = replace(absences, passed=np.where(detected, 0, absences.passed + 1))
-    sights = replace(tracks.sights, absences=absences)
-    tracks = replace(tracks, sights=sights)
+    # The image counts for all that the detector has not found in it.
+    passed = np.where(detected, 0, tracks.absences.passed + 1)
+    absences = replace(tracks.absences, passed=passed)
+    tracks = replace(tracks, absences=absences)
     # 1. A detector that misses all it could see has failed, and says nothing.
     in_sight = tracks.in_sight
     is_seen = absences.seen
@@ -320,7 +319,7 @@ def doubt(state: State, step: Step) -> State:
     taken = np.zeros(len(tracks))
     # Also of what pixels alone hold at the border, where most of it is outside: too little to ask
     # the detector for it, but road that stands would hold the box of one that has left for ever.
-    held = ~detected & is_seen & (sights.visible > IN_SIGHT) & ~tracks.names.given
+    held = ~detected & is_seen & (tracks.visibility.uncovered > IN_SIGHT) & ~tracks.names.given
     lost = (missed | held) & confirmed
     if lost.any():
         taken[lost] = np.maximum(elapsed * _MISSED, _sparse_price(absences, rates, step))[lost]

@@ -99,7 +99,7 @@ def merged(state: State) -> State:
     """Merge vehicles that were born a second time with the ones that they are."""
     tracks = state.tracks
     age = tracks.beliefs.ways.age
-    undetected = tracks.sights.absences.undetected
+    undetected = tracks.absences.undetected
     # Only who is missed now can have come back under another number.
     missed = tracks.confirmed & ~tracks.detected
     if not missed.any():
@@ -144,16 +144,16 @@ def body_of(state: State, row: int, least_way: float = SHORT_DRIVE) -> int | Non
 
 def _replaces(state: State, elder: int, row: int) -> bool:
     """Test whether the vehicle at `elder` goes on as the track at `row`, with which it is one."""
-    if state.tracks.sights.absences.passed[elder] >= MISSED_FOR:
+    if state.tracks.absences.passed[elder] >= MISSED_FOR:
         return True
     # Of two boxes that overlap by half either will do.
-    size, known = areas(state.tracks.sights.looks.detection[[row, elder]])
+    size, known = areas(state.tracks.latest.detection[[row, elder]])
     return bool(size > _MOST_GROWN * known) and body_of(state, row, LONG_DRIVE) == elder
 
 
 def _as_body(tracks: Tracks, elder: int, row: int) -> Tracks:
     """Let the vehicle at `elder` go on in the larger box of its own and the track's at `row`."""
-    detections = tracks.sights.looks.detection
+    detections = tracks.latest.detection
     drives = tracks.drives
     larger = row if areas(detections[row]) > areas(detections[elder]) else elder
     new = tracks.take(np.array([larger]))
@@ -168,9 +168,9 @@ def is_double(tracks: Tracks, row: int, *, are_shapes: bool = False) -> bool:
     Networks give one vehicle two boxes, for many frames on end: of it all and of its front, or with
     and without its shadow. Two vehicles side by side soon show more of each.
     """
-    detections = tracks.sights.looks.detection
+    detections = tracks.latest.detection
     # Also in those that a network misses for an image or two; blobs join, and one of two goes.
-    is_recent = tracks.sights.absences.passed < MISSED_FOR
+    is_recent = tracks.absences.passed < MISSED_FOR
     recent = tracks.confirmed & (tracks.detected if are_shapes else is_recent)
     # Latest detections, not states, which follow them with a delay, of those that have one.
     known = np.where(tracks.detected[:, np.newaxis], detections, tracks.edges)
@@ -182,17 +182,17 @@ def is_double(tracks: Tracks, row: int, *, are_shapes: bool = False) -> bool:
 
 def former(tracks: Tracks, row: int, others: Bools) -> int | None:
     """Find the hidden vehicle, among `others` (N,), that the new one at `row` is, if it is any."""
-    undetected = tracks.sights.absences.undetected
+    undetected = tracks.absences.undetected
     hidden = others & tracks.confirmed & (undetected >= _HIDDEN_FOR)
     # Behind a nearer vehicle it cannot be what was just detected in the open.
-    hidden &= tracks.sights.visible >= _OUT_OF_SIGHT
+    hidden &= tracks.visibility.uncovered >= _OUT_OF_SIGHT
     hidden[row] = False
     is_named = bool(tracks.confirmed[row])
     hidden &= ~_beside(tracks, row)
     rows = np.flatnonzero(hidden)
-    looks = tracks.sights.looks
+    appearance = tracks.appearance
     # Without colours nothing but the distance speaks: too little for a number.
-    if not len(rows) or not looks.colours[row].any():
+    if not len(rows) or not appearance.colours[row].any():
         return None
     distance, ratio = _apart(tracks.edges[row], tracks.edges[rows])
     # The longer it was hidden, the less its prediction is worth.
@@ -202,7 +202,8 @@ def former(tracks: Tracks, row: int, others: Bools) -> int | None:
     # Colours last: few are near enough to be compared.
     rows = rows[may_be]
     distance = distance[may_be]
-    fall = looks.usual_similarity[rows] - similarities(looks.colours[rows], looks.colours[row])
+    colours = appearance.colours
+    fall = appearance.usual_similarity[rows] - similarities(colours[rows], colours[row])
     rows = rows[fall <= _FALL]
     distance = distance[fall <= _FALL]
     if not len(rows):
@@ -214,11 +215,11 @@ def former(tracks: Tracks, row: int, others: Bools) -> int | None:
 
 def _beside(tracks: Tracks, row: int) -> Bools:
     """Find the tracks (N,) beside which the one at `row` was detected: they are other vehicles."""
-    together = tracks.beliefs.ways.age[row] - tracks.sights.absences.undetected
+    together = tracks.beliefs.ways.age[row] - tracks.absences.undetected
     if tracks.confirmed[row]:
         return np.asarray(together >= 0)
     # A new one may have been a second box of the vehicle that it is, which shares most of it.
-    detections = tracks.sights.looks.detection
+    detections = tracks.latest.detection
     own = detections[row]
     smaller = np.minimum(areas(detections), areas(own))
     apart = intersections(own, detections) <= _SHARED * smaller
@@ -259,13 +260,13 @@ def resumed(tracks: Tracks, hidden: int, row: int) -> Tracks:
         log_odds=np.maximum(old.beliefs.log_odds, new.beliefs.log_odds),
     )
     # 4. Colours are those of before, learnt for longer; the detection is of now.
-    looks = replace(
-        old.sights.looks, score=new.sights.looks.score, detection=new.sights.looks.detection
+    resumed_track = Tracks(
+        names=names,
+        drives=drives,
+        beliefs=beliefs,
+        visibility=replace(new.visibility, hidden_by=np.zeros(1, np.intp)),
+        absences=old.absences.ended(),
+        appearance=old.appearance,
+        latest=new.latest,
     )
-    sights = replace(
-        new.sights,
-        hidden_by=np.zeros(1, np.intp),
-        absences=old.sights.absences.ended(),
-        looks=looks,
-    )
-    return tracks.put(at, Tracks(names, drives, beliefs, sights))
+    return tracks.put(at, resumed_track)

@@ -163,10 +163,10 @@ def _shown(
     """Learn what vehicles look like and how they grow from detections that show the `whole`."""
     edges = candidates.edges[columns]
     labels = [candidates.labels[column] for column in columns.tolist()]
-    looks = replace(tracks.sights.looks, score=candidates.scores[columns])
+    appearance = tracks.appearance
     if whole.any():
         colours = step.colours.histograms(edges[whole], [NO_BOXES] * int(whole.sum()))
-        looks = coloured(looks, colours, whole)
+        appearance = coloured(appearance, colours, whole)
     # A width that the border cuts grows with the distance from the border, not from the horizon.
     grows = whole & ~cut_edges(edges, step.size, step.edge_noise).any(axis=1)
     growths = tracks.drives.growths.added(edges, grows)
@@ -174,7 +174,8 @@ def _shown(
         tracks,
         names=tracks.names.voted(labels),
         drives=replace(tracks.drives, growths=growths),
-        sights=replace(tracks.sights, looks=looks),
+        appearance=appearance,
+        latest=replace(tracks.latest, score=candidates.scores[columns]),
     )
 
 

@@ -18,7 +18,7 @@ from vehicle_pf_tracker.core.overlaps import NO_BOXES, areas, inside_image
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, filled
 from vehicle_pf_tracker.trackers.traffic.state import State, Step
-from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
+from vehicle_pf_tracker.trackers.traffic.tracks import Tracks, Visibility
 
 _HIDES_WITHIN = 4.0
 """Nominal periods since a vehicle was seen within which it hides others. A choice: more than the
@@ -37,16 +37,15 @@ def hide(state: State, step: Step) -> State:
     # kept in the state: from frame to frame it rarely changes, and nothing is copied then.
     tracks = state.tracks.take(nearest_first(state.tracks, step.road))
     edges = tracks.edges
-    sights = tracks.sights
     hiding = np.flatnonzero(_hides(tracks) & step.parameters.occlusions)
     common = intersections(edges[:, np.newaxis], edges[hiding]) / areas(edges)[:, np.newaxis]
     # A vehicle hides neither itself nor a nearer one.
     common[np.arange(len(tracks))[:, np.newaxis] <= hiding] = 0.0
     # A sum of shares, no union: where occluders overlap one another, less seems to be seen than is.
-    visible = np.maximum(1 - common.sum(axis=1), 0.0)
+    uncovered = np.maximum(1 - common.sum(axis=1), 0.0)
     hidden_by = np.zeros(len(tracks), np.intp)
     covers = filled(len(tracks), NO_BOXES)
-    rows = (visible < 1).nonzero()[0]
+    rows = (uncovered < 1).nonzero()[0]
     if len(rows):
         is_named = common.max(axis=1) > _GOOD_PART
         hidden_by[is_named] = tracks.names.identity[hiding[common.argmax(axis=1)]][is_named]
@@ -57,14 +56,13 @@ def hide(state: State, step: Step) -> State:
         last = covered.searchsorted(rows, "right").tolist()
         for row, start, end in zip(rows.tolist(), first, last, strict=True):
             covers[row] = boxes[start:end]
-    sights = replace(
-        sights,
-        visible=visible,
+    visibility = Visibility(
+        uncovered=uncovered,
         inside=inside_image(edges, step.size),
         covers=covers,
         hidden_by=hidden_by,
     )
-    return state._replace(tracks=replace(tracks, sights=sights))
+    return state._replace(tracks=replace(tracks, visibility=visibility))
 
 
 def nearest_first(tracks: Tracks, road: RoadPlane | None) -> Integers:
@@ -91,7 +89,7 @@ def _nearness(edges: Array, road: RoadPlane) -> Array:
 
 
 def _hides(tracks: Tracks) -> Bools:
-    absences = tracks.sights.absences
+    absences = tracks.absences
     # Tentative tracks hide nothing: a false alarm would excuse missed detections behind it.
     is_known = (absences.unseen < _HIDES_WITHIN) & ~absences.lost
     return np.asarray(tracks.confirmed & is_known)

@@ -28,11 +28,11 @@ _TOUCHES = 0.1
 """Share of a box that overlaps another one below which they are beside each other: two edges at the
 usual noise of a twentieth."""
 _CROWDED_FOR = 4
-"""Looks in a row by which a box is of several vehicles, or of more than was known: fewer may be
+"""Images in a row by which a box is of several vehicles, or of more than was known: fewer may be
 wrong."""
 _OFTEN_ALONE = 0.5
-"""Looks that show more than a vehicle, of its detections, from which it was always more: two that
-drive side by side are one box for a while, too."""
+"""Images with a box around a vehicle, per detection of its own, above which it was always larger
+than known: two that drive side by side are one box for a while, too."""
 
 
 def inside_of(boxes: Array, edges: Array, *, either: bool = False) -> Bools:
@@ -131,9 +131,9 @@ def outgrown(tracks: Tracks, edges: Array) -> tuple[Tracks, Integers]:
     waits = (~tracks.detected & tracks.in_sight)[confirmed]
     drives = tracks.drives
     matches = tracks.beliefs.ways.matches
-    # 3. Not at the first look, nor if it was usually detected as it is: two vehicles that drive
+    # 3. Not in the first image, nor if it was usually detected as it is: two vehicles that drive
     # side by side are one box for a while.
-    # Several boxes may be around one vehicle: that is one look, and the first of them counts.
+    # Several boxes may be around one vehicle: the image counts once, by the first of them.
     vehicles, columns = np.nonzero((around & waits).T)
     if not len(vehicles):
         return tracks, none

@@ -23,7 +23,7 @@ from vehicle_pf_tracker.trackers.traffic.colours import BACKGROUND_RIM, similari
 from vehicle_pf_tracker.trackers.traffic.edge_observation import V, X
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Objects
 from vehicle_pf_tracker.trackers.traffic.state import Grey, State, Step
-from vehicle_pf_tracker.trackers.traffic.tracks import Sights, Tracks
+from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import PIXEL_NOISE
 
 _GRID = 5
@@ -74,8 +74,8 @@ _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 def hold(state: State, step: Step) -> State:
     """Measure vehicles that were not detected by their pixels; and keep the frame for the next."""
     tracks = state.tracks
-    absences = state.tracks.sights.absences
-    part = np.minimum(tracks.sights.visible, tracks.sights.inside)
+    absences = state.tracks.absences
+    part = np.minimum(tracks.visibility.uncovered, tracks.visibility.inside)
     held = tracks.confirmed & ~tracks.detected & (absences.unseen < _HELD_FOR)
     # Either bound alone: what covers it and what the border cuts may be the same pixels.
     held &= part > _HELD_SHARE
@@ -94,11 +94,10 @@ def _held(tracks: Tracks, rows: Integers, before: Grey, step: Step) -> Tracks:
     gaussians = tracks.drives.gaussians
     measured = gaussians.take(rows).measured(edges, spreads)
     drives = replace(tracks.drives, gaussians=gaussians.put(rows, measured))
-    unseen = tracks.sights.absences.unseen.copy()
+    unseen = tracks.absences.unseen.copy()
     # Seen, but not detected: existence still counts the missed detection.
     unseen[rows] = 0.0
-    absences = replace(tracks.sights.absences, unseen=unseen)
-    return replace(tracks, drives=drives, sights=replace(tracks.sights, absences=absences))
+    return replace(tracks, drives=drives, absences=replace(tracks.absences, unseen=unseen))
 
 
 def measure(tracks: Tracks, before: Grey, step: Step) -> tuple[Integers, Array, Array]:
@@ -125,7 +124,7 @@ def measure(tracks: Tracks, before: Grey, step: Step) -> tuple[Integers, Array, 
     old = tracks.drives.before
     new = tracks.edges
     starts = _points(old)
-    in_sight = _uncovered(starts, tracks.sights.covers)
+    in_sight = _uncovered(starts, tracks.visibility.covers)
     # 2. Followed in one call for all vehicles, from where the drive predicts them.
     guesses = _carried(starts, old, new)
     ends = np.full_like(starts, np.nan)
@@ -154,7 +153,7 @@ def measure(tracks: Tracks, before: Grey, step: Step) -> tuple[Integers, Array, 
         )
     # 4. Flow follows whatever is there: the colours tell that it is still the vehicle.
     kept = np.flatnonzero(agree)
-    alike = _alike(tracks.sights.take(kept), edges[kept], step)
+    alike = _alike(tracks.take(kept), edges[kept], step)
     kept = kept[alike]
     return kept, edges[kept], spreads[kept]
 
@@ -168,10 +167,11 @@ def _together(counts: Integers, enough: Bools, particles: int) -> Iterator[Integ
             yield rows[first : first + most]
 
 
-def _alike(sights: Sights, boxes: Array, step: Step) -> Bools:
+def _alike(tracks: Tracks, boxes: Array, step: Step) -> Bools:
     """Find boxes (K, 4) that have the colours of their vehicles."""
-    colours = step.colours.histograms(boxes, list(sights.covers))
-    fall = sights.looks.usual_similarity - similarities(sights.looks.colours, colours)
+    colours = step.colours.histograms(boxes, list(tracks.visibility.covers))
+    appearance = tracks.appearance
+    fall = appearance.usual_similarity - similarities(appearance.colours, colours)
     return np.asarray(fall <= _HELD_FALL)
 
 

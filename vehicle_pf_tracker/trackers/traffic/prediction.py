@@ -39,7 +39,6 @@ def driven(tracks: Tracks, horizon: float, step: Step) -> Tracks:
     """Predict tracks below a horizon (row in px), and let time pass for them."""
     elapsed = step.elapsed
     drives = tracks.drives
-    sights = tracks.sights
     drives = replace(
         drives,
         gaussians=drives.gaussians.under(horizon).driven(elapsed, step.motion),
@@ -50,11 +49,10 @@ def driven(tracks: Tracks, horizon: float, step: Step) -> Tracks:
     )
     # Both count from zero, which only a detection, or pixels (`unseen`), set again.
     absences = replace(
-        sights.absences,
-        unseen=sights.absences.unseen + elapsed,
-        undetected=sights.absences.undetected + elapsed,
+        tracks.absences,
+        unseen=tracks.absences.unseen + elapsed,
+        undetected=tracks.absences.undetected + elapsed,
     )
-    looks = replace(sights.looks, score=np.full(len(tracks), np.nan))
+    latest = replace(tracks.latest, score=np.full(len(tracks), np.nan))
     beliefs = replace(tracks.beliefs, ways=tracks.beliefs.ways.older(elapsed))
-    sights = replace(sights, absences=absences, looks=looks)
-    return replace(tracks, drives=drives, beliefs=beliefs, sights=sights)
+    return replace(tracks, drives=drives, beliefs=beliefs, absences=absences, latest=latest)

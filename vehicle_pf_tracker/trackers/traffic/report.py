@@ -36,7 +36,6 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
     # 1. Lists, not arrays: estimates are of plain numbers.
     names = tracks.names
     drives = tracks.drives
-    sights = tracks.sights
     modes = _modes(tracks)
     rows = zip(
         names.identity.tolist(),
@@ -48,7 +47,7 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
         drives.gaussians.foot_covariance.tolist(),
         tracks.beliefs.log_odds.tolist(),
         tracks.beliefs.ways.age.tolist(),
-        sights.looks.score.tolist(),
+        tracks.latest.score.tolist(),
         modes,
         _hiders(tracks, modes),
         strict=True,
@@ -101,7 +100,7 @@ def _boxes(drives: Drives) -> Array:
 
 def _modes(tracks: Tracks) -> list[TrackMode]:
     """Claims about the vehicles."""
-    absences = tracks.sights.absences
+    absences = tracks.absences
     facts = zip(
         tracks.confirmed.tolist(),
         absences.lost.tolist(),
@@ -122,8 +121,8 @@ def _mode(is_confirmed: bool, is_lost: bool, is_seen: bool) -> TrackMode:
 
 def _hiders(tracks: Tracks, modes: list[TrackMode]) -> list[int | str | None]:
     """Say what hides each hidden vehicle: another one, or else the scene or the border."""
-    sights = tracks.sights
-    rows = zip(modes, sights.hidden_by.tolist(), sights.inside.tolist(), strict=True)
+    visibility = tracks.visibility
+    rows = zip(modes, visibility.hidden_by.tolist(), visibility.inside.tolist(), strict=True)
     return [_hider(*each) for each in rows]
 
 

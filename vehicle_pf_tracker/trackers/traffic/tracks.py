@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Vehicles that are followed: their names, drives, the belief in them, and what is in sight.
+"""Vehicles that are followed: names, drives, evidence, visibility, appearance.
 
 All are frozen arrays with one row for each vehicle, so that a step is one call for all of them.
 """
@@ -82,7 +82,7 @@ class Extents(Rows):
     crowded : (N,) array
         Number of its latest detections in a row that had another one beside them in its box.
     enclosed : (N,) array
-        Number of looks since its latest detection that showed a box around it.
+        Number of images since its latest detection with a box around it.
     """
 
     shown: Array
@@ -156,7 +156,7 @@ class Absences(Rows):
     unseen, undetected : (N,) arrays
         Nominal periods since it was last seen, and last detected.
     passed : (N,) array
-        Number of looks of the detector since its latest detection.
+        Number of images that the detector has searched since its latest detection.
     lost : (N,) array
         True where it was hidden for too long to be predicted, has left, or is rather not there.
     """
@@ -180,8 +180,34 @@ class Absences(Rows):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Looks(Rows):
-    """Appearance of N vehicles, and their latest detections.
+class Visibility(Rows):
+    """Visibility of N vehicles, as predicted.
+
+    Attributes
+    ----------
+    uncovered, inside : (N,) arrays
+        Share of its box that no nearer vehicle hides, and that lies in the image.
+    covers : (N,) array of (K, 4) arrays
+        Edges of the nearer boxes over its box, px.
+    hidden_by : (N,) array
+        Identity of the nearest vehicle that hides a good part of it; 0 if none does.
+    """
+
+    uncovered: Array
+    inside: Array
+    covers: Objects
+    hidden_by: Integers
+
+    @classmethod
+    def full(cls, count: int) -> Visibility:
+        """Visibility of vehicles that nothing hides."""
+        shares = np.ones(count)
+        return cls(shares, shares, filled(count, NO_BOXES), np.zeros(count, np.intp))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Appearance(Rows):
+    """Colours of N vehicles.
 
     Attributes
     ----------
@@ -189,52 +215,44 @@ class Looks(Rows):
         Histogram of its colours; zero while unknown.
     usual_similarity : (N,) array
         Similarity of its colours to those learnt, while it is detected.
+    """
+
+    colours: Array
+    usual_similarity: Array
+
+    @classmethod
+    def unknown(cls, count: int) -> Appearance:
+        """Appearance before the first detection: as similar as can be, until colours differ."""
+        return cls(np.zeros((count, COLOUR_BINS)), np.ones(count))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LatestDetection(Rows):
+    """Latest detection of each of N vehicles.
+
+    Attributes
+    ----------
     detection : (N, 4) array
         Edges of its latest detection, px.
     score : (N,) array
         Score of its detection in this frame; NaN without one.
     """
 
-    colours: Array
-    usual_similarity: Array
     detection: Array
     score: Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sights(Rows):
-    """Visibility of N vehicles.
-
-    Attributes
-    ----------
-    visible, inside : (N,) arrays
-        Share of its box that no nearer vehicle hides, and that lies in the image.
-    covers : (N,) array of (K, 4) arrays
-        Edges of the nearer boxes over its box, px.
-    hidden_by : (N,) array
-        Identity of the nearest vehicle that hides a good part of it; 0 if none does.
-    absences : Absences
-        Times since each was last seen and detected.
-    looks : Looks
-        Colours, and latest detections.
-    """
-
-    visible: Array
-    inside: Array
-    covers: Objects
-    hidden_by: Integers
-    absences: Absences
-    looks: Looks
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class Tracks(Rows):
-    """N vehicles: their names, drives, the belief in them, and what is in sight of them."""
+    """N vehicles: all that the tracker knows of each, by what changes together."""
 
     names: Names
     drives: Drives
     beliefs: Beliefs
-    sights: Sights
+    visibility: Visibility
+    absences: Absences
+    appearance: Appearance
+    latest: LatestDetection
 
     @classmethod
     def begun(cls, gaussians: Gaussians, serial: Integers, detections: Array) -> Tracks:
@@ -246,18 +264,14 @@ class Tracks(Rows):
         no = np.zeros(count, np.bool_)
         edges = np.zeros((count, 4))
         extents = Extents(np.zeros((count, 2)), numbers, numbers, numbers)
-        # Similar and in sight until something shows the opposite: ones, not zeros.
-        looks = Looks(
-            np.zeros((count, COLOUR_BINS)), np.ones(count), detections, np.full(count, np.nan)
-        )
-        absences = Absences(zero, zero, numbers, no)
         return cls(
-            Names(serial, numbers, no, numbers, filled(count, {})),
-            Drives(gaussians, edges, edges, edges, extents, Growths.unknown(count)),
-            Beliefs(zero, zero, zero, no, Ways.unknown(count), filled(count, ())),
-            Sights(
-                np.ones(count), np.ones(count), filled(count, NO_BOXES), numbers, absences, looks
-            ),
+            names=Names(serial, numbers, no, numbers, filled(count, {})),
+            drives=Drives(gaussians, edges, edges, edges, extents, Growths.unknown(count)),
+            beliefs=Beliefs(zero, zero, zero, no, Ways.unknown(count), filled(count, ())),
+            visibility=Visibility.full(count),
+            absences=Absences(zero, zero, numbers, no),
+            appearance=Appearance.unknown(count),
+            latest=LatestDetection(detections, np.full(count, np.nan)),
         )
 
     @property
@@ -273,13 +287,13 @@ class Tracks(Rows):
     @property
     def detected(self) -> Bools:
         """True (N,) where it was detected in this frame."""
-        return np.asarray(self.sights.absences.undetected == 0)
+        return np.asarray(self.absences.undetected == 0)
 
     @property
     def in_sight(self) -> Bools:
         """True (N,) where nothing known hides it, and it is in the image."""
         # The smaller share: cover and border may take the same part.
-        return np.asarray(np.minimum(self.sights.visible, self.sights.inside) > IN_SIGHT)
+        return np.asarray(np.minimum(self.visibility.uncovered, self.visibility.inside) > IN_SIGHT)
 
 
 def no_tracks() -> Tracks:
