@@ -98,7 +98,7 @@ PROGRAMS = {
         needs=("baselines",),
     ),
     "laboratory.traffic.fit": Program(
-        "toy={toy}/traffic --boxes good --only trackers.traffic.existence:_MISSED -o {out}",
+        "toy={toy}/traffic --boxes good --only trackers.traffic.misses:_MISSED -o {out}",
         ("leave_one_camera_out.md", "runs.jsonl"),
         needs=("baselines",),
     ),

@@ -60,7 +60,7 @@ def test_a_row_has_what_is_seen_what_is_left_out_and_what_it_is_worth():
 def test_a_decision_matters_only_where_it_can_act():
     motion = Decision("detection.blobs:_PIECE", (0.5,))
     scores = Decision("trackers.traffic.existence:_SCORE_DOUBT", (0.3,), 0.0, True)
-    always = Decision("trackers.traffic.existence:_MISSED", (0.15,))
+    always = Decision("trackers.traffic.misses:_MISSED", (0.15,))
     for decision, expected in ((motion, (True, False)), (scores, (False, True))):
         assert (decision.matters("motion"), decision.matters("yolox")) == expected
     assert always.matters("motion")

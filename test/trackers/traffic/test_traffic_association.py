@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from traffic_samples import changed, together, track
+from traffic_samples import candidates_of, changed, step_of, together, track
 
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import are_alone, areas, clipped, inside_image, overlaps
@@ -15,6 +15,7 @@ from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import (
     GATE,
     assigned,
+    birth_odds,
     edge_costs,
     pair_costs,
 )
@@ -26,6 +27,8 @@ from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
     places_of,
 )
 from vehicle_pf_tracker.trackers.traffic.identity import is_double
+from vehicle_pf_tracker.trackers.traffic.prediction import driven
+from vehicle_pf_tracker.trackers.traffic.state import Experience
 
 SIZE = (320, 240)
 ONLY = np.array([0])
@@ -130,3 +133,20 @@ def test_the_log_odds_of_a_pair_fall_with_its_distance_and_with_false_alarms_the
         evidence.look()
         evidence.learn([sample], False)
     assert odds(100) < before - 2
+
+
+def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_alarm():
+    evidence = Experience().detections
+    one = driven(track(1, 100.0), -1000.0, step_of(SIZE))
+    both, here_only = [(103, 100, 40, 30), (280, 20, 9, 9)], (103, 100, 40, 30)
+    here, aside = birth_odds(one, candidates_of(evidence, *both), np.arange(2), SIZE, 0.05)[0]
+    assert here > 2
+    assert aside < -10
+    sample = candidates_of(evidence, here_only).samples(np.array([0]))
+    for _ in range(30):  # of a place where false alarms are common, less so
+        evidence.look()
+        evidence.learn(sample, False)
+    assert (
+        birth_odds(one, candidates_of(evidence, here_only), np.array([0]), SIZE, 0.05)[0, 0]
+        < here - 2
+    )

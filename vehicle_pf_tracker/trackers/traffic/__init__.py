@@ -9,8 +9,9 @@
   `edge_observation` has, and `way`s; and the `horizon`
 - step: `prediction`, `occlusion`, `observe`, `pixel_hold`, `ending`, `recognition`
 - detections: `candidates` weighs them by `detection_evidence`, and `association` pairs them;
-  `parts` divides boxes, `correction` measures their edges (`box_edges`), `existence` adds up
-  evidence, of misses by the `detection_rate`, and `births` begins tracks by the road's `speeds`
+  `parts` divides boxes, and `correction` measures their edges (`box_edges`)
+- evidence: `existence` adds that of detections, `driving` tells drives, `misses` takes off that of
+  missed detections by the `detection_rate`, and `births` begins tracks by the road's `speeds`
 - one number for one vehicle: `identity`, by `colours`, and `bodies`
 - results: `report` makes an `estimate` of each; `session` follows a stream of images
 """

@@ -16,7 +16,8 @@ from vehicle_pf_tracker.trackers.traffic.association import GATE, assigned
 from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges, deviations
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates
 from vehicle_pf_tracker.trackers.traffic.edge_observation import Edge
-from vehicle_pf_tracker.trackers.traffic.existence import believed, have_rest
+from vehicle_pf_tracker.trackers.traffic.existence import add_evidence
+from vehicle_pf_tracker.trackers.traffic.parts import have_rest
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.state import State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
@@ -78,7 +79,7 @@ def begun(state: State, candidates: Candidates, columns: Integers, step: Step) -
         tracks = replace(tracks, names=names, beliefs=tracks.beliefs.put(new, old.beliefs))
         fits[new] = 0.0
     # 3. Believe: what is proven by this is named with its next detection.
-    tracks, _ = believed(tracks, candidates, columns, fits, state.experience, step)
+    tracks, _ = add_evidence(tracks, candidates, columns, fits, state.experience, step)
     tracks = state.tracks.put(rows, tracks)
     if len(former):
         kept = np.ones(len(tracks), np.bool_)

@@ -11,7 +11,8 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import inside_image
-from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN_LOG_ODDS, drives
+from vehicle_pf_tracker.trackers.traffic.driving import have_driven
+from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN_LOG_ODDS
 from vehicle_pf_tracker.trackers.traffic.rows import Bools
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
@@ -45,7 +46,7 @@ def end(state: State, step: Step) -> State:
     # as of shapes that are less straight seven in eight are leaves or light.
     are_shapes = experience.detections.are_shapes
     never_drove = tracks.beliefs.ways.matches < _DRIVE_MATCHES
-    never_drove |= ~drives(tracks, step, are_shapes=are_shapes)
+    never_drove |= ~have_driven(tracks, step, are_shapes=are_shapes)
     for row in np.flatnonzero(~goes_on & ~tracks.confirmed & never_drove).tolist():
         experience.detections.learn(tracks.beliefs.samples[row], False)
     # 3. Vehicles teach the horizon once each, when all of their growth is known, and how fast new

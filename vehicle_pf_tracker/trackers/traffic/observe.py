@@ -18,8 +18,9 @@ from vehicle_pf_tracker.trackers.traffic.bodies import watched
 from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates, weighed
 from vehicle_pf_tracker.trackers.traffic.correction import correct
-from vehicle_pf_tracker.trackers.traffic.existence import believed, doubt, fits_of_known
+from vehicle_pf_tracker.trackers.traffic.existence import add_evidence, position_evidence
 from vehicle_pf_tracker.trackers.traffic.identity import merged, named, unified
+from vehicle_pf_tracker.trackers.traffic.misses import count_misses
 from vehicle_pf_tracker.trackers.traffic.parts import divided, inside_of, outgrown
 from vehicle_pf_tracker.trackers.traffic.recognition import coloured
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
@@ -80,7 +81,7 @@ def observe(state: State, step: Step, detections: Detections) -> State:
     assignment = _give_outgrown(assignment)
     assignment = _united(assignment)
     # 5. Only now it is known who was missed, in plain sight.
-    assignment = assignment._replace(state=doubt(assignment.state, step))
+    assignment = assignment._replace(state=count_misses(assignment.state, step))
     # 6. A box around a vehicle that has its own is no new one either. The others may be. Here
     # missed vehicles count, too: step 4 had the first call on the boxes around them.
     assignment = _without_parts(assignment, either=True)
@@ -145,8 +146,8 @@ def _take(assignment: Assignment, pairs: Pairs) -> Assignment:
     # of its occluder, and a width that says nothing about the road.
     tracks = _shown(tracks, candidates, columns, whole, step)
     # 3. Whether it stands is judged by the corrected speed, and counts for the belief.
-    fits = fits_of_known(tracks, candidates, columns, fits)
-    tracks, proven = believed(tracks, candidates, columns, fits, state.experience, step)
+    fits = position_evidence(tracks, candidates, columns, fits)
+    tracks, proven = add_evidence(tracks, candidates, columns, fits, state.experience, step)
     state = state._replace(tracks=state.tracks.put(rows, tracks))
     # 4. Number last: a vehicle that is found again takes over its new track, whose row then goes,
     # and `rows` would point to others.

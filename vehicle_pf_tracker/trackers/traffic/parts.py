@@ -16,6 +16,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas
+from vehicle_pf_tracker.trackers.traffic.box_edges import INWARD_SIGNS, both_ends, sides_of
 from vehicle_pf_tracker.trackers.traffic.edge_observation import Edge
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.tracks import Drives, Tracks
@@ -33,6 +34,19 @@ wrong."""
 _OFTEN_ALONE = 0.5
 """Images with a box around a vehicle, per detection of its own, above which it was always larger
 than known: two that drive side by side are one box for a while, too."""
+_REST_REACH = 0.5
+"""Distance, of its size, within which the rest of a piece is."""
+_LEAST_REST = 0.25
+"""Least area of a rest, of the piece's own. With a reach of a quarter and half the area, or without
+both, 1 and 6 more pieces of a close scene are vehicles."""
+
+
+def have_rest(edges: Array, others: Array) -> Bools:
+    """Find boxes (N, 4) among `others` (M, 4), all, that have another one beside them."""
+    reach = _REST_REACH * both_ends(sides_of(edges))
+    near = intersections((edges - reach * INWARD_SIGNS)[:, np.newaxis], others) > 0
+    near &= areas(others) > _LEAST_REST * areas(edges)[:, np.newaxis]  # a speck is no rest
+    return np.asarray(near.sum(axis=1) > 1)  # itself is one
 
 
 def inside_of(boxes: Array, edges: Array, *, either: bool = False) -> Bools:

@@ -95,7 +95,7 @@ def _held(tracks: Tracks, rows: Integers, before: Grey, step: Step) -> Tracks:
     measured = gaussians.take(rows).measured(edges, spreads)
     drives = replace(tracks.drives, gaussians=gaussians.put(rows, measured))
     unseen = tracks.absences.unseen.copy()
-    # Seen, but not detected: existence still counts the missed detection.
+    # Seen, but not detected: `misses` still counts it.
     unseen[rows] = 0.0
     return replace(tracks, drives=drives, absences=replace(tracks.absences, unseen=unseen))
 
