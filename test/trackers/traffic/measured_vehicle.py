@@ -6,6 +6,7 @@
 import numpy as np
 from traffic_samples import track_of
 
+from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
 from vehicle_pf_tracker.trackers.traffic.correction import correct
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Gaussians, Motion
 
@@ -28,7 +29,7 @@ class Vehicle:
     def see(self, detection, *, noise=0.05):
         """Be detected; True if that shows all of it."""
         edges = np.array([detection], float)
-        self.tracks, whole = correct(self.tracks, edges, SIZE, noise)
+        self.tracks, whole = correct(self.tracks, edges, MeasurementModel(SIZE, noise))
         return bool(whole[0])
 
     @property

@@ -18,12 +18,13 @@ from vehicle_pf_tracker.trackers.traffic.state import Experience, State
 from vehicle_pf_tracker.trackers.traffic.tracks import no_tracks
 
 STEP = step_of(SIZE)
+MEASUREMENT = STEP.measurement
 AT_THE_BORDER = (0, 100, 40, 140)
 LARGER = (0, 96, 48, 142)
 
 
 def first(*edges):
-    return first_gaussians(np.array([edges], float), 0.05, np.array([-40.0]), STILL, SIZE)
+    return first_gaussians(np.array([edges], float), MEASUREMENT, np.array([-40.0]), STILL)
 
 
 @pytest.mark.parametrize(
@@ -49,7 +50,7 @@ def test_a_thin_first_box_may_grow():
 
 def test_vehicles_begin_together_as_each_alone_would():
     boxes = np.array([(100.0, 0, 140, 8), BOX, (310, 100, 320, 132)])
-    every = first_gaussians(boxes, 0.05, np.full(3, -40.0), STILL, SIZE)
+    every = first_gaussians(boxes, MEASUREMENT, np.full(3, -40.0), STILL)
     for row, box in enumerate(boxes):
         assert (every.mean[row] == first(*box).mean[0]).all()
         assert (every.covariance[row] == first(*box).covariance[0]).all()

@@ -12,13 +12,15 @@ from vehicle_pf_tracker.trackers.traffic.bodies import (
     LONG_DRIVE,
     NO_COMPANIONS,
     SHORT_DRIVE,
-    watched,
+    updated_companions,
 )
+from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
 from vehicle_pf_tracker.trackers.traffic.identity import body_of, unified
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
 SIZE = (640, 240)
+MEASUREMENT = MeasurementModel(SIZE, 0.05)
 GROUND = np.random.default_rng(0).integers(90, 130, (240, 640, 3)).astype(np.uint8)
 LORRY, CAB = np.array([100.0, 60, 200, 140]), np.array([165.0, 75, 200, 140])
 
@@ -37,7 +39,7 @@ def together_for(images, *, step=(8.0, 0.0), slip=0.0, start=(0.0, 0.0), small=C
     for image in range(images):
         at = np.tile(start, 2) + image * way
         tracks = pair_of(small + at - image * slip * way, LORRY + at)
-        companions = watched(companions, tracks, SIZE, 0.05)
+        companions = updated_companions(companions, tracks, MEASUREMENT)
     return companions
 
 
@@ -68,7 +70,7 @@ def test_a_car_in_the_next_lane_sticks_out_of_the_lorry():
 def test_boxes_apart_in_one_image_void_all_that_spoke_for_one():
     before = together_for(14)
     beside = pair_of(CAB + np.array([30.0, 0, 30, 0]), LORRY)  # .14 of it is inside
-    assert not watched(before, beside, SIZE, 0.05)
+    assert not updated_companions(before, beside, MEASUREMENT)
 
 
 def test_images_in_which_the_border_cuts_the_whole_do_not_count():
@@ -77,7 +79,7 @@ def test_images_in_which_the_border_cuts_the_whole_do_not_count():
 
 def test_pairs_of_tracks_that_ended_are_dropped():
     alone = pair_of().take(np.array([1]))
-    assert not watched(together_for(14), alone, SIZE, 0.05)
+    assert not updated_companions(together_for(14), alone, MEASUREMENT)
 
 
 def test_the_elder_number_stays_with_the_box_of_all_of_it():

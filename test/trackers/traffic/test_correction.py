@@ -10,6 +10,7 @@ from traffic_samples import changed, step_of, track_of
 
 from vehicle_pf_tracker.core.overlaps import overlaps
 from vehicle_pf_tracker.trackers.traffic.births import first_gaussians
+from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
 from vehicle_pf_tracker.trackers.traffic.correction import Comparison, correct, which_edges
 from vehicle_pf_tracker.trackers.traffic.edge_observation import Edge
 from vehicle_pf_tracker.trackers.traffic.prediction import driven
@@ -17,6 +18,7 @@ from vehicle_pf_tracker.trackers.traffic.report import estimates_of
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Motion
 
 ROAD = Motion(0.002, 0.5, 768.0)
+MEASUREMENT = MeasurementModel(SIZE, 0.05)
 PART = BOX - (0, 0, 0, 12)
 
 
@@ -49,8 +51,8 @@ def test_a_covered_edge_does_not_brake_the_vehicle(vehicle):
 
 
 def test_a_verdict_is_given_before_anything_changes(vehicle):
-    compared = Comparison.of(vehicle.tracks.drives, PART[None], SIZE, 0.05)
-    given = vehicle.tracks, compared, 0.05
+    compared = Comparison.of(vehicle.tracks.drives, PART[None], MEASUREMENT)
+    given = vehicle.tracks, compared
     verdict = which_edges(*given)
     assert verdict.covered.tolist() == [[False, False, False, True]]
     assert verdict.left_out.tolist() == verdict.covered.tolist()
@@ -119,11 +121,11 @@ def test_a_vehicle_that_drives_below_a_bridge_keeps_size_and_speed():
     # From the 15th image on its lower edge stays at the deck, while the upper one goes on.
     boxes = [BOX + np.tile((0.0, 1.5 * frame), 2) for frame in range(32)]
     horizon = np.array([-1e4])
-    tracks = track_of(first_gaussians(boxes[0][None], 0.05, horizon, ROAD, SIZE), confirmed=True)
+    tracks = track_of(first_gaussians(boxes[0][None], MEASUREMENT, horizon, ROAD), confirmed=True)
     for number, box in enumerate(boxes[1:], start=1):
         tracks = driven_on(tracks, number)
         seen = np.minimum(box, (np.inf, np.inf, np.inf, boxes[15][Edge.BOTTOM]))
-        tracks, _ = correct(tracks, seen[None], SIZE, 0.05)
+        tracks, _ = correct(tracks, seen[None], MEASUREMENT)
     assert tracks.edges[0] == pytest.approx(boxes[-1], abs=1)
 
 
@@ -132,9 +134,9 @@ def test_a_vehicle_that_drives_away_fast_before_a_wrong_horizon_is_followed(rate
     sides = 100 * rate ** np.arange(25)
     # By the horizon, far above, it would shrink by a ninth of this.
     boxes = np.array([(300 - a / 2, 250 - 0.3 * a, 300 + a / 2, 250 + 0.5 * a) for a in sides])
-    size, horizon = (640, 640), np.array([-72.0])
-    tracks = track_of(first_gaussians(boxes[:1], 0.05, horizon, ROAD, size), confirmed=True)
+    measurement, horizon = MeasurementModel((640, 640), 0.05), np.array([-72.0])
+    tracks = track_of(first_gaussians(boxes[:1], measurement, horizon, ROAD), confirmed=True)
     for number, box in enumerate(boxes[1:], start=1):
         tracks = driven_on(tracks, number)
-        tracks, _ = correct(tracks, box[None], size, 0.05)
+        tracks, _ = correct(tracks, box[None], measurement)
         assert overlaps(tracks.edges[0], box) > 0.6

@@ -19,7 +19,7 @@ from vehicle_pf_tracker.trackers.traffic.association import (
     edge_costs,
     pair_costs,
 )
-from vehicle_pf_tracker.trackers.traffic.box_edges import deviations
+from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
 from vehicle_pf_tracker.trackers.traffic.candidates import weighed
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
     DetectionEvidence,
@@ -31,6 +31,7 @@ from vehicle_pf_tracker.trackers.traffic.prediction import driven
 from vehicle_pf_tracker.trackers.traffic.state import Experience
 
 SIZE = (320, 240)
+MEASUREMENT = MeasurementModel(SIZE, 0.05)
 ONLY = np.array([0])
 BOX = np.array([10.0, 10, 50, 40])
 
@@ -95,7 +96,7 @@ def test_a_likely_vehicle_that_overlaps_by_half_may_be_one_whose_drive_was_wrong
     boxes = Detections.make([(106, 104, 40, 30)], [0.8])
     candidates = weighed(boxes, DetectionEvidence(), SIZE)
     candidates = replace(candidates, log_odds=np.array([log_odds]))
-    cost, _ = pair_costs(sure, candidates, ONLY, SIZE, 0.02)
+    cost, _ = pair_costs(sure, candidates, ONLY, MeasurementModel(SIZE, 0.02))
     assert (cost < GATE).all() == (log_odds > 0)
 
 
@@ -107,9 +108,9 @@ def test_what_is_out_of_reach_costs_the_gate_and_all_else_what_its_edges_cost():
     candidates = weighed(Detections.make(boxes), DetectionEvidence(), SIZE)
     candidates = replace(candidates, log_odds=np.full(len(boxes), -1.0))
     columns = np.arange(len(boxes))
-    costs, odds = pair_costs(vehicles, candidates, columns, SIZE, 0.05)
+    costs, odds = pair_costs(vehicles, candidates, columns, MEASUREMENT)
     gaussians = vehicles.drives.gaussians
-    spread = np.sqrt(gaussians.edge_variances + deviations(gaussians.edges, 0.05) ** 2)
+    spread = np.sqrt(gaussians.edge_variances + MEASUREMENT.deviations(gaussians.edges) ** 2)
     predicted = clipped(gaussians.edges, SIZE)
     for row in range(2):
         every = edge_costs(predicted[[row]], spread[[row]], candidates.edges)
@@ -123,7 +124,7 @@ def test_the_log_odds_of_a_pair_fall_with_its_distance_and_with_false_alarms_the
 
     def odds(left):
         candidates = weighed(Detections.make([(left, 100, 40, 30)], [0.8]), evidence, SIZE)
-        return float(pair_costs(vehicle, candidates, ONLY, SIZE, 0.05)[1][0, 0])
+        return float(pair_costs(vehicle, candidates, ONLY, MEASUREMENT)[1][0, 0])
 
     before = odds(100)
     assert before > 2
@@ -139,7 +140,7 @@ def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_a
     evidence = Experience().detections
     one = driven(track(1, 100.0), -1000.0, step_of(SIZE))
     both, here_only = [(103, 100, 40, 30), (280, 20, 9, 9)], (103, 100, 40, 30)
-    here, aside = birth_odds(one, candidates_of(evidence, *both), np.arange(2), SIZE, 0.05)[0]
+    here, aside = birth_odds(one, candidates_of(evidence, *both), np.arange(2), MEASUREMENT)[0]
     assert here > 2
     assert aside < -10
     sample = candidates_of(evidence, here_only).samples(np.array([0]))
@@ -147,6 +148,6 @@ def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_a
         evidence.look()
         evidence.learn(sample, False)
     assert (
-        birth_odds(one, candidates_of(evidence, here_only), np.array([0]), SIZE, 0.05)[0, 0]
+        birth_odds(one, candidates_of(evidence, here_only), np.array([0]), MEASUREMENT)[0, 0]
         < here - 2
     )

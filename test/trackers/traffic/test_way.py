@@ -8,7 +8,10 @@ import math
 import numpy as np
 import pytest
 
+from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
 from vehicle_pf_tracker.trackers.traffic.way import Ways
+
+MEASUREMENT = MeasurementModel((200, 150), 0.05)
 
 
 def way(*places):
@@ -45,17 +48,17 @@ FIRST = np.array([[40.0, 40, 60, 60]])
 )
 def test_two_edges_share_a_drive(now, length):
     ways = Ways.unknown(1).added(FIRST)
-    shared = ways.shared_lengths(np.array([now], float), (200, 150), 0.05)
+    shared = ways.shared_lengths(np.array([now], float), MEASUREMENT)
     assert shared == pytest.approx(length)
 
 
 def test_an_edge_that_the_border_cuts_moves_as_the_opposite_one():
     ways = Ways.unknown(1).added(np.array([[0.0, 40, 12, 60]]))
     coming = np.array([[0.0, 40, 30, 60]])
-    assert ways.shared_lengths(coming, (200, 150), 0.05) == pytest.approx(18 / 30)
+    assert ways.shared_lengths(coming, MEASUREMENT) == pytest.approx(18 / 30)
     later = coming + np.array([50, 0, 50, 0])
-    assert ways.shared_lengths(later, (200, 150), 0.05) == pytest.approx(68 / 30)
-    assert Ways.unknown(1).shared_lengths(coming, (200, 150), 0.05) == 0
+    assert ways.shared_lengths(later, MEASUREMENT) == pytest.approx(68 / 30)
+    assert Ways.unknown(1).shared_lengths(coming, MEASUREMENT) == 0
 
 
 def test_the_drive_explains_a_share_of_the_scatter():

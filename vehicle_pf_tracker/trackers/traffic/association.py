@@ -22,9 +22,8 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.overlaps import are_alone, clipped, overlaps
 from vehicle_pf_tracker.trackers.traffic.box_edges import (
     INWARD_SIGNS,
+    MeasurementModel,
     both_ends,
-    cut_edges,
-    deviations,
     sides_of,
 )
 from vehicle_pf_tracker.trackers.traffic.candidates import SIZE_SPREAD, Candidates
@@ -85,42 +84,8 @@ def check_library() -> None:
         ) from None
 
 
-def pairs_of_known(
-    tracks: Tracks,
-    rows: Integers,
-    candidates: Candidates,
-    columns: Integers,
-    size: tuple[int, int],
-    noise: float,
-) -> Pairs:
-    """Pair vehicles that are known, at `rows`, with detections at `columns`; see `pair_costs`."""
-    if not (len(rows) and len(columns)):
-        return assigned(rows, columns, np.empty((0, 0)), np.empty((0, 0)))
-    costs, odds = pair_costs(tracks.take(rows), candidates, columns, size, noise)
-    return assigned(rows, columns, costs, odds)
-
-
-def pairs_of_new(
-    tracks: Tracks,
-    rows: Integers,
-    candidates: Candidates,
-    columns: Integers,
-    size: tuple[int, int],
-    noise: float,
-) -> Pairs:
-    """Pair new tracks at `rows` with detections at `columns` that are rather theirs."""
-    if not (len(rows) and len(columns)):
-        return assigned(rows, columns, np.empty((0, 0)), np.empty((0, 0)))
-    # Below the gate exactly where the odds are above even.
-    odds = birth_odds(tracks.take(rows), candidates, columns, size, noise)
-    return assigned(rows, columns, GATE - odds, odds)
-
-
 def assigned(rows: Integers, columns: Integers, costs: Array, odds: Array) -> Pairs:
     """Pairs of least total cost, each below the gate."""
-    if costs.size == 0:
-        none = np.zeros(0, np.intp)
-        return Pairs(none, none, np.zeros(0))
     # Not at the top: help and parameters of `traffic` are printed without this library.
     from scipy.optimize import linear_sum_assignment  # noqa: PLC0415
 
@@ -161,11 +126,7 @@ def edge_costs(predicted: Array, deviations: Array, detected: Array) -> Array:
 
 
 def pair_costs(
-    tracks: Tracks,
-    candidates: Candidates,
-    columns: Integers,
-    size: tuple[int, int],
-    noise: float,
+    tracks: Tracks, candidates: Candidates, columns: Integers, measurement: MeasurementModel
 ) -> tuple[Array, Array]:
     """Cost of each pair of a vehicle and one of the detections at `columns`, and its log odds.
 
@@ -173,9 +134,9 @@ def pair_costs(
     """
     gaussians = tracks.drives.gaussians
     # 1. Innovation: prediction and measurement are independent.
-    spread = np.sqrt(gaussians.edge_variances + deviations(gaussians.edges, noise) ** 2)
+    spread = np.sqrt(gaussians.edge_variances + measurement.deviations(gaussians.edges) ** 2)
     # A detector's box ends at the border, and so does what is compared with it.
-    predicted = clipped(gaussians.edges, size)
+    predicted = clipped(gaussians.edges, measurement.size)
     detected = candidates.edges[columns]
     # 2. Nearly all pairs are out of reach, and only the others cost time.
     rows, pairs = _within_reach(predicted, spread, detected)
@@ -213,12 +174,20 @@ def _within_reach(predicted: Array, spread: Array, detected: Array) -> tuple[Int
     return rows, pairs
 
 
+def birth_costs(
+    tracks: Tracks, candidates: Candidates, columns: Integers, measurement: MeasurementModel
+) -> tuple[Array, Array]:
+    """Cost of each pair of a new track and one of the detections at `columns`, and its log odds.
+
+    Both are (tracks, detections); see `birth_odds`.
+    """
+    odds = birth_odds(tracks, candidates, columns, measurement)
+    # Below the gate exactly where the odds are above even.
+    return GATE - odds, odds
+
+
 def birth_odds(
-    tracks: Tracks,
-    candidates: Candidates,
-    columns: Integers,
-    size: tuple[int, int],
-    noise: float,
+    tracks: Tracks, candidates: Candidates, columns: Integers, measurement: MeasurementModel
 ) -> Array:
     """Log odds (tracks, detections) that a detection is a new track's and no false alarm.
 
@@ -233,18 +202,17 @@ def birth_odds(
         Detections of the frame.
     columns : (D,) array
         Indices of those to compare with.
-    size : (int, int)
-        Width and height of the image.
-    noise : float
-        Standard deviation of an edge, fraction of the box's side.
+    measurement : MeasurementModel
+        How a detector measures edges in this image.
     """
     # 1. Predictions and detections, with the deviations of both.
     gaussians = tracks.drives.gaussians
     predicted = gaussians.edges
     detected = candidates.edges[columns]
-    spread = deviations(detected, noise)
+    spread = measurement.deviations(detected)
     reach = np.sqrt(gaussians.edge_variances)
-    cut, also_cut = (cut_edges(edges, size, noise) for edges in (predicted, detected))
+    cut = measurement.cut_edges(predicted)
+    also_cut = measurement.cut_edges(detected)
     # 2. Gate edge by edge: most pairs are far apart by the first one, only the others cost time.
     reachable = math.sqrt(GATE)
     apart = np.abs(detected[:, 0] - predicted[:, :1])

@@ -13,7 +13,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import NO_BOXES, overlaps
 from vehicle_pf_tracker.trackers.traffic.association import GATE, assigned
-from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges, deviations
+from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates
 from vehicle_pf_tracker.trackers.traffic.edge_observation import Edge
 from vehicle_pf_tracker.trackers.traffic.existence import add_evidence
@@ -101,12 +101,10 @@ def _that_go_on(
     waits = ~tracks.confirmed & ~tracks.detected
     if not (candidates.are_shapes and waits.any()):
         return none, none
-    size = step.size
-    noise = step.edge_noise
-    was_cut = cut_edges(tracks.latest.detection, size, noise)[:, _SIDES]
+    was_cut = step.measurement.cut_edges(tracks.latest.detection)[:, _SIDES]
     rows = np.flatnonzero(waits & was_cut.any(axis=1))
     edges = candidates.edges[columns]
-    is_cut = cut_edges(edges, size, noise)[:, _SIDES]
+    is_cut = step.measurement.cut_edges(edges)[:, _SIDES]
     free = np.flatnonzero(is_cut.any(axis=1) & ~have_rest(edges, candidates.edges))
     if not (len(rows) and len(free)):
         return none, none
@@ -123,8 +121,7 @@ def begun_in(state: State, edges: Array, step: Step) -> State:
     # A horizon below the box would have it drive on the sky.
     horizon = np.minimum(state.horizon.row, edges[:, Edge.BOTTOM] - 1)
     speeds = _possible_speeds(state, step)
-    noise = step.edge_noise
-    gaussians = first_gaussians(edges, noise, horizon, step.motion, step.size, speeds)
+    gaussians = first_gaussians(edges, step.measurement, horizon, step.motion, speeds)
     # Tracks are numbered from birth, vehicles from confirmation: a serial orders ties.
     serials = state.last_serial + 1 + np.arange(len(edges))
     tracks = state.tracks.extended(Tracks.begun(gaussians, serials, np.zeros_like(edges)))
@@ -142,10 +139,9 @@ def _possible_speeds(state: State, step: Step) -> Array:
 
 def first_gaussians(
     edges: Array,
-    noise: float,
+    measurement: MeasurementModel,
     horizon: Array,
     motion: Motion,
-    size: tuple[int, int],
     speeds: Array = ANY_SPEED,
 ) -> Gaussians:
     """Make the states of vehicles from their first boxes, which borders of the image may cut.
@@ -154,21 +150,19 @@ def first_gaussians(
     ----------
     edges : (K, 4) array
         Edges of the boxes, px.
-    noise : float
-        Standard deviation of an edge, fraction of the box's side.
+    measurement : MeasurementModel
+        How their edges are measured.
     horizon : (K,) array
         Row of the horizon, px.
     motion : Motion
         Motion model of vehicles.
-    size : (int, int)
-        Width and height of the image.
     speeds : (2, 2) array
         Covariance of their speeds across and along the road, in squares of the motion's top speed.
     """
     # What is cut is completed by the usual aspect and made uncertain: measured as it is, a vehicle
     # that comes in would grow at every frame as if it drove towards the camera.
-    cut = cut_edges(edges, size, noise)
-    spread = deviations(edges, noise)
+    cut = measurement.cut_edges(edges)
+    spread = measurement.deviations(edges)
     whole = edges.copy()
     width, height = (edges[:, 2:] - edges[:, :2]).T
     _complete(whole, spread, cut, (Edge.TOP, Edge.BOTTOM), height, USUAL_ASPECT * width)

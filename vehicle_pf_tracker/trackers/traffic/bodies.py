@@ -17,7 +17,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import intersections
 from vehicle_pf_tracker.core.overlaps import areas
-from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges
+from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 
 _INSIDE = 0.7
@@ -79,8 +79,8 @@ Companions: TypeAlias = Mapping[tuple[int, int], Together]
 NO_COMPANIONS: Companions = {}
 
 
-def watched(
-    companions: Companions, tracks: Tracks, size: tuple[int, int], noise: float
+def updated_companions(
+    companions: Companions, tracks: Tracks, measurement: MeasurementModel
 ) -> Companions:
     """Note which of the tracks that were detected in this image were in each other.
 
@@ -90,10 +90,8 @@ def watched(
         Those known so far.
     tracks : Tracks
         Tracks in this image.
-    size : (int, int)
-        Width and height of the image.
-    noise : float
-        Standard deviation of an edge, fraction of the box's side.
+    measurement : MeasurementModel
+        How a detector measures edges in this image.
     """
     rows = np.flatnonzero(tracks.detected)
     boxes = tracks.latest.detection[rows]
@@ -110,7 +108,7 @@ def watched(
     }
     # 2. One image more of those that are in each other; serials are those of birth.
     # While the border cuts the whole its part moves in what is seen of it.
-    is_whole = np.asarray(~cut_edges(boxes, size, noise).any(axis=1))
+    is_whole = np.asarray(~measurement.cut_edges(boxes).any(axis=1))
     inside = np.triu((shares > _APART) & is_whole[:, np.newaxis] & is_whole, 1)
     serials = list(now)
     for pair in np.argwhere(inside).tolist():

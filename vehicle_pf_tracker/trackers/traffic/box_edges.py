@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -25,25 +26,6 @@ def sides_of(edges: Array) -> Array:
     return np.asarray(edges[..., 2:] - edges[..., :2])
 
 
-def deviations(edges: Array, noise: float) -> Array:
-    """Estimate the standard deviations (..., 4) of measured edges in px.
-
-    Parameters
-    ----------
-    edges : (..., 4) array
-        Boxes in px.
-    noise : float
-        Standard deviation of an edge, fraction of the box's side.
-    """
-    return both_ends(_deviations_by_axis(edges, noise))
-
-
-def _deviations_by_axis(edges: Array, noise: float) -> Array:
-    """Estimate those (..., 2) across and down: opposite edges are equally exact."""
-    # Independent errors: one grows with the vehicle, the grid of pixels does not.
-    return np.asarray(np.hypot(sides_of(edges) * noise, PIXEL_NOISE))
-
-
 def both_ends(values: npt.NDArray[ScalarT]) -> npt.NDArray[ScalarT]:
     """Give values (..., 2) across and down to both edges of each axis: (..., 4)."""
     return np.concatenate([values, values], axis=-1)
@@ -54,10 +36,35 @@ def opposites(values: Array) -> Array:
     return np.concatenate([values[:, 2:], values[:, :2]], axis=1)
 
 
-def cut_edges(edges: Array, size: tuple[int, int], noise: float) -> Bools:
-    """Find the edges of boxes (..., 4) that lie beyond the borders of an image, or may do.
+@dataclass(frozen=True, slots=True)
+class MeasurementModel:
+    """How a detector measures the edges of boxes in images of one size.
 
-    They may where they are nearer than their own deviation; `noise` is that of `deviations`.
+    Attributes
+    ----------
+    size : (int, int)
+        Width and height of the image, px.
+    noise : float
+        Standard deviation of an edge, fraction of the box's side.
     """
-    margin = _deviations_by_axis(edges, noise)
-    return np.concatenate([edges[..., :2] <= margin, edges[..., 2:] >= size - margin], axis=-1)
+
+    size: tuple[int, int]
+    noise: float
+
+    def deviations(self, edges: Array) -> Array:
+        """Estimate the standard deviations (..., 4) in px of measured edges (..., 4) in px."""
+        return both_ends(self._deviations_by_axis(edges))
+
+    def cut_edges(self, edges: Array) -> Bools:
+        """Find the edges of boxes (..., 4) that lie beyond the image's borders, or may do.
+
+        They may where they are nearer than their own deviation.
+        """
+        margin = self._deviations_by_axis(edges)
+        is_low = edges[..., :2] <= margin
+        return np.concatenate([is_low, edges[..., 2:] >= self.size - margin], axis=-1)
+
+    def _deviations_by_axis(self, edges: Array) -> Array:
+        """Estimate those (..., 2) across and down: opposite edges are equally exact."""
+        # Independent errors: one grows with the vehicle, the grid of pixels does not.
+        return np.asarray(np.hypot(sides_of(edges) * self.noise, PIXEL_NOISE))

@@ -17,9 +17,8 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import are_alone
 from vehicle_pf_tracker.trackers.traffic.box_edges import (
     INWARD_SIGNS,
+    MeasurementModel,
     both_ends,
-    cut_edges,
-    deviations,
     opposites,
     sides_of,
 )
@@ -70,6 +69,8 @@ class Comparison:
     variances, spread, expected : (N, 4) arrays
         Variances of the predictions; standard deviations of the measurements, and of the residuals
         that both let expect, px.
+    noise : float
+        Standard deviation of a detected edge, fraction of the box's side.
     """
 
     predicted: Array
@@ -83,18 +84,19 @@ class Comparison:
     variances: Array
     spread: Array
     expected: Array
+    noise: float
 
     @classmethod
-    def of(cls, drives: Drives, edges: Array, size: tuple[int, int], noise: float) -> Comparison:
+    def of(cls, drives: Drives, edges: Array, measurement: MeasurementModel) -> Comparison:
         """Compare with detections (N, 4) in px; see `correct`."""
         predicted = drives.gaussians.edges
         # Cut in both, an edge is unknown. Where only one is cut, the vehicle comes in or leaves,
         # and the edge is measured.
-        unknown = cut_edges(edges, size, noise) & cut_edges(predicted, size, noise)
+        unknown = measurement.cut_edges(edges) & measurement.cut_edges(predicted)
         own = sides_of(predicted)
         sides = sides_of(edges)
         variances = drives.gaussians.edge_variances
-        spread = deviations(predicted, noise)
+        spread = measurement.deviations(predicted)
         return cls(
             predicted=predicted,
             detected=edges,
@@ -107,6 +109,7 @@ class Comparison:
             variances=variances,
             spread=spread,
             expected=np.sqrt(variances + spread**2),
+            noise=measurement.noise,
         )
 
 
@@ -134,12 +137,7 @@ class Verdict:
         return np.asarray(~self.covered.any(axis=1))
 
 
-def correct(
-    tracks: Tracks,
-    edges: Array,
-    size: tuple[int, int],
-    noise: float,
-) -> tuple[Tracks, Bools]:
+def correct(tracks: Tracks, edges: Array, measurement: MeasurementModel) -> tuple[Tracks, Bools]:
     """Correct the drives of vehicles, each by its detection; and tell which were seen whole.
 
     Parameters
@@ -148,18 +146,16 @@ def correct(
         N vehicles, predicted into this frame.
     edges : (N, 4) array
         Edges of the detection of each, px.
-    size : (int, int)
-        Width and height of the image.
-    noise : float
-        Standard deviation of an edge, fraction of the box's side.
+    measurement : MeasurementModel
+        How a detector measures edges in this image.
     """
-    compared = Comparison.of(tracks.drives, edges, size, noise)
+    compared = Comparison.of(tracks.drives, edges, measurement)
     # Judge all four edges by the prediction, then correct once.
-    verdict = which_edges(tracks, compared, noise)
+    verdict = which_edges(tracks, compared)
     return replace(tracks, drives=corrected(tracks.drives, compared, verdict)), verdict.whole
 
 
-def which_edges(tracks: Tracks, compared: Comparison, noise: float) -> Verdict:
+def which_edges(tracks: Tracks, compared: Comparison) -> Verdict:
     """Judge which edges of detections tell where vehicles end; see `correct`."""
     # Residuals in their standard deviations, inward positive.
     normal = compared.inward / compared.expected
@@ -169,7 +165,7 @@ def which_edges(tracks: Tracks, compared: Comparison, noise: float) -> Verdict:
     jumped = (normal > _JUMP) & (opposite > 0)  # a vehicle that brakes pushes it out
     # Of two edges that are drawn in, the one that is more so.
     crept = both_ends(shrunk) & (normal > np.maximum(opposite, 0.0))
-    recede = _recede(tracks, compared, noise) & ~compared.is_cut
+    recede = _recede(tracks, compared) & ~compared.is_cut
     covered = (jumped | crept) & ~(compared.unknown | recede[:, np.newaxis])
     patient = _patient(tracks)
     return Verdict(compared.unknown | (covered & patient[:, np.newaxis]), covered, recede)
@@ -182,13 +178,13 @@ def _patient(tracks: Tracks) -> Bools:
     return np.asarray(known & (tracks.drives.extents.partial < _COVERED_FOR))
 
 
-def _recede(tracks: Tracks, compared: Comparison, noise: float) -> Bools:
+def _recede(tracks: Tracks, compared: Comparison) -> Bools:
     """Find vehicles (N,) that became smaller as a whole, and go on so: they drive away.
 
-    What covers one draws an edge in, and changes its shape; `noise` is of detections.
+    What covers one draws an edge in, and changes its shape.
     """
     across, down = np.log(compared.sides / compared.own).T
-    alike = np.abs(across - down) < 2 * noise  # that of four edges
+    alike = np.abs(across - down) < 2 * compared.noise  # that of four edges
     drawn_in = compared.inward[:, _ENDS] > 0
     lately = tracks.drives.drift[:, _ENDS] <= 0
     in_sight = np.array([len(covers) == 0 for covers in tracks.visibility.covers], np.bool_)

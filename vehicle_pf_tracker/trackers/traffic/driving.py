@@ -43,7 +43,7 @@ def are_moving(tracks: Tracks) -> Bools:
 
 def moved_as_a_whole(tracks: Tracks, step: Step) -> Bools:
     """Find tracks (N,) of which two edges or more have moved by part of a drive."""
-    shared = tracks.beliefs.ways.shared_lengths(tracks.edges, step.size, step.edge_noise)
+    shared = tracks.beliefs.ways.shared_lengths(tracks.edges, step.measurement)
     return np.asarray(shared > _PART_OF_DRIVE * step.parameters.birth.displacement)
 
 

@@ -5,17 +5,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import NO_BOXES
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.association import Pairs, pairs_of_known, pairs_of_new
+from vehicle_pf_tracker.trackers.traffic.association import Pairs, assigned, birth_costs, pair_costs
 from vehicle_pf_tracker.trackers.traffic.births import begun
-from vehicle_pf_tracker.trackers.traffic.bodies import watched
-from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges
+from vehicle_pf_tracker.trackers.traffic.bodies import updated_companions
+from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
 from vehicle_pf_tracker.trackers.traffic.candidates import Candidates, weighed
 from vehicle_pf_tracker.trackers.traffic.correction import correct
 from vehicle_pf_tracker.trackers.traffic.existence import add_evidence, position_evidence
@@ -68,18 +70,18 @@ def observe(state: State, step: Step, detections: Detections) -> State:
     # What is left over inside a vehicle that was seen is a part of it. Parts go after each pass:
     # in the second one a bonnet of one vehicle would be a likely detection of its neighbour.
     for least in (_LIKELY, -np.inf):
-        assignment = _without_parts(_give_known(assignment, least))
+        assignment = _without_parts(_associate_known(assignment, least))
     # 3. What is not known yet to be a vehicle chooses by density against clutter: whether it is
     # one is not to depend on whether one is expected. After the known ones, as a tentative track
     # beside a vehicle would otherwise take its detection and be confirmed by it.
-    assignment = _give_new(assignment)
+    assignment = _associate_new(assignment)
     # 4. One vehicle has one number: one that was hidden may have been taken for a new one, and
     # one that was known by a part is not the box around it. Before step 5, since a vehicle that is
     # found again here was not missed.
     if step.parameters.returning:
         assignment = assignment._replace(state=merged(assignment.state))
-    assignment = _give_outgrown(assignment)
-    assignment = _united(assignment)
+    assignment = _associate_outgrown(assignment)
+    assignment = _unify_bodies(assignment)
     # 5. Only now it is known who was missed, in plain sight.
     assignment = assignment._replace(state=count_misses(assignment.state, step))
     # 6. A box around a vehicle that has its own is no new one either. The others may be. Here
@@ -88,52 +90,59 @@ def observe(state: State, step: Step, detections: Detections) -> State:
     return begun(assignment.state, candidates, np.flatnonzero(assignment.free), step)
 
 
-def _give_known(assignment: Assignment, least: float) -> Assignment:
-    """Give free detections of log odds from `least` to vehicles that have none."""
-    state, free, candidates, step = assignment
+def _associate_known(assignment: Assignment, least: float) -> Assignment:
+    """Associate free detections of log odds from `least` with vehicles that have none."""
+    state, free, candidates, _ = assignment
     rows = np.flatnonzero(state.tracks.confirmed & ~state.tracks.detected)
     columns = np.flatnonzero(free & (candidates.log_odds >= least))
-    pairs = pairs_of_known(state.tracks, rows, candidates, columns, step.size, step.edge_noise)
-    return _take(assignment, pairs)
+    return _associate(assignment, rows, columns, pair_costs)
 
 
-def _give_new(assignment: Assignment) -> Assignment:
-    """Give free detections to tracks that are not known yet to be vehicles."""
-    state, free, candidates, step = assignment
-    rows = np.flatnonzero(~state.tracks.confirmed)
-    columns = np.flatnonzero(free)
-    pairs = pairs_of_new(state.tracks, rows, candidates, columns, step.size, step.edge_noise)
-    return _take(assignment, pairs)
+def _associate_new(assignment: Assignment) -> Assignment:
+    """Associate free detections with tracks that are not known yet to be vehicles."""
+    rows = np.flatnonzero(~assignment.state.tracks.confirmed)
+    return _associate(assignment, rows, np.flatnonzero(assignment.free), birth_costs)
 
 
-def _give_outgrown(assignment: Assignment) -> Assignment:
-    """Give boxes around vehicles that were known by a part only to these."""
-    state, free, candidates, step = assignment
+def _associate_outgrown(assignment: Assignment) -> Assignment:
+    """Associate boxes around vehicles that were known by a part only with these."""
+    state, free, candidates, _ = assignment
     columns = np.flatnonzero(free)
     if not len(columns):
         return assignment
     tracks, rows = outgrown(state.tracks, candidates.edges[columns])
     assignment = assignment._replace(state=state._replace(tracks=tracks))
-    return _take(
-        assignment, pairs_of_known(tracks, rows, candidates, columns, step.size, step.edge_noise)
-    )
+    return _associate(assignment, rows, columns, pair_costs)
 
 
-def _united(assignment: Assignment) -> Assignment:
+def _associate(
+    assignment: Assignment,
+    rows: Integers,
+    columns: Integers,
+    costs_of: Callable[[Tracks, Candidates, Integers, MeasurementModel], tuple[Array, Array]],
+) -> Assignment:
+    """Update tracks at `rows` by detections at `columns`, in pairs of the least total cost."""
+    if not (len(rows) and len(columns)):
+        return assignment
+    state, _, candidates, step = assignment
+    costs, odds = costs_of(state.tracks.take(rows), candidates, columns, step.measurement)
+    pairs = assigned(rows, columns, costs, odds)
+    return _update(assignment, pairs) if len(pairs.rows) else assignment
+
+
+def _unify_bodies(assignment: Assignment) -> Assignment:
     """Let a lorry and its cab, which were both detected, be one; shapes are joined as blobs are."""
     state, _, candidates, step = assignment
     if candidates.are_shapes:
         return assignment
-    companions = watched(state.companions, state.tracks, step.size, step.edge_noise)
+    companions = updated_companions(state.companions, state.tracks, step.measurement)
     return assignment._replace(state=unified(state._replace(companions=companions)))
 
 
-def _take(assignment: Assignment, pairs: Pairs) -> Assignment:
-    """Correct tracks by their detections, believe in them the more, and number new vehicles."""
+def _update(assignment: Assignment, pairs: Pairs) -> Assignment:
+    """Correct tracks by their detections, add the evidence of these, and number new vehicles."""
     state, free, candidates, step = assignment
     rows, columns, fits = pairs
-    if not len(rows):
-        return assignment
     free = free.copy()
     free[columns] = False
     tracks = state.tracks.take(rows)
@@ -141,10 +150,10 @@ def _take(assignment: Assignment, pairs: Pairs) -> Assignment:
     # 1. Divide before correcting: a box of two vehicles would else take the detection of one for a
     # part of itself, and stay too large.
     tracks = replace(tracks, drives=divided(tracks.drives, edges, candidates.edges))
-    tracks, whole = correct(tracks, edges, step.size, step.edge_noise)
+    tracks, whole = correct(tracks, edges, step.measurement)
     # 2. Learn appearance and growth only from what is seen whole: a covered vehicle has the colours
     # of its occluder, and a width that says nothing about the road.
-    tracks = _shown(tracks, candidates, columns, whole, step)
+    tracks = _learn_appearance(tracks, candidates, columns, whole, step)
     # 3. Whether it stands is judged by the corrected speed, and counts for the belief.
     fits = position_evidence(tracks, candidates, columns, fits)
     tracks, proven = add_evidence(tracks, candidates, columns, fits, state.experience, step)
@@ -158,7 +167,7 @@ def _take(assignment: Assignment, pairs: Pairs) -> Assignment:
     return assignment._replace(state=state, free=free)
 
 
-def _shown(
+def _learn_appearance(
     tracks: Tracks, candidates: Candidates, columns: Integers, whole: Bools, step: Step
 ) -> Tracks:
     """Learn what vehicles look like and how they grow from detections that show the `whole`."""
@@ -169,7 +178,7 @@ def _shown(
         colours = step.colours.histograms(edges[whole], [NO_BOXES] * int(whole.sum()))
         appearance = coloured(appearance, colours, whole)
     # A width that the border cuts grows with the distance from the border, not from the horizon.
-    grows = whole & ~cut_edges(edges, step.size, step.edge_noise).any(axis=1)
+    grows = whole & ~step.measurement.cut_edges(edges).any(axis=1)
     growths = tracks.drives.growths.added(edges, grows)
     return replace(
         tracks,

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.bodies import NO_COMPANIONS, Companions
+from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import DetectionEvidence
 from vehicle_pf_tracker.trackers.traffic.detection_rate import DetectionRate
@@ -135,6 +136,6 @@ class Step:
         return max(self.period / DENSE, 1.0)
 
     @property
-    def edge_noise(self) -> float:
-        """Standard deviation of a detection's edge, fraction of the box's side."""
-        return self.parameters.detections.edge_noise
+    def measurement(self) -> MeasurementModel:
+        """How a detector measures edges in this image."""
+        return MeasurementModel(self.size, self.parameters.detections.edge_noise)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.traffic.box_edges import cut_edges, opposites
+from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel, opposites
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Rows, columns
 
 _STANDS_WITHIN = 0.1
@@ -113,17 +113,16 @@ class Ways(Rows):
         width = np.maximum(edges[:, 2] - edges[:, 0], 1.0)
         return np.asarray(np.where(self.matches > 0, np.hypot(x, y) / width, 0.0))
 
-    def shared_lengths(self, edges: Array, size: tuple[int, int], noise: float) -> Array:
+    def shared_lengths(self, edges: Array, measurement: MeasurementModel) -> Array:
         """Distance (N,) that two edges of boxes (N, 4) or more have moved, in widths of the boxes.
 
         A vehicle takes two with it at least: those of one axis, or the lower one and both sides as
         it grows. Of what stands, and is learnt by and by or changes its form, one edge moves. One
-        that the border of an image of `size` cuts tells nothing, and moves as the opposite one
-        does; `noise` is the deviation of an edge, fraction of the box's side.
+        that the image's border cuts tells nothing, and counts as the opposite one does.
         """
         moved = np.abs(edges - self.first)
         opposite = opposites(moved)
-        cut = cut_edges(edges, size, noise) | cut_edges(self.first, size, noise)
+        cut = measurement.cut_edges(edges) | measurement.cut_edges(self.first)
         second = np.sort(np.where(cut, opposite, moved), axis=1)[:, -2]
         width = np.maximum(edges[:, 2] - edges[:, 0], 1.0)
         return np.asarray(np.where(self.matches > 0, second / width, 0.0))
