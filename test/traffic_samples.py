@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.candidates import weighed
+from vehicle_pf_tracker.trackers.traffic.candidates import weigh
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
@@ -96,5 +96,5 @@ def step_of(size=(320, 240), *, elapsed=1.0, period=1 / 30, parameters=None):
 
 def candidates_of(evidence, *boxes, are_shapes=False, size=(320, 240)):
     """Detections of one frame by a detector that claims nothing, weighed by earlier ones."""
-    evidence.look(are_shapes=are_shapes)
-    return weighed(Detections.make(boxes, np.ones(len(boxes))), evidence, size)
+    evidence.begin_image(are_shapes=are_shapes)
+    return weigh(Detections.make(boxes, np.ones(len(boxes))), evidence, size)

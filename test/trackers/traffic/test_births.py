@@ -11,8 +11,8 @@ from measured_vehicle import BOX, SIZE, STILL
 from traffic_samples import changed, step_of
 
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.births import begun, begun_in, first_gaussians
-from vehicle_pf_tracker.trackers.traffic.candidates import weighed
+from vehicle_pf_tracker.trackers.traffic.births import begin_in_boxes, begin_tracks, first_gaussians
+from vehicle_pf_tracker.trackers.traffic.candidates import weigh
 from vehicle_pf_tracker.trackers.traffic.edge_observation import Edge
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State
 from vehicle_pf_tracker.trackers.traffic.tracks import no_tracks
@@ -59,24 +59,24 @@ def test_vehicles_begin_together_as_each_alone_would():
 def begin(waiting, shapes, *, are_shapes=True):
     """Tracks after the first of shapes began, where tracks of one detection each wait."""
     former = np.array(waiting, float)
-    state = begun_in(State(no_tracks(), Experience()), former, STEP)
+    state = begin_in_boxes(State(no_tracks(), Experience()), former, STEP)
     tracks = changed(state.tracks, undetected=1.0, detection=former)
-    beliefs = replace(tracks.beliefs, ways=tracks.beliefs.ways.added(former))
+    beliefs = replace(tracks.beliefs, paths=tracks.beliefs.paths.added(former))
     tracks = replace(tracks, beliefs=beliefs)
     boxes = [(left, top, right - left, bottom - top) for left, top, right, bottom in shapes]
     detections = replace(Detections.make(boxes), are_shapes=are_shapes)
     evidence = state.experience.detections
-    evidence.look(are_shapes=are_shapes)
-    candidates = weighed(detections, evidence, SIZE)
-    return begun(state._replace(tracks=tracks), candidates, np.array([0]), STEP).tracks
+    evidence.begin_image(are_shapes=are_shapes)
+    candidates = weigh(detections, evidence, SIZE)
+    return begin_tracks(state._replace(tracks=tracks), candidates, np.array([0]), STEP).tracks
 
 
 def test_a_vehicle_that_the_border_cuts_goes_on_from_its_former_track():
     tracks = begin([AT_THE_BORDER], [LARGER])
     assert tracks.names.serial.tolist() == [1]
     # With the way of before, and the shape of now.
-    assert tracks.beliefs.ways.matches.tolist() == [2]
-    assert tracks.beliefs.ways.first.tolist() == [list(AT_THE_BORDER)]
+    assert tracks.beliefs.paths.matches.tolist() == [2]
+    assert tracks.beliefs.paths.first.tolist() == [list(AT_THE_BORDER)]
     assert tracks.latest.detection.tolist() == [list(LARGER)]
     assert tracks.detected.all()
 
@@ -95,7 +95,7 @@ def test_a_vehicle_that_the_border_cuts_goes_on_from_its_former_track():
 def test_other_shapes_begin_tracks_of_their_own(former, shapes, are_shapes):
     tracks = begin([former], shapes, are_shapes=are_shapes)
     assert tracks.names.serial.tolist() == [1, 2]
-    assert tracks.beliefs.ways.matches.tolist() == [1, 1]
+    assert tracks.beliefs.paths.matches.tolist() == [1, 1]
 
 
 def test_of_two_tracks_the_nearer_one_goes_on():

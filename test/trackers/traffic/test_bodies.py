@@ -15,7 +15,7 @@ from vehicle_pf_tracker.trackers.traffic.bodies import (
     updated_companions,
 )
 from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
-from vehicle_pf_tracker.trackers.traffic.identity import body_of, unified
+from vehicle_pf_tracker.trackers.traffic.identity import body_of, unify
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
@@ -87,9 +87,9 @@ def test_the_elder_number_stays_with_the_box_of_all_of_it():
     both = State(tracks, Experience(), companions=together_for(14), last_identity=2)
     assert body_of(both, 1) == 0
     assert body_of(both, 0) is None
-    (one,) = unified(both).tracks.names.identity.tolist()
+    (one,) = unify(both).tracks.names.identity.tolist()
     assert one == 1
-    merged = unified(both).tracks
+    merged = unify(both).tracks
     assert merged.names.joined.tolist() == [2]
     assert merged.edges == pytest.approx(tracks.edges[1:])
 
@@ -97,7 +97,7 @@ def test_the_elder_number_stays_with_the_box_of_all_of_it():
 def test_a_vehicle_given_by_hand_is_not_merged():
     both = State(pair_of(given=True), Experience(), companions=together_for(14))
     by_hand = both._replace(tracks=changed(both.tracks, given=True))
-    assert len(unified(by_hand).tracks) == 2
+    assert len(unify(by_hand).tracks) == 2
 
 
 def numbers_on(boxes_of, *, images, seed):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
-    UNSAID,
+    NO_CLAIM,
     DetectionEvidence,
     Sample,
     claims_of,
@@ -31,9 +31,9 @@ def taught(transform=lambda score: score):
 
 
 def odds(evidence, edges, *scores):
-    evidence.look()
+    evidence.begin_image()
     places = places_of(np.tile(edges, (len(scores), 1)), SIZE)
-    by_score = evidence.by_score(np.array(scores), np.full(len(scores), UNSAID))
+    by_score = evidence.by_score(np.array(scores), np.full(len(scores), NO_CLAIM))
     return evidence.log_odds(by_score, places)
 
 
@@ -48,14 +48,14 @@ def test_before_anything_is_known_a_score_is_what_its_detector_says():
     claimed = nothing_known.log_odds(nothing_known.by_score(scores, claims_of(scores)), places)
     assert claimed == pytest.approx([-np.log(9), 0, np.log(9)])
     evidence = taught(lambda score: 1 - score)
-    evidence.look()
+    evidence.begin_image()
     low, _, high = evidence.log_odds(evidence.by_score(scores, claims_of(scores)), places)
     assert low > 1.5 > -1.5 > high  # it is worth few detections
 
 
 @pytest.mark.parametrize("scores", [(1.0, 1.0), (0.4, 7.0), (-0.2, 0.5), (0.0, 1.0)])
 def test_scores_of_other_scales_and_none_claim_nothing(scores):
-    assert (claims_of(np.array(scores)) == UNSAID).all()
+    assert (claims_of(np.array(scores)) == NO_CLAIM).all()
 
 
 def test_scores_that_were_vehicles_speak_for_one():
@@ -93,5 +93,5 @@ def test_places_with_false_alarms_are_counted_and_forgotten():
     evidence.learn([sample(ROAD, 0.5)], True)
     assert evidence.cluttered == 1
     for _ in range(20_000):
-        evidence.look()
+        evidence.begin_image()
     assert evidence.cluttered == 0

@@ -96,12 +96,12 @@ def test_a_shape_that_shakes_is_asked_for_a_straighter_way_where_images_are_dens
 )
 def test_scores_are_ignored_only_of_what_drove_its_own_width(way, against, is_told):
     one = track(1, 100.0, doubt=against)
-    ways = one.beliefs.ways
+    paths = one.beliefs.paths
     for share in np.linspace(0, way, 60):
         edges = np.array([[100 + 40 * share, 100, 140 + 40 * share, 130]])
-        ways = ways.older(1.0).added(edges)
-    assert ways.evidence()[0] > 50
+        paths = paths.older(1.0).added(edges)
+    assert paths.evidence()[0] > 50
     gaussians = one.drives.gaussians.resized(edges)
     one = replace(one, drives=replace(one.drives, gaussians=gaussians))
-    one = replace(one, beliefs=replace(one.beliefs, ways=ways))
+    one = replace(one, beliefs=replace(one.beliefs, paths=paths))
     assert have_driven(one, STEP)[0] == is_told

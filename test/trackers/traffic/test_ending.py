@@ -10,7 +10,7 @@ import pytest
 from traffic_samples import candidates_of, changed, step_of, track
 
 from vehicle_pf_tracker.detection.detections import Detections
-from vehicle_pf_tracker.trackers.traffic.ending import end
+from vehicle_pf_tracker.trackers.traffic.ending import end_tracks
 from vehicle_pf_tracker.trackers.traffic.existence import add_evidence
 from vehicle_pf_tracker.trackers.traffic.prediction import driven
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State
@@ -26,7 +26,7 @@ ONLY = np.array([0])
 def ends(left, **facts):
     """Tell whether the track of a vehicle with its left edge there ends."""
     state = State(track(1, left, confirmed=True, **facts), Experience())
-    return not len(end(state, step_of()).tracks)
+    return not len(end_tracks(state, step_of()).tracks)
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def ended_unconfirmed(places, *, are_shapes=False):
             one = replace(one, drives=replace(one.drives, gaussians=gaussians))
             one, proven = add_evidence(one, candidates, ONLY, np.zeros(1), experience, STEP)
             assert not proven
-        state = end(State(changed(one, passed=100), experience), STEP)
+        state = end_tracks(State(changed(one, searched=100), experience), STEP)
         assert len(state.tracks) == 0
     return float(candidates_of(evidence, (200, 180, 40, 30)).log_odds[0])
 
@@ -124,9 +124,9 @@ def test_misses_refute_no_vehicle_that_has_driven_and_is_hidden(
     unseen, has_driven, are_shapes, is_known
 ):
     experience = Experience()
-    experience.detections.look(are_shapes=are_shapes)
+    experience.detections.begin_image(are_shapes=are_shapes)
     facts = {"confirmed": True, "has_driven": has_driven, "unseen": unseen, "undetected": 100.0}
-    state = end(State(track(1, 100.0, **facts, log_odds=-20.0), experience), STEP)
+    state = end_tracks(State(track(1, 100.0, **facts, log_odds=-20.0), experience), STEP)
     assert bool(len(state.tracks)) is is_known
     if is_known:
         assert state.tracks.absences.lost[0]
@@ -135,5 +135,5 @@ def test_misses_refute_no_vehicle_that_has_driven_and_is_hidden(
 @pytest.mark.parametrize(("log_odds", "is_lost"), [(0.1, False), (-0.1, True)])
 def test_a_hidden_vehicle_is_lost_once_it_is_rather_not_there(log_odds, is_lost):
     facts = {"confirmed": True, "has_driven": True, "unseen": 30.0, "undetected": 30.0}
-    state = State(track(1, 100.0, **facts, passed=30, log_odds=log_odds), Experience())
-    assert end(state, STEP).tracks.absences.lost.tolist() == [is_lost]
+    state = State(track(1, 100.0, **facts, searched=30, log_odds=log_odds), Experience())
+    assert end_tracks(state, STEP).tracks.absences.lost.tolist() == [is_lost]

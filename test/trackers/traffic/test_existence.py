@@ -57,7 +57,7 @@ def test_a_vehicle_does_not_teach_that_what_the_detector_says_anyway_is_one(log_
     experience = Experience()
     evidence_of(9.0, log_odds=log_odds, experience=experience)
     evidence = experience.detections
-    evidence.look()
+    evidence.begin_image()
     by_score = evidence.by_score(np.array([SCORE]), np.array([0.5]))
     told = evidence.log_odds(by_score, np.array([0]))
     assert (told[0] > 0) == teaches

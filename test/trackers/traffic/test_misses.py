@@ -66,7 +66,7 @@ def test_vehicles_that_no_detector_sees_for_long_are_doubted_all():
     ],
 )
 def test_a_miss_counts_by_the_time_that_it_stands_for_until_it_is_independent(rate, every, price):
-    one = track(1, 100.0, confirmed=True, log_odds=5.0, undetected=every * 2.0, passed=1)
+    one = track(1, 100.0, confirmed=True, log_odds=5.0, undetected=every * 2.0, searched=1)
     step = step_of(SIZE, period=1 / rate)
     state = count_misses(State(one, Experience()), step)
     lost = 5.0 - float(state.tracks.beliefs.log_odds[0])

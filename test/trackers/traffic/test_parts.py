@@ -10,7 +10,7 @@ import pytest
 from measured_vehicle import BOX, Vehicle, exactly
 from traffic_samples import together, track_of
 
-from vehicle_pf_tracker.trackers.traffic.parts import divided, inside_of, outgrown
+from vehicle_pf_tracker.trackers.traffic.parts import grow_to_enclosing, inside_of, shrink_joined
 
 WHOLE = np.array([[90.0, 96, 150, 134]])
 
@@ -28,14 +28,14 @@ def test_a_box_that_was_several_vehicles_becomes_the_nearest_one(other, is_sever
     every = np.vstack([own, other])
     for _ in range(4):
         assert (drives.gaussians.edges[0] == BOX).all()  # fewer may be wrong
-        drives = divided(drives, own, every)
+        drives = shrink_joined(drives, own, every)
     assert (drives.gaussians.edges == pytest.approx(own)) is is_several
 
 
 def test_a_part_without_another_detection_is_not_taken_for_several():
     drives, own = Vehicle().tracks.drives, np.array([[100.0, 114, 118, 130]])
     for _ in range(20):
-        drives = divided(drives, own, own)
+        drives = shrink_joined(drives, own, own)
     assert (drives.gaussians.edges[0] == BOX).all()
 
 
@@ -56,7 +56,7 @@ def test_boxes_around_a_vehicle_do_not_count_for_one_that_is_several():
     _, tracks = looks(missed(), 3)
     own = np.array([[100.0, 114, 118, 130]])
     every = np.vstack([own, [118.0, 98, 142, 114]])
-    assert divided(tracks.drives, own, every).gaussians.edges[0] == pytest.approx(BOX)
+    assert shrink_joined(tracks.drives, own, every).gaussians.edges[0] == pytest.approx(BOX)
 
 
 def test_detections_beside_its_own_do_not_count_for_one_that_was_a_part():
@@ -65,7 +65,7 @@ def test_detections_beside_its_own_do_not_count_for_one_that_was_a_part():
     every = np.vstack([own, [118.0, 98, 142, 114]])
     drives = tracks.drives
     for _ in range(3):
-        drives = divided(drives, own, every)
+        drives = shrink_joined(drives, own, every)
     found, _ = looks(replace(tracks, drives=drives), 1)
     assert found == [[]]
 
@@ -73,7 +73,7 @@ def test_detections_beside_its_own_do_not_count_for_one_that_was_a_part():
 def test_two_boxes_around_a_vehicle_in_one_image_are_one_look():
     tracks = missed()
     for expected in ([], [], [], [0]):
-        tracks, rows = outgrown(tracks, np.vstack([WHOLE, WHOLE + 1]))
+        tracks, rows = grow_to_enclosing(tracks, np.vstack([WHOLE, WHOLE + 1]))
         assert rows.tolist() == expected
     assert tracks.edges == pytest.approx(WHOLE)
 
@@ -82,7 +82,7 @@ def looks(tracks, count):
     """Rows that have outgrown by each of so many looks, and the tracks then."""
     found = []
     for _ in range(count):
-        tracks, rows = outgrown(tracks, WHOLE)
+        tracks, rows = grow_to_enclosing(tracks, WHOLE)
         found.append(rows.tolist())
     return found, tracks
 

@@ -20,7 +20,7 @@ from vehicle_pf_tracker.trackers.traffic.association import (
     pair_costs,
 )
 from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
-from vehicle_pf_tracker.trackers.traffic.candidates import weighed
+from vehicle_pf_tracker.trackers.traffic.candidates import weigh
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
     DetectionEvidence,
     Sample,
@@ -94,7 +94,7 @@ def test_a_likely_vehicle_that_overlaps_by_half_may_be_one_whose_drive_was_wrong
     sure = track(1, 100)
     sure = changed(sure, covariance=sure.drives.gaussians.covariance * 1e-4)
     boxes = Detections.make([(106, 104, 40, 30)], [0.8])
-    candidates = weighed(boxes, DetectionEvidence(), SIZE)
+    candidates = weigh(boxes, DetectionEvidence(), SIZE)
     candidates = replace(candidates, log_odds=np.array([log_odds]))
     cost, _ = pair_costs(sure, candidates, ONLY, MeasurementModel(SIZE, 0.02))
     assert (cost < GATE).all() == (log_odds > 0)
@@ -105,7 +105,7 @@ def test_what_is_out_of_reach_costs_the_gate_and_all_else_what_its_edges_cost():
     lefts = np.arange(-80.0, 330.0, 3.0)
     boxes = [(left, 100, width, 30 * width / 40) for left in lefts for width in (40, 20)]
     vehicles = together(track(1, 60), track(2, 200))
-    candidates = weighed(Detections.make(boxes), DetectionEvidence(), SIZE)
+    candidates = weigh(Detections.make(boxes), DetectionEvidence(), SIZE)
     candidates = replace(candidates, log_odds=np.full(len(boxes), -1.0))
     columns = np.arange(len(boxes))
     costs, odds = pair_costs(vehicles, candidates, columns, MEASUREMENT)
@@ -123,7 +123,7 @@ def test_the_log_odds_of_a_pair_fall_with_its_distance_and_with_false_alarms_the
     evidence, vehicle = DetectionEvidence(), track(1, 100.0)
 
     def odds(left):
-        candidates = weighed(Detections.make([(left, 100, 40, 30)], [0.8]), evidence, SIZE)
+        candidates = weigh(Detections.make([(left, 100, 40, 30)], [0.8]), evidence, SIZE)
         return float(pair_costs(vehicle, candidates, ONLY, MEASUREMENT)[1][0, 0])
 
     before = odds(100)
@@ -131,7 +131,7 @@ def test_the_log_odds_of_a_pair_fall_with_its_distance_and_with_false_alarms_the
     assert odds(115) < 0
     sample = Sample(1.0, int(places_of(vehicle.edges, SIZE)[0]))
     for _ in range(30):
-        evidence.look()
+        evidence.begin_image()
         evidence.learn([sample], False)
     assert odds(100) < before - 2
 
@@ -145,7 +145,7 @@ def test_a_detection_where_a_track_is_predicted_is_rather_its_own_than_a_false_a
     assert aside < -10
     sample = candidates_of(evidence, here_only).samples(np.array([0]))
     for _ in range(30):  # of a place where false alarms are common, less so
-        evidence.look()
+        evidence.begin_image()
         evidence.learn(sample, False)
     assert (
         birth_odds(one, candidates_of(evidence, here_only), np.array([0]), MEASUREMENT)[0, 0]

@@ -8,7 +8,7 @@ import pytest
 from traffic_samples import changed, together, track
 
 from vehicle_pf_tracker.image.windows.box_colours import COLOUR_BINS
-from vehicle_pf_tracker.trackers.traffic.identity import former, resumed
+from vehicle_pf_tracker.trackers.traffic.identity import find_hidden, resume
 from vehicle_pf_tracker.trackers.traffic.report import estimates_of
 
 RED, BLUE = np.eye(COLOUR_BINS)[:2]
@@ -21,14 +21,14 @@ def confirmed(number, left, colours=RED, **facts):
 def found_again(*tracks):
     """The row of the vehicle that the last of these tracks is."""
     every = together(*tracks)
-    return former(every, len(every) - 1, every.confirmed)
+    return find_hidden(every, len(every) - 1, every.confirmed)
 
 
 def test_a_vehicle_that_reappears_a_little_off_is_the_hidden_one():
     hidden, new = confirmed(1, 100.0, undetected=20.0), confirmed(2, 130.0)
     both = together(hidden, changed(new, detection=new.edges))
     assert found_again(hidden, new) == 0
-    one = resumed(both, 0, 1).take(np.array([0]))
+    one = resume(both, 0, 1).take(np.array([0]))
     assert one.latest.detection[0, 0] == pytest.approx(130)
     assert one.names.identity == 1
     assert one.edges[0, 0] == pytest.approx(130)
@@ -54,7 +54,7 @@ def test_a_vehicle_confirmed_a_second_time_is_the_first_unless_there_were_two():
     assert found_again(ghost, born) == 0
     assert found_again(ghost, confirmed(2, 115.0, age=21.0)) is None  # detected beside it
     assert found_again(ghost, confirmed(2, 140.0, age=12.0)) is None  # near, not beside it
-    both = resumed(together(ghost, born), 0, 1)
+    both = resume(together(ghost, born), 0, 1)
     one, _ = estimates_of(both)
     assert (one.identity, one.joined) == (1, 2)
 

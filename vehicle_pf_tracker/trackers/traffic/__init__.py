@@ -6,7 +6,7 @@
 `tracker` has the step and `observe` its part about detections, both as docs/traffic.md has them.
 
 - state: `state` has the `tracks`, frozen `rows` of arrays: Gaussians (`vehicle_state`), whose edges
-  `edge_observation` has, and `way`s; and the `horizon`
+  `edge_observation` has, and `paths`; and the `horizon`
 - step: `prediction`, `occlusion`, `observe`, `pixel_hold`, `ending`, `recognition`
 - detections: `candidates` weighs them by `detection_evidence`, and `association` pairs them;
   `parts` divides boxes, and `correction` measures their edges (`box_edges`)

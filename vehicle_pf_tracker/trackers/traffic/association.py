@@ -146,7 +146,7 @@ def pair_costs(
     # 3. Log likelihood ratio: a Gaussian over the edges against the density of false alarms.
     peaks = -np.log(spread * math.sqrt(2 * math.pi)).sum(axis=1)
     odds = np.full((len(predicted), len(detected)), -np.inf)
-    odds[rows, pairs] = peaks[rows] - cost / 2 - candidates.false[columns][pairs]
+    odds[rows, pairs] = peaks[rows] - cost / 2 - candidates.false_density[columns][pairs]
     # 4. However sure its drive is, it was wrong where a likely vehicle overlaps it by half.
     far = (cost > _CLOSEST) & (candidates.log_odds[columns] > 0)[pairs]
     if far.any():
@@ -237,7 +237,7 @@ def birth_odds(
     odds = np.full((len(predicted), len(detected)), -np.inf)
     odds[rows, pairs] = (
         _log_density(detected[pairs] - predicted[rows], covariance)
-        - candidates.false[columns][pairs]
+        - candidates.false_density[columns][pairs]
     )
     return odds
 

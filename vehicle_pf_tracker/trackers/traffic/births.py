@@ -48,7 +48,7 @@ border IDF1 at dusk is 52.8 instead of 63.6; beside other shapes, that of a clos
 of 47.9."""
 
 
-def begun(state: State, candidates: Candidates, columns: Integers, step: Step) -> State:
+def begin_tracks(state: State, candidates: Candidates, columns: Integers, step: Step) -> State:
     """Take detections at `columns` for new vehicles, as yet with the evidence of one detection.
 
     A vehicle that a side of the image cuts goes on from its former track.
@@ -57,8 +57,8 @@ def begun(state: State, candidates: Candidates, columns: Integers, step: Step) -
         return state
     # 1. Begin, all as if they were new.
     count = len(state.tracks)
-    former, new = _that_go_on(state.tracks, candidates, columns, step)
-    state = begun_in(state, candidates.edges[columns], step)
+    former, new = _continued_at_border(state.tracks, candidates, columns, step)
+    state = begin_in_boxes(state, candidates.edges[columns], step)
     rows = np.arange(count, len(state.tracks))
     tracks = state.tracks.take(rows)
     labels = [candidates.labels[column] for column in columns.tolist()]
@@ -88,7 +88,7 @@ def begun(state: State, candidates: Candidates, columns: Integers, step: Step) -
     return state._replace(tracks=tracks)
 
 
-def _that_go_on(
+def _continued_at_border(
     tracks: Tracks, candidates: Candidates, columns: Integers, step: Step
 ) -> tuple[Integers, Integers]:
     """Find tracks that go on in new shapes: rows (K,), and indices (K,) into `columns` (N,).
@@ -116,7 +116,7 @@ def _that_go_on(
     return pairs.rows, pairs.columns
 
 
-def begun_in(state: State, edges: Array, step: Step) -> State:
+def begin_in_boxes(state: State, edges: Array, step: Step) -> State:
     """Begin tracks in boxes (K, 4) in px."""
     # A horizon below the box would have it drive on the sky.
     horizon = np.minimum(state.horizon.row, edges[:, Edge.BOTTOM] - 1)

@@ -14,7 +14,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.detection.detections import NO_SCORE, Detections
 from vehicle_pf_tracker.trackers.traffic.box_edges import sides_of
 from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
-    UNSAID,
+    NO_CLAIM,
     DetectionEvidence,
     Sample,
     claims_of,
@@ -54,11 +54,11 @@ class Candidates:
         Log odds that each is a vehicle.
     gains : (N,) array
         Log likelihood ratio of each score, vehicle over false alarm.
-    sure : (N,) array
+    at_rest : (N,) array
         Log odds that its score alone is worth where nothing has moved.
     clutter : (N,) array
         Logarithm of the false alarms per image, if all places had as many as each one's.
-    false : (N,) array
+    false_density : (N,) array
         Logarithm of the density of false alarms at each box, over its four edges, px^-4.
     """
 
@@ -69,9 +69,9 @@ class Candidates:
     places: Integers
     log_odds: Array
     gains: Array
-    sure: Array
+    at_rest: Array
     clutter: Array
-    false: Array
+    false_density: Array
 
     def __len__(self) -> int:
         return len(self.edges)
@@ -82,9 +82,7 @@ class Candidates:
         return list(map(Sample, scores, self.places[indices].tolist()))
 
 
-def weighed(
-    detections: Detections, evidence: DetectionEvidence, size: tuple[int, int]
-) -> Candidates:
+def weigh(detections: Detections, evidence: DetectionEvidence, size: tuple[int, int]) -> Candidates:
     """Weigh usable detections by what became of earlier ones.
 
     Parameters
@@ -104,13 +102,13 @@ def weighed(
     places = places_of(edges, size)
     clutter = evidence.clutter(places)
     # 2. A shape's score is how full its box is, no probability.
-    claims = np.full(len(scores), UNSAID) if detections.are_shapes else claims_of(scores)
+    claims = np.full(len(scores), NO_CLAIM) if detections.are_shapes else claims_of(scores)
     has_none = (scores == NO_SCORE) & (not detections.are_shapes)
     by_score = evidence.by_score(scores, claims)
     log_odds = evidence.log_odds(by_score, places)
     # 3. Poisson clutter, as usual, in the space of the edges, of which (left, right) has the same
     # measure as (centre, width): false alarms are anywhere in the image, and of any size.
-    false = (
+    false_density = (
         clutter - math.log(size[0] * size[1]) - np.log(sides_of(edges) * SIZE_SPREAD).sum(axis=1)
     )
     return Candidates(
@@ -121,13 +119,13 @@ def weighed(
         places=places,
         log_odds=log_odds,
         gains=evidence.gains(by_score),
-        sure=_sure(log_odds, claims, evidence.ranks(scores), has_none),
+        at_rest=_odds_at_rest(log_odds, claims, evidence.ranks(scores), has_none),
         clutter=clutter,
-        false=false,
+        false_density=false_density,
     )
 
 
-def _sure(log_odds: Array, claims: Array, ranks: Array, has_none: Bools) -> Array:
+def _odds_at_rest(log_odds: Array, claims: Array, ranks: Array, has_none: Bools) -> Array:
     """Log odds (N,) that scores are worth where nothing has moved.
 
     A spot that looks a little like a vehicle does so each time, and many such scores are worth one:
@@ -138,5 +136,5 @@ def _sure(log_odds: Array, claims: Array, ranks: Array, has_none: Bools) -> Arra
     # Finite, as `claims_of` bounds claims away from 0 and 1.
     claimed = np.log(claims / (1 - claims))
     # Nothing claimed bounds nothing, of scores above the median; the lower half stays at even odds.
-    claimed[(claims == UNSAID) & (ranks >= _ORDINARY)] = np.inf
+    claimed[(claims == NO_CLAIM) & (ranks >= _ORDINARY)] = np.inf
     return np.where(has_none, np.minimum(log_odds, 0.0) + _UNSCORED, np.minimum(log_odds, claimed))

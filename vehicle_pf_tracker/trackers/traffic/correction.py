@@ -152,7 +152,7 @@ def correct(tracks: Tracks, edges: Array, measurement: MeasurementModel) -> tupl
     compared = Comparison.of(tracks.drives, edges, measurement)
     # Judge all four edges by the prediction, then correct once.
     verdict = which_edges(tracks, compared)
-    return replace(tracks, drives=corrected(tracks.drives, compared, verdict)), verdict.whole
+    return replace(tracks, drives=apply_verdict(tracks.drives, compared, verdict)), verdict.whole
 
 
 def which_edges(tracks: Tracks, compared: Comparison) -> Verdict:
@@ -173,7 +173,7 @@ def which_edges(tracks: Tracks, compared: Comparison) -> Verdict:
 
 def _patient(tracks: Tracks) -> Bools:
     """Find vehicles (N,) whose covered edges are left out."""
-    known = tracks.beliefs.ways.matches >= _KNOWN_FROM
+    known = tracks.beliefs.paths.matches >= _KNOWN_FROM
     # Not for ever, or a size that was wrong from the start would never be corrected.
     return np.asarray(known & (tracks.drives.extents.partial < _COVERED_FOR))
 
@@ -192,10 +192,10 @@ def _recede(tracks: Tracks, compared: Comparison) -> Bools:
     return np.asarray(in_sight & alike & smaller)
 
 
-def corrected(drives: Drives, compared: Comparison, verdict: Verdict) -> Drives:
+def apply_verdict(drives: Drives, compared: Comparison, verdict: Verdict) -> Drives:
     """Apply a verdict: measure the edges that tell where the vehicles end."""
     residuals = np.where(verdict.left_out, 0.0, -compared.inward)
-    drives = _doubted(drives, compared, residuals, verdict.recede)
+    drives = _widened(drives, compared, residuals, verdict.recede)
     # An infinite deviation is a gain of zero: the edge moves by its correlations only.
     exact = np.where(verdict.left_out, np.inf, compared.spread)
     gaussians = drives.gaussians.measured(compared.detected, exact)
@@ -210,7 +210,7 @@ def corrected(drives: Drives, compared: Comparison, verdict: Verdict) -> Drives:
     return replace(drives, gaussians=gaussians, lag=lag, extents=extents)
 
 
-def _doubted(drives: Drives, compared: Comparison, residuals: Array, recede: Bools) -> Drives:
+def _widened(drives: Drives, compared: Comparison, residuals: Array, recede: Bools) -> Drives:
     """Be less sure of drives that detections keep contradicting.
 
     Where the horizon is wrong or the road bends, a drive is wrong in every frame by a little, on

@@ -41,7 +41,7 @@ _ASSUMED_FOR = 30
 one. A choice."""
 _CLUTTERED = 0.5
 """False alarms in a place from which it is said to be cluttered: one, halved once at most."""
-UNSAID = 0.5
+NO_CLAIM = 0.5
 """Probability of a vehicle where a detector claims nothing: even odds."""
 _LEAST_CLAIM = 0.01
 """Least probability that a detector's own score is taken for, either way: one in a hundred. It
@@ -75,10 +75,10 @@ def claims_of(scores: Array) -> Array:
     second had more than .37 in the mean. A score of 1 is that of a detector that gives none.
     """
     if not ((scores >= 0) & (scores <= 1)).all():
-        return np.full(len(scores), UNSAID)
+        return np.full(len(scores), NO_CLAIM)
     says = (scores > 0) & (scores < 1)
     bounded = np.minimum(np.maximum(scores, _LEAST_CLAIM), 1 - _LEAST_CLAIM)
-    return np.where(says, bounded, UNSAID)
+    return np.where(says, bounded, NO_CLAIM)
 
 
 class DetectionEvidence:
@@ -103,7 +103,7 @@ class DetectionEvidence:
         self._false = np.zeros(PLACE_COUNT)
         self._places = np.full((2, PLACE_COUNT), _PRIOR)
 
-    def look(self, *, are_shapes: bool = False) -> None:
+    def begin_image(self, *, are_shapes: bool = False) -> None:
         """Note that the detector has looked at another image, and whether it reports shapes."""
         self.are_shapes = are_shapes
         self._images += 1

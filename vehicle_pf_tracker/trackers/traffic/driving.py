@@ -43,12 +43,12 @@ def are_moving(tracks: Tracks) -> Bools:
 
 def moved_as_a_whole(tracks: Tracks, step: Step) -> Bools:
     """Find tracks (N,) of which two edges or more have moved by part of a drive."""
-    shared = tracks.beliefs.ways.shared_lengths(tracks.edges, step.measurement)
+    shared = tracks.beliefs.paths.shared_lengths(tracks.edges, step.measurement)
     return np.asarray(shared > _PART_OF_DRIVE * step.parameters.birth.displacement)
 
 
 def have_driven(tracks: Tracks, step: Step, *, are_shapes: bool = False) -> Bools:
-    """Find tracks (N,) whose ways show that they are no part of the scene.
+    """Find tracks (N,) whose paths show that they are no part of the scene.
 
     Parameters
     ----------
@@ -59,9 +59,9 @@ def have_driven(tracks: Tracks, step: Step, *, are_shapes: bool = False) -> Bool
     are_shapes : bool
         Their detections are shapes, whose scores tell nothing of their drive.
     """
-    ways = tracks.beliefs.ways
-    lengths = ways.lengths(tracks.edges)
-    evidence = ways.evidence()
+    paths = tracks.beliefs.paths
+    lengths = paths.lengths(tracks.edges)
+    evidence = paths.evidence()
     displacement = step.parameters.birth.displacement
     if are_shapes:
         # A swing of leaves is straight in as many images as see it: of fewer less is asked.
@@ -71,7 +71,7 @@ def have_driven(tracks: Tracks, step: Step, *, are_shapes: bool = False) -> Bool
         return np.asarray(moves & (lengths > displacement) & (evidence > straight))
     # A stand whose boxes shook by too much to be told lies on no line with the drive. Shapes do not
     # stand: by motion the bridge's HOTA would be 54.9 instead of 56.1.
-    evidence = np.maximum(evidence, ways.latest_evidence())
+    evidence = np.maximum(evidence, paths.latest_evidence())
     # False alarms side by side look like a short drive.
     is_sure = (evidence >= _SURELY_DRIVES) & (lengths >= _OWN_WIDTH)
     doubt = np.where(is_sure, 0.0, tracks.beliefs.doubt)

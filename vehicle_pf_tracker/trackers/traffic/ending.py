@@ -31,7 +31,7 @@ _PATIENCE = 4
 looks: a detector may look at every third image only."""
 
 
-def end(state: State, step: Step) -> State:
+def end_tracks(state: State, step: Step) -> State:
     """End tracks that are no vehicles, or have left; the horizon is learnt from the others."""
     tracks = state.tracks
     experience = state.experience
@@ -45,7 +45,7 @@ def end(state: State, step: Step) -> State:
     # been a vehicle, and tells nothing about its detections: by the same bounds as for a number,
     # as of shapes that are less straight seven in eight are leaves or light.
     are_shapes = experience.detections.are_shapes
-    never_drove = tracks.beliefs.ways.matches < _DRIVE_MATCHES
+    never_drove = tracks.beliefs.paths.matches < _DRIVE_MATCHES
     never_drove |= ~have_driven(tracks, step, are_shapes=are_shapes)
     for row in np.flatnonzero(~goes_on & ~tracks.confirmed & never_drove).tolist():
         experience.detections.learn(tracks.beliefs.samples[row], False)
@@ -65,7 +65,7 @@ def _goes_on(tracks: Tracks, inside: Array, experience: Experience, step: Step) 
     absences = tracks.absences
     log_odds = tracks.beliefs.log_odds
     parameters = step.parameters
-    waits = absences.passed <= _PATIENCE / experience.rate.share
+    waits = absences.searched <= _PATIENCE / experience.rate.share
     tentative = waits & (log_odds >= -CERTAIN_LOG_ODDS) & (inside > 0)  # no memory of one that left
     # Misses refute no vehicle that has driven and is seen by nothing: what hides it may be unknown,
     # as a bridge is. Shapes are refuted even so, as many were pieces.

@@ -112,7 +112,7 @@ def add_evidence(
         now_drives &= have_driven(tracks, step, are_shapes=candidates.are_shapes)
     proven = beliefs.strength > _PROVEN
     if candidates.are_shapes:
-        is_old = beliefs.ways.age >= _WAIT / step.period
+        is_old = beliefs.paths.age >= _WAIT / step.period
         # A piece drives as straight as its vehicle, whose rest is beside it until both are joined.
         now_drives &= is_old | ~have_rest(edges, candidates.edges)
         # Scores say how full they are, and the hole of what has left, or a digit of a clock, is as
@@ -131,7 +131,7 @@ def add_evidence(
 def _with_log_odds(
     tracks: Tracks, candidates: Candidates, columns: Integers, fits: Array, step: Step
 ) -> tuple[Tracks, Array]:
-    """Add what scores, places and ways of the detections tell; and the ways' lengths (N,).
+    """Add what scores, places and paths of the detections tell; and the paths' lengths (N,).
 
     See `add_evidence`.
     """
@@ -143,19 +143,19 @@ def _with_log_odds(
     # of fewer each takes off more, but no more than one may add.
     most_doubt = min(_SCORE_DOUBT * step.sparsity, _MOST)
     gains = np.minimum(np.maximum(gains, -most_doubt), _MOST)
-    ways = beliefs.ways.added(candidates.edges[columns])
-    lengths = ways.lengths(tracks.edges)
-    proof = np.where(lengths < _STANDS, candidates.sure[columns], log_odds)
+    paths = beliefs.paths.added(candidates.edges[columns])
+    lengths = paths.lengths(tracks.edges)
+    proof = np.where(lengths < _STANDS, candidates.at_rest[columns], log_odds)
     proof = np.minimum(np.maximum(proof - _SCORE_DOUBT, -_SCORE_DOUBT), _MOST)
     strength = beliefs.strength + proof
-    stands = ways.stands
+    stands = paths.stands
     beliefs = replace(
         beliefs,
         log_odds=np.minimum(beliefs.log_odds + gains + fits, CERTAIN_LOG_ODDS),
         # A time of standing is no debt: having stood makes nothing less likely once it drives.
         doubt=np.where(stands, 0.0, np.maximum(beliefs.doubt - gains, 0.0)),
         strength=np.where(stands, np.maximum(strength, 0.0), strength),
-        ways=ways,
+        paths=paths,
     )
     return replace(tracks, beliefs=beliefs), lengths
 

@@ -128,14 +128,14 @@ class Horizon:
     row : float
         The row in px.
     ended : (K, 3) array
-        Growth of vehicles whose ways have ended, as `Growths.regressions` has it.
+        Growth of vehicles whose paths have ended, as `Growths.regressions` has it.
     """
 
     row: float = 0.0
     ended: Array = field(default_factory=lambda: np.empty((0, 3)))
 
     def learnt(self, growths: Growths, height: int, sparsity: float = 1.0) -> Horizon:
-        """Add vehicles whose ways have ended; see `Growths.regressions`."""
+        """Add vehicles whose paths have ended; see `Growths.regressions`."""
         ended = np.concatenate([self.ended, growths.regressions(height, sparsity)])
         return replace(self, ended=ended[-_REMEMBERED:])
 

@@ -44,7 +44,7 @@ _SHARED = 0.5
 """Share of the smaller box that two boxes share above which they are of one vehicle: most of it."""
 
 
-def named(state: State, proven: Bools, *, returning: bool) -> State:
+def number_proven(state: State, proven: Bools, *, returning: bool) -> State:
     """Give tracks that are `proven` to be vehicles (N,) their numbers, one after the other.
 
     One that was hidden before keeps its number; a second box of another vehicle gets none.
@@ -55,16 +55,16 @@ def named(state: State, proven: Bools, *, returning: bool) -> State:
     rows = np.flatnonzero(proven)
     # Of those that are proven in the same image the one that was seen first gets the lower number.
     for row in rows[np.argsort(tracks.names.serial[rows])].tolist():
-        hidden = former(tracks, row, tracks.confirmed) if returning else None
+        hidden = find_hidden(tracks, row, tracks.confirmed) if returning else None
         if hidden is not None:
             # The number stays with the old row, the new one goes: rows are dropped at the end, so
             # that the others keep their indices meanwhile.
-            tracks = resumed(tracks, hidden, row)
+            tracks = resume(tracks, hidden, row)
             kept[row] = False
         elif (body := body_of(state._replace(tracks=tracks), row)) is not None:
             # Beside a part that is still detected it is no more than a double at first.
             if _replaces(state._replace(tracks=tracks), body, row):
-                tracks = _as_body(tracks, body, row)
+                tracks = _resume_as_body(tracks, body, row)
                 kept[row] = False
         elif not is_double(tracks, row, are_shapes=state.experience.detections.are_shapes):
             # A double gets no number, and stays tentative.
@@ -74,7 +74,7 @@ def named(state: State, proven: Bools, *, returning: bool) -> State:
     return state._replace(tracks=tracks, last_identity=identity)
 
 
-def given(state: State) -> State:
+def number_by_hand(state: State) -> State:
     """Give the last track its number by hand, without a doubt."""
     row = len(state.tracks) - 1
     identity = state.last_identity + 1
@@ -95,10 +95,10 @@ def _numbered(tracks: Tracks, row: int, identity: int) -> Tracks:
     return replace(tracks, names=replace(tracks.names, identity=numbers))
 
 
-def merged(state: State) -> State:
+def merge_returned(state: State) -> State:
     """Merge vehicles that were born a second time with the ones that they are."""
     tracks = state.tracks
-    age = tracks.beliefs.ways.age
+    age = tracks.beliefs.paths.age
     undetected = tracks.absences.undetected
     # Only who is missed now can have come back under another number.
     missed = tracks.confirmed & ~tracks.detected
@@ -108,15 +108,15 @@ def merged(state: State) -> State:
     young = tracks.confirmed & ~tracks.names.given & (age < undetected[missed].max())
     kept = np.ones(len(tracks), np.bool_)
     for row in np.flatnonzero(young).tolist():
-        twin = former(tracks, row, missed) if tracks.detected[row] else None
+        twin = find_hidden(tracks, row, missed) if tracks.detected[row] else None
         if twin is not None:
-            tracks = resumed(tracks, twin, row)
+            tracks = resume(tracks, twin, row)
             # Either can be merged once: a vehicle has one twin.
             kept[row] = missed[twin] = False
     return state if kept.all() else state._replace(tracks=tracks.take(kept))
 
 
-def unified(state: State) -> State:
+def unify(state: State) -> State:
     """Let vehicles that turned out to be one body have one number, that of the elder."""
     tracks = state.tracks
     kept = np.ones(len(tracks), np.bool_)
@@ -124,7 +124,7 @@ def unified(state: State) -> State:
     for row in np.flatnonzero(confirmed & tracks.detected).tolist():
         elder = body_of(state._replace(tracks=tracks), row, LONG_DRIVE)
         if elder is not None and kept[elder]:
-            tracks = _as_body(tracks, elder, row)
+            tracks = _resume_as_body(tracks, elder, row)
             kept[row] = False
     return state if kept.all() else state._replace(tracks=tracks.take(kept))
 
@@ -144,20 +144,20 @@ def body_of(state: State, row: int, least_way: float = SHORT_DRIVE) -> int | Non
 
 def _replaces(state: State, elder: int, row: int) -> bool:
     """Test whether the vehicle at `elder` goes on as the track at `row`, with which it is one."""
-    if state.tracks.absences.passed[elder] >= MISSED_FOR:
+    if state.tracks.absences.searched[elder] >= MISSED_FOR:
         return True
     # Of two boxes that overlap by half either will do.
     size, known = areas(state.tracks.latest.detection[[row, elder]])
     return bool(size > _MOST_GROWN * known) and body_of(state, row, LONG_DRIVE) == elder
 
 
-def _as_body(tracks: Tracks, elder: int, row: int) -> Tracks:
+def _resume_as_body(tracks: Tracks, elder: int, row: int) -> Tracks:
     """Let the vehicle at `elder` go on in the larger box of its own and the track's at `row`."""
     detections = tracks.latest.detection
     drives = tracks.drives
     larger = row if areas(detections[row]) > areas(detections[elder]) else elder
     new = tracks.take(np.array([larger]))
-    tracks = resumed(tracks, elder, row)
+    tracks = resume(tracks, elder, row)
     # With its growth: that of a part is not the whole's.
     return replace(tracks, drives=drives.put(np.array([elder]), new.drives))
 
@@ -170,7 +170,7 @@ def is_double(tracks: Tracks, row: int, *, are_shapes: bool = False) -> bool:
     """
     detections = tracks.latest.detection
     # Also in those that a network misses for an image or two; blobs join, and one of two goes.
-    is_recent = tracks.absences.passed < MISSED_FOR
+    is_recent = tracks.absences.searched < MISSED_FOR
     recent = tracks.confirmed & (tracks.detected if are_shapes else is_recent)
     # Latest detections, not states, which follow them with a delay, of those that have one.
     known = np.where(tracks.detected[:, np.newaxis], detections, tracks.edges)
@@ -180,7 +180,7 @@ def is_double(tracks: Tracks, row: int, *, are_shapes: bool = False) -> bool:
     return bool((intersections(own, boxes) > _SHARED * smaller).any())
 
 
-def former(tracks: Tracks, row: int, others: Bools) -> int | None:
+def find_hidden(tracks: Tracks, row: int, others: Bools) -> int | None:
     """Find the hidden vehicle, among `others` (N,), that the new one at `row` is, if it is any."""
     undetected = tracks.absences.undetected
     hidden = others & tracks.confirmed & (undetected >= _HIDDEN_FOR)
@@ -215,7 +215,7 @@ def former(tracks: Tracks, row: int, others: Bools) -> int | None:
 
 def _beside(tracks: Tracks, row: int) -> Bools:
     """Find the tracks (N,) beside which the one at `row` was detected: they are other vehicles."""
-    together = tracks.beliefs.ways.age[row] - tracks.absences.undetected
+    together = tracks.beliefs.paths.age[row] - tracks.absences.undetected
     if tracks.confirmed[row]:
         return np.asarray(together >= 0)
     # A new one may have been a second box of the vehicle that it is, which shares most of it.
@@ -235,7 +235,7 @@ def _apart(new: Array, old: Array) -> tuple[Array, Array]:
     return np.hypot(*away.T) / width, size.prod() / sizes.prod(axis=1)
 
 
-def resumed(tracks: Tracks, hidden: int, row: int) -> Tracks:
+def resume(tracks: Tracks, hidden: int, row: int) -> Tracks:
     """Let the vehicle at `hidden` go on as the new track at `row` that it turned out to be."""
     at = np.array([hidden])
     new = tracks.take(np.array([row]))

@@ -32,8 +32,8 @@ def count_misses(state: State, step: Step) -> State:
     confirmed = tracks.confirmed
     detected = tracks.detected
     # The image counts for all that the detector has not found in it.
-    passed = np.where(detected, 0, tracks.absences.passed + 1)
-    absences = replace(tracks.absences, passed=passed)
+    searched = np.where(detected, 0, tracks.absences.searched + 1)
+    absences = replace(tracks.absences, searched=searched)
     tracks = replace(tracks, absences=absences)
     # 1. A detector that misses all it could see has failed, and says nothing.
     in_sight = tracks.in_sight
@@ -68,6 +68,6 @@ def _sparse_price(absences: Absences, rates: Array, step: Step) -> Array:
     ones are independent, and each tells what a detection would have; `rates` (N,) are the shares
     of vehicles that the detector finds.
     """
-    images = np.maximum(absences.passed, 1)
+    images = np.maximum(absences.searched, 1)
     seconds = absences.undetected * step.period / images
     return np.asarray(np.minimum(_MISSED * seconds / DENSE, -np.log(1 - rates)))

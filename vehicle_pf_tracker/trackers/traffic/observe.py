@@ -15,15 +15,15 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import NO_BOXES
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import Pairs, assigned, birth_costs, pair_costs
-from vehicle_pf_tracker.trackers.traffic.births import begun
+from vehicle_pf_tracker.trackers.traffic.births import begin_tracks
 from vehicle_pf_tracker.trackers.traffic.bodies import updated_companions
 from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
-from vehicle_pf_tracker.trackers.traffic.candidates import Candidates, weighed
+from vehicle_pf_tracker.trackers.traffic.candidates import Candidates, weigh
 from vehicle_pf_tracker.trackers.traffic.correction import correct
 from vehicle_pf_tracker.trackers.traffic.existence import add_evidence, position_evidence
-from vehicle_pf_tracker.trackers.traffic.identity import merged, named, unified
+from vehicle_pf_tracker.trackers.traffic.identity import merge_returned, number_proven, unify
 from vehicle_pf_tracker.trackers.traffic.misses import count_misses
-from vehicle_pf_tracker.trackers.traffic.parts import divided, inside_of, outgrown
+from vehicle_pf_tracker.trackers.traffic.parts import grow_to_enclosing, inside_of, shrink_joined
 from vehicle_pf_tracker.trackers.traffic.recognition import coloured
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers
 from vehicle_pf_tracker.trackers.traffic.state import State, Step
@@ -62,8 +62,8 @@ def observe(state: State, step: Step, detections: Detections) -> State:
     """
     # 1. Every detection is as likely a vehicle as earlier ones of its score and place have been.
     # The image is counted before: false alarms are a rate per image.
-    state.experience.detections.look(are_shapes=detections.are_shapes)
-    candidates = weighed(detections.usable(*step.size), state.experience.detections, step.size)
+    state.experience.detections.begin_image(are_shapes=detections.are_shapes)
+    candidates = weigh(detections.usable(*step.size), state.experience.detections, step.size)
     assignment = Assignment(state, np.ones(len(candidates), np.bool_), candidates, step)
     # 2. Vehicles that are known choose first, and among likely detections first: else a false
     # alarm near by would be taken by one, and its own detection would be left to another.
@@ -79,7 +79,7 @@ def observe(state: State, step: Step, detections: Detections) -> State:
     # one that was known by a part is not the box around it. Before step 5, since a vehicle that is
     # found again here was not missed.
     if step.parameters.returning:
-        assignment = assignment._replace(state=merged(assignment.state))
+        assignment = assignment._replace(state=merge_returned(assignment.state))
     assignment = _associate_outgrown(assignment)
     assignment = _unify_bodies(assignment)
     # 5. Only now it is known who was missed, in plain sight.
@@ -87,7 +87,7 @@ def observe(state: State, step: Step, detections: Detections) -> State:
     # 6. A box around a vehicle that has its own is no new one either. The others may be. Here
     # missed vehicles count, too: step 4 had the first call on the boxes around them.
     assignment = _without_parts(assignment, either=True)
-    return begun(assignment.state, candidates, np.flatnonzero(assignment.free), step)
+    return begin_tracks(assignment.state, candidates, np.flatnonzero(assignment.free), step)
 
 
 def _associate_known(assignment: Assignment, least: float) -> Assignment:
@@ -110,7 +110,7 @@ def _associate_outgrown(assignment: Assignment) -> Assignment:
     columns = np.flatnonzero(free)
     if not len(columns):
         return assignment
-    tracks, rows = outgrown(state.tracks, candidates.edges[columns])
+    tracks, rows = grow_to_enclosing(state.tracks, candidates.edges[columns])
     assignment = assignment._replace(state=state._replace(tracks=tracks))
     return _associate(assignment, rows, columns, pair_costs)
 
@@ -136,7 +136,7 @@ def _unify_bodies(assignment: Assignment) -> Assignment:
     if candidates.are_shapes:
         return assignment
     companions = updated_companions(state.companions, state.tracks, step.measurement)
-    return assignment._replace(state=unified(state._replace(companions=companions)))
+    return assignment._replace(state=unify(state._replace(companions=companions)))
 
 
 def _update(assignment: Assignment, pairs: Pairs) -> Assignment:
@@ -149,7 +149,7 @@ def _update(assignment: Assignment, pairs: Pairs) -> Assignment:
     edges = candidates.edges[columns]
     # 1. Divide before correcting: a box of two vehicles would else take the detection of one for a
     # part of itself, and stay too large.
-    tracks = replace(tracks, drives=divided(tracks.drives, edges, candidates.edges))
+    tracks = replace(tracks, drives=shrink_joined(tracks.drives, edges, candidates.edges))
     tracks, whole = correct(tracks, edges, step.measurement)
     # 2. Learn appearance and growth only from what is seen whole: a covered vehicle has the colours
     # of its occluder, and a width that says nothing about the road.
@@ -163,7 +163,7 @@ def _update(assignment: Assignment, pairs: Pairs) -> Assignment:
     if proven.any():
         every = np.zeros(len(state.tracks), np.bool_)
         every[rows[proven]] = True
-        state = named(state, every, returning=step.parameters.returning)
+        state = number_proven(state, every, returning=step.parameters.returning)
     return assignment._replace(state=state, free=free)
 
 

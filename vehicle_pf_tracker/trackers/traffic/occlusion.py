@@ -28,7 +28,7 @@ _GOOD_PART = 0.5
 """Share of a box above which what covers it is said to hide the vehicle: most of it."""
 
 
-def hide(state: State, step: Step) -> State:
+def find_occlusions(state: State, step: Step) -> State:
     """Note how much of each vehicle is in sight, and order vehicles by their distance.
 
     Nearer boxes hide others: a detector that does not see these says nothing against them.

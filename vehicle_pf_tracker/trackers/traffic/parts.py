@@ -57,7 +57,7 @@ def inside_of(boxes: Array, edges: Array, *, either: bool = False) -> Bools:
     return np.asarray((intersections(each, boxes) > _INSIDE * smaller).any(axis=1))
 
 
-def divided(drives: Drives, edges: Array, others: Array) -> Drives:
+def shrink_joined(drives: Drives, edges: Array, others: Array) -> Drives:
     """Shrink boxes of several vehicles that were taken for one to the nearest one's.
 
     Vehicles that enter the image side by side are one blob, and drive apart later. The detection of
@@ -92,10 +92,10 @@ def divided(drives: Drives, edges: Array, others: Array) -> Drives:
     extents = replace(drives.extents, crowded=crowded, enclosed=enclosed)
     drives = replace(drives, extents=extents)
     several = np.flatnonzero(crowded >= _CROWDED_FOR)
-    return _filled(drives, several, edges[several]) if len(several) else drives
+    return _resized(drives, several, edges[several]) if len(several) else drives
 
 
-def _filled(drives: Drives, rows: Integers, edges: Array) -> Drives:
+def _resized(drives: Drives, rows: Integers, edges: Array) -> Drives:
     """Set the boxes of the vehicles at `rows` (K,) to `edges` (K, 4) in px."""
     extents = drives.extents
     crowded = extents.crowded.copy()
@@ -114,7 +114,7 @@ def _filled(drives: Drives, rows: Integers, edges: Array) -> Drives:
     )
 
 
-def outgrown(tracks: Tracks, edges: Array) -> tuple[Tracks, Integers]:
+def grow_to_enclosing(tracks: Tracks, edges: Array) -> tuple[Tracks, Integers]:
     """Find those that were known by a part only, and make each as large as the box around it.
 
     Where something hides a vehicle at first, or the background has its colour, it is followed by
@@ -144,7 +144,7 @@ def outgrown(tracks: Tracks, edges: Array) -> tuple[Tracks, Integers]:
     # 2. Only those that nothing else was given to; what has a detection of its own fits.
     waits = (~tracks.detected & tracks.in_sight)[confirmed]
     drives = tracks.drives
-    matches = tracks.beliefs.ways.matches
+    matches = tracks.beliefs.paths.matches
     # 3. Not in the first image, nor if it was usually detected as it is: two vehicles that drive
     # side by side are one box for a while.
     # Several boxes may be around one vehicle: the image counts once, by the first of them.
@@ -158,5 +158,5 @@ def outgrown(tracks: Tracks, edges: Array) -> tuple[Tracks, Integers]:
     due = enclosed[rows] >= np.maximum(_CROWDED_FOR, _OFTEN_ALONE * matches[rows])
     drives = replace(drives, extents=replace(drives.extents, enclosed=enclosed))
     if due.any():
-        drives = _filled(drives, rows[due], edges[columns[first][due]])
+        drives = _resized(drives, rows[due], edges[columns[first][due]])
     return replace(tracks, drives=drives), rows[due]

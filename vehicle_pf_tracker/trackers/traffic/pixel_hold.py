@@ -71,7 +71,7 @@ _PLACES = np.column_stack([np.tile(_AXIS, _GRID), np.repeat(_AXIS, _GRID)])
 _FLOW = PointFlow(window=9, levels=2, steps=10, precision=0.03)
 
 
-def hold(state: State, step: Step) -> State:
+def hold_by_pixels(state: State, step: Step) -> State:
     """Measure vehicles that were not detected by their pixels; and keep the frame for the next."""
     tracks = state.tracks
     absences = state.tracks.absences
@@ -264,7 +264,7 @@ def _follow(before: Grey, present: Grey, old: Array, guess: Array) -> Array:
     first = (guess - 0.5).astype(np.float32)
     new, found, error = _FLOW.follow_and_return(before, present, start, first)
     moved = new.astype(np.float64) + 0.5
-    # Followed back it has to end where it began, within the noise of both ways.
+    # Followed back it has to end where it began, within the noise of both paths.
     moved[~found | (np.abs(error).max(axis=1) > PIXEL_NOISE)] = np.nan
     return moved
 

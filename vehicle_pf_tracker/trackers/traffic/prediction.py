@@ -22,7 +22,7 @@ def find_horizon(state: State, step: Step) -> State:
     return state._replace(horizon=horizon)
 
 
-def drive_on(state: State, step: Step) -> State:
+def predict(state: State, step: Step) -> State:
     """Let all vehicles drive on along the road, below the horizon as it is known now."""
     # The horizon first: a state is relative to its row.
     state = find_horizon(state, step)
@@ -54,5 +54,5 @@ def driven(tracks: Tracks, horizon: float, step: Step) -> Tracks:
         undetected=tracks.absences.undetected + elapsed,
     )
     latest = replace(tracks.latest, score=np.full(len(tracks), np.nan))
-    beliefs = replace(tracks.beliefs, ways=tracks.beliefs.ways.older(elapsed))
+    beliefs = replace(tracks.beliefs, paths=tracks.beliefs.paths.older(elapsed))
     return replace(tracks, drives=drives, beliefs=beliefs, absences=absences, latest=latest)

@@ -46,7 +46,7 @@ def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
         drives.gaussians.velocity.tolist(),
         drives.gaussians.foot_covariance.tolist(),
         tracks.beliefs.log_odds.tolist(),
-        tracks.beliefs.ways.age.tolist(),
+        tracks.beliefs.paths.age.tolist(),
         tracks.latest.score.tolist(),
         modes,
         _hiders(tracks, modes),

@@ -16,16 +16,16 @@ from vehicle_pf_tracker.core.frame import Frame, check_frame, frame_size
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.base import drawn_seed
-from vehicle_pf_tracker.trackers.traffic.births import begun_in
+from vehicle_pf_tracker.trackers.traffic.births import begin_in_boxes
 from vehicle_pf_tracker.trackers.traffic.colours import ColourBins
-from vehicle_pf_tracker.trackers.traffic.ending import end
+from vehicle_pf_tracker.trackers.traffic.ending import end_tracks
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
-from vehicle_pf_tracker.trackers.traffic.identity import given
+from vehicle_pf_tracker.trackers.traffic.identity import number_by_hand
 from vehicle_pf_tracker.trackers.traffic.observe import observe
-from vehicle_pf_tracker.trackers.traffic.occlusion import hide
+from vehicle_pf_tracker.trackers.traffic.occlusion import find_occlusions
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
-from vehicle_pf_tracker.trackers.traffic.pixel_hold import hold
-from vehicle_pf_tracker.trackers.traffic.prediction import drive_on, find_horizon
+from vehicle_pf_tracker.trackers.traffic.pixel_hold import hold_by_pixels
+from vehicle_pf_tracker.trackers.traffic.prediction import find_horizon, predict
 from vehicle_pf_tracker.trackers.traffic.recognition import learn_colours, learn_similarity
 from vehicle_pf_tracker.trackers.traffic.report import estimates_of
 from vehicle_pf_tracker.trackers.traffic.state import Experience, State, Step
@@ -102,11 +102,11 @@ class MultiVehicleTracker:
         tuple of TrackEstimate
             One for every vehicle that is followed, by identity, tentative ones last.
         """
-        self._step = step = self._begun_step(check_frame(frame), elapsed)
-        self._state = _advanced(self._state, step, detections)
+        self._step = step = self._begin_step(check_frame(frame), elapsed)
+        self._state = _advance(self._state, step, detections)
         return estimates_of(self._state.tracks)
 
-    def _begun_step(self, frame: Frame, elapsed: float) -> Step:
+    def _begin_step(self, frame: Frame, elapsed: float) -> Step:
         """Do once what all vehicles need of a frame."""
         # As many numbers in each frame, whatever is followed: a vehicle more or less does not
         # change the random numbers of the others, nor those of later frames.
@@ -139,7 +139,7 @@ class MultiVehicleTracker:
         step = replace(self._step, parameters=self.parameters, period=self.frame_period)
         check_target(box, *step.size)
         edges = np.array([[*box.corners[0], *box.corners[2]]])
-        state = given(begun_in(self._state, edges, step))
+        state = number_by_hand(begin_in_boxes(self._state, edges, step))
         # A box by hand counts as seen whole: its colours are those that it is known again by.
         self._state = learn_colours(state, np.array([len(state.tracks) - 1]), [label], 1.0, step)
         return self._state.last_identity
@@ -179,19 +179,19 @@ class MultiVehicleTracker:
         self.parameters = parameters
 
 
-def _advanced(state: State, step: Step, detections: Detections | None) -> State:
+def _advance(state: State, step: Step, detections: Detections | None) -> State:
     """Go on by a frame; of `detections` None no detector has looked, and nothing is missed."""
     # 1. Predict, since all that follows is about where vehicles should be now.
-    state = drive_on(state, step)
+    state = predict(state, step)
     # 2. Find who hides whom by the predictions: a missed detection counts only in plain sight.
-    state = hide(state, step)
+    state = find_occlusions(state, step)
     # 3. Correct by detections, which tell more than pixels.
     if detections is not None:
         state = observe(state, step, detections)
     # 4. Hold by pixels what nothing detected. Even without such vehicles the frame is kept for the
     # next one.
-    state = hold(state, step)
+    state = hold_by_pixels(state, step)
     # 5. End only now: a vehicle that pixels hold has been seen, and is not lost.
-    state = end(state, step)
+    state = end_tracks(state, step)
     # 6. Learn how alike colours usually are in the boxes that are reported, of those that go on.
     return learn_similarity(state, step)

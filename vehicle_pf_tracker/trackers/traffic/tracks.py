@@ -17,9 +17,9 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.overlaps import NO_BOXES
 from vehicle_pf_tracker.image.windows.box_colours import COLOUR_BINS
 from vehicle_pf_tracker.trackers.traffic.horizon import Growths
+from vehicle_pf_tracker.trackers.traffic.paths import Paths
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, Objects, Rows, filled
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Gaussians
-from vehicle_pf_tracker.trackers.traffic.way import Ways
 
 IN_SIGHT = 0.5
 """Share of a box, not covered and inside the image, above which a detector should see it: most of
@@ -133,8 +133,8 @@ class Beliefs(Rows):
         Log odds against a vehicle by these scores; never below zero.
     has_driven : (N,) array
         True once its way has shown that it is no part of the scene.
-    ways : Ways
-        Ways through the image: how far, how straight, and for how long each has stood.
+    paths : Paths
+        Paths through the image: how far, how straight, and for how long each has stood.
     samples : (N,) array of tuple of Sample
         Scores and places of detections whose outcome is still unknown.
     """
@@ -143,7 +143,7 @@ class Beliefs(Rows):
     strength: Array
     doubt: Array
     has_driven: Bools
-    ways: Ways
+    paths: Paths
     samples: Objects
 
 
@@ -155,7 +155,7 @@ class Absences(Rows):
     ----------
     unseen, undetected : (N,) arrays
         Nominal periods since it was last seen, and last detected.
-    passed : (N,) array
+    searched : (N,) array
         Number of images that the detector has searched since its latest detection.
     lost : (N,) array
         True where it was hidden for too long to be predicted, has left, or is rather not there.
@@ -163,7 +163,7 @@ class Absences(Rows):
 
     unseen: Array
     undetected: Array
-    passed: Integers
+    searched: Integers
     lost: Bools
 
     @property
@@ -175,7 +175,7 @@ class Absences(Rows):
         """End all absences, as of tracks that were just detected."""
         count = len(self)
         zero = np.zeros(count)
-        # `lost` stays: `ending.end` judges it anew in every frame.
+        # `lost` stays: `ending.end_tracks` judges it anew in every frame.
         return Absences(zero, zero, np.zeros(count, np.intp), self.lost)
 
 
@@ -267,7 +267,7 @@ class Tracks(Rows):
         return cls(
             names=Names(serial, numbers, no, numbers, filled(count, {})),
             drives=Drives(gaussians, edges, edges, edges, extents, Growths.unknown(count)),
-            beliefs=Beliefs(zero, zero, zero, no, Ways.unknown(count), filled(count, ())),
+            beliefs=Beliefs(zero, zero, zero, no, Paths.unknown(count), filled(count, ())),
             visibility=Visibility.full(count),
             absences=Absences(zero, zero, numbers, no),
             appearance=Appearance.unknown(count),

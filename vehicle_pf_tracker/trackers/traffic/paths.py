@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Ways of vehicles through the image: how far, and how straight at constant speed.
+"""Paths of vehicles through the image: how far, and how straight at constant speed.
 
 A regression of the places of detections on their times, of which only the sums are kept. A time of
 standing is one place: what has stood drives off as if it had just come.
@@ -34,8 +34,8 @@ most."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ways(Rows):
-    """Ways of N vehicles.
+class Paths(Rows):
+    """Paths of N vehicles.
 
     Attributes
     ----------
@@ -65,8 +65,8 @@ class Ways(Rows):
     stood: Integers
 
     @classmethod
-    def unknown(cls, count: int) -> Ways:
-        """Ways before the first detection."""
+    def unknown(cls, count: int) -> Paths:
+        """Paths before the first detection."""
         number = np.zeros(count, np.intp)
         edges = np.zeros((count, 4))
         halt = np.zeros((count, 2))
@@ -79,11 +79,11 @@ class Ways(Rows):
         """True (N,) where it has stood for a while, up to the latest detection."""
         return np.asarray(self.stood >= _STANDS_FROM)
 
-    def older(self, elapsed: float) -> Ways:
+    def older(self, elapsed: float) -> Paths:
         """Go on by `elapsed` nominal periods."""
         return replace(self, age=self.age + elapsed)
 
-    def added(self, edges: Array) -> Ways:
+    def added(self, edges: Array) -> Paths:
         """Add a detection of each now, by its edges (N, 4) in px."""
         x, y = _centres(edges).T
         time = self.age
@@ -105,7 +105,7 @@ class Ways(Rows):
         before = np.where(is_full, self.blocks[:, :8], self.blocks[:, 8:])
         latest = np.where(is_full, 0.0, self.blocks[:, :8]) + terms
         blocks = np.concatenate([latest, before], axis=1)
-        return Ways(self.age, first, sums, blocks, self.matches + 1, halt, stood)
+        return Paths(self.age, first, sums, blocks, self.matches + 1, halt, stood)
 
     def lengths(self, edges: Array) -> Array:
         """Distance (N,) of boxes (N, 4) from the first detection, in their widths; 0 before it."""
@@ -140,7 +140,7 @@ class Ways(Rows):
 
 
 def _straight(sums: Array) -> Array:
-    """Evidence (N,) of `Ways.evidence`, of such sums (N, 8)."""
+    """Evidence (N,) of `Paths.evidence`, of such sums (N, 8)."""
     count, time, squared, x, y, time_x, time_y, places = sums.T
     # Centred sums: scatter of places, and of times, and what both share.
     known = np.maximum(count, 1.0)

@@ -9,16 +9,18 @@ import numpy as np
 import pytest
 
 from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
-from vehicle_pf_tracker.trackers.traffic.way import Ways
+from vehicle_pf_tracker.trackers.traffic.paths import Paths
 
 MEASUREMENT = MeasurementModel((200, 150), 0.05)
 
 
 def way(*places):
-    ways = Ways.unknown(1)
+    paths = Paths.unknown(1)
     for time, (x, y) in enumerate(places):
-        ways = (ways.older(1.0) if time else ways).added(np.array([[x - 5, y - 5, x + 5, y + 5]]))
-    return ways
+        paths = (paths.older(1.0) if time else paths).added(
+            np.array([[x - 5, y - 5, x + 5, y + 5]])
+        )
+    return paths
 
 
 def evidence(*places):
@@ -47,18 +49,18 @@ FIRST = np.array([[40.0, 40, 60, 60]])
     ],
 )
 def test_two_edges_share_a_drive(now, length):
-    ways = Ways.unknown(1).added(FIRST)
-    shared = ways.shared_lengths(np.array([now], float), MEASUREMENT)
+    paths = Paths.unknown(1).added(FIRST)
+    shared = paths.shared_lengths(np.array([now], float), MEASUREMENT)
     assert shared == pytest.approx(length)
 
 
 def test_an_edge_that_the_border_cuts_moves_as_the_opposite_one():
-    ways = Ways.unknown(1).added(np.array([[0.0, 40, 12, 60]]))
+    paths = Paths.unknown(1).added(np.array([[0.0, 40, 12, 60]]))
     coming = np.array([[0.0, 40, 30, 60]])
-    assert ways.shared_lengths(coming, MEASUREMENT) == pytest.approx(18 / 30)
+    assert paths.shared_lengths(coming, MEASUREMENT) == pytest.approx(18 / 30)
     later = coming + np.array([50, 0, 50, 0])
-    assert ways.shared_lengths(later, MEASUREMENT) == pytest.approx(68 / 30)
-    assert Ways.unknown(1).shared_lengths(coming, MEASUREMENT) == 0
+    assert paths.shared_lengths(later, MEASUREMENT) == pytest.approx(68 / 30)
+    assert Paths.unknown(1).shared_lengths(coming, MEASUREMENT) == 0
 
 
 def test_the_drive_explains_a_share_of_the_scatter():
