@@ -48,17 +48,7 @@ __all__ = list(_HOMES)
 def __getattr__(name: str) -> Any:
     """Import a public name, or look up the version."""
     if name == "__version__":
-        return _version()
+        return import_module(f"{__name__}.core.version").installed_version()
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-
-
-def _version() -> str:
-    """Return the version that package.xml states and the installation has recorded."""
-    from importlib import metadata  # noqa: PLC0415 - 20 ms that only the version costs
-
-    try:
-        return metadata.version(__name__)
-    except metadata.PackageNotFoundError:
-        return "0+unknown"  # run from a folder of sources that nobody installed

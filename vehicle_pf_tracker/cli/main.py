@@ -11,13 +11,13 @@ import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 
-from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.cli import console
 from vehicle_pf_tracker.cli.missing_modules import check_extra, remedy
 from vehicle_pf_tracker.cli.requests import add_options, request_of
 from vehicle_pf_tracker.cli.stopping import SIGNALS_STATUS, Terminated, raising_terminated
 from vehicle_pf_tracker.core.addresses import HIDDEN_MARK, shown
 from vehicle_pf_tracker.core.errors import InputError, suggestion
+from vehicle_pf_tracker.core.version import installed_version
 
 VERBS: Mapping[str, tuple[str, str]] = {
     "demo": ("demo", "try everything on a synthetic scene: track, replay to a node, score"),
@@ -121,7 +121,7 @@ def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
         epilog="`vehicle-pf-tracker VERB --help` has the options of a verb.",
     )
     parser.add_argument(
-        "--version", action="version", version=f"{console.PROGRAM_NAME} {__version__}"
+        "--version", action="version", version=f"{console.PROGRAM_NAME} {installed_version()}"
     )
     verbs = parser.add_subparsers(metavar="VERB", required=True)
     for name, (module_name, line) in VERBS.items():

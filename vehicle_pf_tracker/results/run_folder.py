@@ -16,13 +16,20 @@ from typing import Any
 import cv2
 import numpy as np
 
-from vehicle_pf_tracker import __version__
 from vehicle_pf_tracker.core.addresses import shown_values
 from vehicle_pf_tracker.core.outputs import output_errors
+from vehicle_pf_tracker.core.version import installed_version
 from vehicle_pf_tracker.parameters.table import to_mapping
 from vehicle_pf_tracker.results.estimates import EstimateRow, write_estimates
 from vehicle_pf_tracker.results.output_files import make_folder, write_json
 from vehicle_pf_tracker.trackers.session import Session
+
+ESTIMATES_FILE = "estimates.csv"
+"""File of the estimates, a row for each frame."""
+METRICS_FILE = "metrics.json"
+"""File of the scores, where there is truth."""
+RUN_FILE = "run.json"
+"""File of what ran: source, parameters, seed, versions."""
 
 
 def describe_target_run(
@@ -89,21 +96,13 @@ def versions() -> dict[str, str | None]:
     """Return the versions that determine the numbers; None for packages not installed."""
     numba = next(iter(metadata.distributions(name="numba")), None)
     return {
-        "vehicle_pf_tracker": __version__,
+        "vehicle_pf_tracker": installed_version(),
         "python": platform.python_version(),
         "numpy": np.__version__,
         "opencv": cv2.__version__,
         "numba": numba and numba.version,
         "platform": platform.platform(),
     }
-
-
-ESTIMATES_FILE = "estimates.csv"
-"""File of the estimates, a row for each frame."""
-METRICS_FILE = "metrics.json"
-"""File of the scores, where there is truth."""
-RUN_FILE = "run.json"
-"""File of what ran: source, parameters, seed, versions."""
 
 
 def write_run(
