@@ -46,8 +46,15 @@ READING = 0.5
 """Standard deviation of the pixels of the pairs, px: points that a person reads off a picture."""
 PLACES = ((-5.25, 20.0), (5.25, 20.0), (-5.25, 45.0), (5.25, 45.0), (-5.25, 75.0), (5.25, 75.0))
 """Road points of the pairs, m: on both edges of the road."""
-HEADER = ("speed, km/h", "road from", "frames", "median error", "95 % of errors", "bias",
-          "within 2 sd")  # fmt: skip
+HEADER = (
+    "speed, km/h",
+    "road from",
+    "frames",
+    "median error",
+    "95 % of errors",
+    "bias",
+    "within 2 sd",
+)
 
 
 @dataclass(frozen=True, slots=True)

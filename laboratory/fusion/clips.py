@@ -169,9 +169,10 @@ def leaving(
         last = max(own)
         starts = [
             # A start on a box that is cut or shared would teach the tracker another vehicle.
-            frame for frame in sorted(sure[identity])
+            frame
+            for frame in sorted(sure[identity])
             if is_free(identity, frame, boxes) and not is_at_border(own[frame], size)
-        ]  # fmt: skip
+        ]
         if not starts or last - starts[0] < FEWEST or last + GRACE + FEWEST > frames:
             continue
         # Judged by its motion: a vehicle that stops at the border has not left.

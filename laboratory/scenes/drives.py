@@ -104,8 +104,9 @@ def cross(parameters: DriveParameters, seed: int) -> Scene:
     # Braking over 12 frames to half the speed, kept for 14 more: in frame 22 of these the coach
     # is right in front of it.
     brake = base.frame_at(base.along(0.33))
-    pace = Pace(((0.0, speed), (brake, speed), (brake + 12, slow), (brake + 26, slow),
-                 (brake + 38, speed)))  # fmt: skip
+    pace = Pace(
+        ((0.0, speed), (brake, speed), (brake + 12, slow), (brake + 26, slow), (brake + 38, speed))
+    )
     drive = Drive(parameters, seed, pace)
     scene = drive.scene(_crossing_coach(drive, brake + 22), behind=())
     return replace(scene, backdrop=lambda: _crossroads(drive, brake + 22))

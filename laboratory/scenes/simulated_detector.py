@@ -70,8 +70,10 @@ class SimulatedDetector:
             # A stream for each frame: what is drawn in one shifts nothing in the others.
             rng = stream(seed, "detector", frame)
             seen = [vehicle for vehicle in now if _is_detected(vehicle, self, missed, rng)]
-            detections = [(_noisy(boxes, self.noise, rng), _score(share, rng))
-                     for boxes, share in _merged(seen, self.merges, rng)]  # fmt: skip
+            detections = [
+                (_noisy(boxes, self.noise, rng), _score(share, rng))
+                for boxes, share in _merged(seen, self.merges, rng)
+            ]
             detections += [false_alarm(size, rng) for _ in range(rng.poisson(self.false_alarms))]
             rows += [[frame, *box.tolist(), score] for box, score in detections]
         return np.array(rows, dtype=np.float64).reshape(-1, 6)
@@ -124,9 +126,11 @@ def _merged(
         others = [
             number
             for number in range(index + 1, len(groups))
-            if (np.minimum(box[2:], groups[number][0][2:])
-                > np.maximum(box[:2], groups[number][0][:2])).all()
-        ]  # fmt: skip
+            if (
+                np.minimum(box[2:], groups[number][0][2:])
+                > np.maximum(box[:2], groups[number][0][:2])
+            ).all()
+        ]
         if others and rng.uniform() < merges:
             other, seen_of_it = groups.pop(others[0])
             low = np.minimum(box[:2], other[:2])

@@ -173,8 +173,11 @@ def camera_over(parameters: PerspectiveParameters, seed: int) -> RoadCamera:
     rng = stream(seed, "camera over traffic")
     focal = float(rng.uniform(950, 1050))
     lens = Lens((focal, focal), (WIDTH / 2 - 0.5, HEIGHT / 2 - 0.5))
-    middle = float(np.mean([lane for way in (-1, 1)[: parameters.directions]
-                            for lane in _lanes(way, parameters)]))  # fmt: skip
+    middle = float(
+        np.mean(
+            [lane for way in (-1, 1)[: parameters.directions] for lane in _lanes(way, parameters)]
+        )
+    )
     # A mast stands inside of the inner lanes: seen from there, lorries in them hide the others.
     x = float(rng.uniform(3, 5)) if parameters.view == "mast" else middle
     place = (x + float(rng.uniform(-1, 1)), 0.0, float(rng.uniform(8.2, 9)))

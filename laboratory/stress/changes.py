@@ -224,9 +224,12 @@ class Shake:
             x, y = self.shift(index, seed)
             matrix = np.array([[1.0, 0.0, x], [0.0, 1.0, y]])
             moved = cv2.warpAffine(
-                frame, matrix, frame_size(frame),
-                flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE,
-            )  # fmt: skip
+                frame,
+                matrix,
+                frame_size(frame),
+                flags=cv2.INTER_LINEAR,
+                borderMode=cv2.BORDER_REPLICATE,
+            )
             return np.asarray(moved, np.uint8)
 
         return paint

@@ -182,9 +182,14 @@ def _describe(name: str, path: Path) -> Source:
         if not recording.truth():
             raise InputError(f"the recording {path} has no truth to compare with")
         unsized = Source(
-            name, str(path.absolute()), recording.image_topic, recording.frame_count, 0, 0,
+            name,
+            str(path.absolute()),
+            recording.image_topic,
+            recording.frame_count,
+            0,
+            0,
             _digest(recording_files(path)[0]),
-        )  # fmt: skip
+        )
     width, height = frame_size(_first_frame(unsized, path))
     return replace(unsized, width=width, height=height)
 
