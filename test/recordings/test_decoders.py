@@ -3,8 +3,10 @@
 
 """Videos that one decoder reads and the other does not, in files of any name."""
 
+import itertools
 import struct
 import sys
+from fractions import Fraction
 from pathlib import Path
 
 import cv2
@@ -23,10 +25,10 @@ av = pytest.importorskip("av")
 START = 1_000_000_000
 
 
-def encode(path, codec="libx264", rate=25, count=COUNT):
+def encode(path, codec="libx264", rate=25, count=COUNT, fmt="yuv420p"):
     with av.open(str(path), "w") as container:
         stream = container.add_stream(codec, rate=rate)
-        stream.width, stream.height, stream.pix_fmt = 96, 64, "yuv420p"
+        stream.width, stream.height, stream.pix_fmt = 96, 64, fmt
         for index in range(count):
             picture = av.VideoFrame.from_ndarray(frame_of(index), "rgb24")
             container.mux(stream.encode(picture))
@@ -105,7 +107,54 @@ def test_a_file_that_is_cut_ends_there(tmp_path):
     source = open_source(path)
     read = len(list(source.frames()))
     assert 2 < read < COUNT
-    assert any(f"{read} could be read" in notice for notice in source.notices)
+    assert any(f"{read} could be read; it ends after" in notice for notice in source.notices)
+
+
+@pytest.mark.parametrize("start", [0, 10])
+@pytest.mark.parametrize("decoder", [OpenCVDecoder, AvDecoder])
+def test_frames_behind_damaged_ones_are_read(tmp_path, monkeypatch, decoder, start):
+    """The first two images of sixteen, or two in the middle, are no JPEG any more."""
+    if decoder is AvDecoder:
+        monkeypatch.setattr(OpenCVDecoder, "read", lambda _: None)
+    path = encode(tmp_path / "v.avi", "mjpeg", count=16, fmt="yuvj420p")
+    whole = [image.frame for image in open_source(path).frames()]
+    content = path.read_bytes()
+    at = [n for n in range(len(content)) if content.startswith(b"\xff\xd8\xff", n)]
+    assert len(at) == 16
+    damaged = bytearray(content)
+    for begin, end in itertools.pairwise(at[start : start + 3]):
+        damaged[begin : end - 8] = bytes(end - 8 - begin)  # between chunks 8 bytes name the next
+    path.write_bytes(damaged)
+    source = open_source(path)
+    read = [image.frame for image in source.frames()]
+    expected = whole[:start] + whole[start + 2 :]
+    assert all((one == other).all() for one, other in zip(read, expected, strict=True))
+    (notice,) = source.notices
+    assert notice.endswith(
+        "states 16 frames, 14 could be read, to its end: its frame rate varies, "
+        "or others are damaged"
+    )
+
+
+def test_frames_of_a_variable_rate_reach_the_end_that_a_length_states(tmp_path):
+    """Matroska states a length of .96 s, which is 24 periods, and 12 frames are in it."""
+    path = tmp_path / "v.mkv"
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("libx264", rate=25)
+        stream.width, stream.height, stream.pix_fmt = 96, 64, "yuv420p"
+        stream.codec_context.time_base = Fraction(1, 25)
+        for index in range(12):
+            picture = av.VideoFrame.from_ndarray(frame_of(index), "rgb24")
+            picture.pts = index if index < 6 else 3 * index - 12
+            picture.time_base = Fraction(1, 25)
+            container.mux(stream.encode(picture))
+        container.mux(stream.encode())
+    source = open_source(path)
+    assert len(list(source.frames())) == 12
+    (notice,) = source.notices
+    assert notice.endswith(
+        "12 could be read, to its end: its frame rate varies, or others are damaged"
+    )
 
 
 def test_truth_after_the_cut_of_a_video_is_refused(tmp_path):

@@ -14,7 +14,7 @@ import importlib
 import math
 import os
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -31,6 +31,10 @@ _UNCONVERTED = int.from_bytes(b"BGR\x18", "little")
 """OpenCV's number of the pixel format BGR24. It takes such frames as they are, and overruns its
 memory where the last row comes first, as in uncompressed AVIs of Windows: the process is aborted
 (OpenCV 5.0.0)."""
+_FAILED_READS = 64
+"""Reads of a file that fail in a row before it is taken for ended. OpenCV fails once for damaged
+frames and reads on behind them, and at the end fails for ever; 64 of those take 5 ms. A choice:
+none of four damaged containers failed twice in a row."""
 _QUARTER_TURN = 90
 """Degrees; phones state rotations of whole quarters."""
 
@@ -120,6 +124,9 @@ class OpenCVDecoder:
         # Only FFmpeg states a format.
         stated_format = int(self._video.get(cv2.CAP_PROP_CODEC_PIXEL_FORMAT))
         self._crashes = has_ffmpeg and stated_format == _UNCONVERTED
+        # What is live has ended with the first failure, and another read may wait for minutes.
+        is_file = isinstance(source, str) and not is_url(source)
+        self._reads = _FAILED_READS if is_file else 1
         if self._crashes:
             self.codec = self.codec or "uncompressed BGR"
 
@@ -127,8 +134,11 @@ class OpenCVDecoder:
         """Return the next frame and its time; see `Decoder`."""
         if self._crashes:
             return None
-        is_read, image = self._video.read()
-        if not is_read:
+        for _ in range(self._reads):
+            is_read, image = self._video.read()
+            if is_read:
+                break
+        else:
             return None
         time_ms = float(self._video.get(cv2.CAP_PROP_POS_MSEC))
         return cv2.cvtColor(image, cv2.COLOR_BGR2RGB), time_ms  # type: ignore[return-value]
@@ -176,14 +186,11 @@ class AvDecoder:
         start = stream.start_time
         # Some containers start late; the first frame is at 0 ms here, as with OpenCV.
         self._start_s = float(start * stream.time_base) if start is not None else 0.0
-        self._frames = self._container.decode(stream)
+        self._frames = self._decoded(stream)
 
     def read(self) -> tuple[Frame, float] | None:
         """Return the next frame and its time; see `Decoder`."""
-        try:
-            frame = next(self._frames, None)
-        except self._failures:  # a file that is cut or damaged ends here, as with OpenCV
-            return None
+        frame = next(self._frames, None)
         if frame is None:
             return None
         # Phones store upright videos on their side; OpenCV turns them too.
@@ -194,6 +201,19 @@ class AvDecoder:
     def close(self) -> None:
         """Close the file."""
         self._container.close()
+
+    def _decoded(self, stream: Any) -> Iterator[Any]:
+        """Yield the frames that can be decoded, also those behind damaged ones, as OpenCV does."""
+        packets = self._container.demux(stream)
+        while True:
+            try:
+                packet = next(packets, None)
+            except self._failures:  # the container itself is cut
+                return
+            if packet is None:
+                return
+            with suppress(*self._failures):
+                yield from packet.decode()
 
 
 def open_decoder(source: Path | str) -> Decoder:

@@ -30,6 +30,10 @@ _MOST_FRAMES = 1_000_000
 _ROUNDING_NS = 1_000_000
 """Largest difference of a stated time from an even rate that is rounding: containers keep ms."""
 
+_WHOLE = 0.95
+"""Share of the stated length from which on a video is whole. A choice: some decoders count the
+frames behind damaged ones as if these had never been, and lengths are rounded."""
+
 
 class VideoFile(Footage):
     """The frames of a video file, at the times that the file states.
@@ -102,7 +106,8 @@ class VideoFile(Footage):
                 yield Picture(stamp, frame, f"frame {number} of {self._path}", truth=truth)
         if not number:
             raise InputError(f"no frame of the video {self._path} can be decoded")
-        self._notices = [*self._found, *self._irregularities(number, untimed)]
+        irregularities = self._irregularities(number, untimed, last)
+        self._notices = [*self._found, *irregularities]
 
     def truth(self) -> list[Truth]:
         """Return the truth, at even stamps where its frames are not read yet."""
@@ -127,10 +132,13 @@ class VideoFile(Footage):
             return even
         return stated if last < stated <= LAST_STAMP_NS else None
 
-    def _irregularities(self, read: int, untimed: int) -> Iterator[str]:
+    def _irregularities(self, read: int, untimed: int, last: int) -> Iterator[str]:
         """Report fewer frames than the file states, times that it lacks, truth without a frame."""
         if self.frame_count is not None and read < self.frame_count:
-            yield f"the video {self._path} states {self.frame_count} frames, {read} could be read"
+            stated = (
+                f"the video {self._path} states {self.frame_count} frames, {read} could be read"
+            )
+            yield f"{stated}{self._reach(self.frame_count, last)}"
         if untimed:
             frames = "1 frame; it follows" if untimed == 1 else f"{untimed} frames; they follow"
             yield (
@@ -139,6 +147,17 @@ class VideoFile(Footage):
             )
         if lost := sum(not 1 <= number <= read for number in self._truth):
             yield f"frames of the truth without an image: {lost}"
+
+    def _reach(self, frame_count: int, last: int) -> str:
+        """Return how far frames reach that are fewer than stated, by the stamp of the last one."""
+        if not self._keeps_times:
+            return ""
+        # Many containers state no number, but a length: at a variable rate it holds fewer frames.
+        length_s = frame_count / self.fps
+        end_s = (last - START_NS) * 1e-9 + 1 / self.fps
+        if end_s >= _WHOLE * length_s:
+            return ", to its end: its frame rate varies, or others are damaged"
+        return f"; it ends after {end_s:.1f} of {length_s:.1f} s"
 
     def _open(self) -> Decoder:
         return open_decoder(self._path)
