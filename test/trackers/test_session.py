@@ -18,7 +18,7 @@ from vehicle_pf_tracker.trackers.continuity import ODD_STAMP_PATIENCE, StrayImag
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.papers.apf import ApfParameters
 from vehicle_pf_tracker.trackers.registry import VARIANTS
-from vehicle_pf_tracker.trackers.session import Session
+from vehicle_pf_tracker.trackers.session import Session, TargetError
 
 
 def test_waits_until_there_is_a_target():
@@ -319,6 +319,19 @@ def test_a_new_image_size_starts_again_and_says_so():
     fresh = session(street.box(0))
     alone = [fresh.feed(frame, (t + 4) * PERIOD_NS) for t, frame in enumerate(larger)]
     assert positions(after) == positions(alone[1:])
+
+
+def test_a_refused_target_is_tried_again_in_images_of_another_size():
+    street = Street()
+    at_work = session(street.box(0))
+    with pytest.raises(TargetError):
+        at_work.feed(other(), -3 * PERIOD_NS)
+    assert at_work.feed(other(), -2 * PERIOD_NS) is None
+    with pytest.raises(StrayImageError):
+        at_work.feed(street.frame(0), 0)
+    after = feed(at_work, street, [1, 2])
+    assert [estimate.mode for estimate in after] == [Mode.TRACKING] * 2
+    assert error(after[-1], street, 2) < 5
 
 
 def test_the_stamps_tell_the_tracker_how_long_a_second_is():

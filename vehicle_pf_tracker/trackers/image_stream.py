@@ -149,13 +149,11 @@ class ImageStream:
         if continuation is Continuation.CONFIRMS and aside is not None:
             with suppress(InputError):  # a coded one may be damaged
                 frame = _decoded(aside[0])
-                turns.append(self._turn(frame, aside[1], continuation, is_tracking))
-        turns.append(self._turn(_decoded(image), stamp_ns, continuation, is_tracking))
+                turns.append(self._turn(frame, aside[1], continuation))
+        turns.append(self._turn(_decoded(image), stamp_ns, continuation))
         return turns
 
-    def _turn(
-        self, frame: Frame, stamp_ns: int, continuation: Continuation, is_tracking: bool
-    ) -> Turn:
+    def _turn(self, frame: Frame, stamp_ns: int, continuation: Continuation) -> Turn:
         corrects = continuation is Continuation.CORRECTS
         leaps = continuation is Continuation.LEAPS
         events = []
@@ -181,8 +179,9 @@ class ImageStream:
         size = frame_size(frame)
         before = self._last_size
         self._last_size = size
-        # Pixels of another size are other places: nothing of the track can be carried over.
-        if is_tracking and before is not None and before != size:
+        # Pixels of another size are other places: nothing of the track can be carried over, and a
+        # target that was refused may fit.
+        if before is not None and before != size:
             change = f"from {size_words(before)} to {size_words(size)}"
             events.append(f"image size changed {change}; starting again")
             begins_anew = True
