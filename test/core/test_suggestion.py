@@ -18,6 +18,8 @@ KNOWN = ["num_particles", "motion.sigma_w", "motion.gain", "lost_after", "target
         ("motoin.gian", "motion.gain"),
         ("colour.gain", "motion.gain"),
         ("widht", "width"),
+        ("Target.Width", "target.width"),
+        ("target.WIDTH", "target.width"),
     ],
 )
 def test_the_nearest_name_is_suggested(name, meant):

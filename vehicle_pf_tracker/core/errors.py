@@ -49,7 +49,8 @@ def suggestion(name: str, known: Iterable[str]) -> str:
     ``motion.sigma``.
     """
     names = list(known)
-    close = get_close_matches(name, names, n=1)
+    by_case = {one.lower(): one for one in reversed(names)}
+    close = [by_case[like] for like in get_close_matches(name.lower(), by_case, n=1)]
     if not close:
         by_part = {one.rpartition(".")[2]: one for one in reversed(names)}
         close = [by_part[part] for part in get_close_matches(name.rpartition(".")[2], by_part, n=1)]

@@ -228,7 +228,7 @@ def test_a_change_reaches_the_tracker_and_keeps_the_track(rig, setter):
         ({"num_particles": 60, "lost_after": math.nan}, "lost_after"),
         ({"num_particles": 60, "evidence__occluded_below": 0.95}, "must not be above"),
         ({"num_particles": 60, "queue_depth": 5}, "read-only"),
-        ({"num_particles": 60, "sigma": 5.0}, ""),
+        ({"num_particles": 60, "sigma": 5.0}, "there is no parameter 'sigma'"),
         ({"num_particles": 60, "motion__sigma_w": "wide"}, "Wrong parameter type"),
     ],
 )
@@ -240,6 +240,13 @@ def test_a_set_is_all_or_nothing_and_says_why(rig, setter, values, words):
     assert value(rig.node, "num_particles") == 200
     assert rig.node.table.configuration is before
     assert rig.show_frame(road(1)[0], 0).status[0].message == "TRACKING"
+
+
+def test_a_misspelt_name_is_answered_with_the_one_that_is_meant(rig, setter):
+    words = "there is no parameter 'num_particels' (did you mean 'num_particles'?)"
+    for result in (setter.one("num_particels", 60), setter.together(num_particels=60)):
+        assert not result.successful
+        assert result.reason == words
 
 
 def test_values_that_fit_only_together_can_be_set_together(rig, setter):

@@ -19,6 +19,7 @@ from rcl_interfaces.msg import (
     ParameterDescriptor,
     SetParametersResult,
 )
+from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -52,6 +53,14 @@ def describe(spec: ParameterSpec) -> ParameterDescriptor:
     return descriptor
 
 
+class UnknownParameterError(ParameterNotDeclaredException):  # type: ignore[misc]
+    """Request to set a parameter that the node does not have; rclpy answers it with the reason."""
+
+    def __init__(self, reason: str) -> None:
+        # Past rclpy's own words, which leave out the first unknown name, mostly the only one.
+        Exception.__init__(self, reason)
+
+
 class ParameterTable:
     """Declares every parameter on a node and keeps the configuration that they make.
 
@@ -82,6 +91,7 @@ class ParameterTable:
         check: Callable[[Configuration], None],
         changed: Callable[[Configuration], None],
     ) -> None:
+        self._node = node
         self._specs = defaults.specs()
         self._check = check
         self._changed = changed
@@ -89,9 +99,16 @@ class ParameterTable:
         for name, value in self.configuration.to_mapping().items():
             # The override is in the value already, converted; rclpy refuses 6 where 6.0 is meant.
             node.declare_parameter(name, value, describe(self._specs[name]), ignore_override=True)
-        node.add_pre_set_parameters_callback(lambda given: list(map(self._as_declared, given)))
+        node.add_pre_set_parameters_callback(self._prepare)
         node.add_on_set_parameters_callback(self._validate)
         node.add_post_set_parameters_callback(self._apply)
+
+    def _prepare(self, parameters: list[Parameter]) -> list[Parameter]:
+        for one in parameters:
+            if not self._node.has_parameter(one.name):
+                known = self._node.get_parameters_by_prefix("")
+                raise UnknownParameterError(unknown_name(one.name, known))
+        return [self._as_declared(one) for one in parameters]
 
     def _as_declared(self, one: Parameter) -> Parameter:
         # `ros2 param set` makes an integer of 6, where 6.0 is declared.
