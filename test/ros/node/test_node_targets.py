@@ -16,6 +16,7 @@ from rcl_interfaces.srv import SetParametersAtomically
 from sensor_msgs.msg import Image, RegionOfInterest
 from std_srvs.srv import Trigger
 from tracker_rig import TARGET, Rig, header, on_target, overrides, road, values_of
+from traffic_rig import hear_notices
 
 pytestmark = pytest.mark.ros
 
@@ -203,6 +204,13 @@ def test_a_larger_stream_may_have_the_target_after_all(bench):
     assert rig.play(road(2, 640, 480), first=2) == ["TRACKING"] * 2
 
 
+def test_a_camera_that_shows_a_thumbnail_for_a_while_costs_the_target_nothing(tracking):
+    rig, _ = tracking
+    assert rig.play(road(3, 16, 12), first=3) == ["REJECTED", "WAITING", "WAITING"]
+    assert rig.play(road(3), first=6) == ["REJECTED", "TRACKING", "TRACKING"]
+    assert box_of(rig.show_frame(road(4)[3], 9))[0] == pytest.approx(TARGET[0] + 6, abs=3)
+
+
 def test_reset_goes_back_to_waiting(waiting):
     rig, targets = waiting
     targets.give(region(*TARGET))
@@ -243,6 +251,18 @@ def test_a_doubtful_target_is_followed_with_a_warning(waiting):
     answer = rig.show_frame(frame, 0)
     assert answer.status[0].message == "TRACKING"
     assert "the target is doubtful: nothing in it stands out" in values_of(answer)["event"]
+
+
+def test_a_doubtful_target_with_each_image_is_logged_now_and_then(bench, monkeypatch):
+    said = hear_notices(monkeypatch)
+    rig = Rig(bench)
+    targets = Targets(rig)
+    frame = road(1)[0]
+    frame[80:115, 100:150] = 110
+    for index in range(3):
+        targets.give(region(110 - index, 85, 30, 20))
+        assert "doubtful" in values_of(rig.show_frame(frame, index))["event"]
+    assert sum("the target is doubtful" in line for line in said) == 1
 
 
 @pytest.mark.parametrize("drives", [False, True])

@@ -246,17 +246,20 @@ class TrackerFeed:
 
     def _doubts(self, header: Header, frame: Frame, estimate: Estimate) -> list[str]:
         """Log what speaks against the target, and return it, a sentence each."""
-        sentences = []
+        doubtful = []
+        still: list[str] = []
         # Stillness is about one target: with each new one it begins again.
         if estimate.begins:
             self._stillness.begin(estimate.box, stamp_ns(header))
-            sentences += [f"the target is doubtful: {why}" for why in doubts(frame, estimate.box)]
+            doubtful = [f"the target is doubtful: {why}" for why in doubts(frame, estimate.box)]
         # A predicted box moves by its model, which is no sign of a vehicle.
         if estimate.mode is Mode.TRACKING:
-            sentences += self._stillness.look(frame, estimate.box, stamp_ns(header))
-        for sentence in sentences:
-            self._journal.log.warning(sentence)
-        return sentences
+            still = [*self._stillness.look(frame, estimate.box, stamp_ns(header))]
+        # A program may give a target with each image.
+        for kind, sentences in (("doubtful", doubtful), ("still", still)):
+            if sentences:
+                self._journal.warnings.say(kind, "; ".join(sentences))
+        return [*doubtful, *still]
 
     def _events(self, session: Session) -> list[str]:
         """Log what the session says of the last image, and return it, a sentence each."""
