@@ -259,6 +259,7 @@ def test_the_configured_target_is_selected(bench):
     answers = rig.play(frames)
     messages = [one.status[0].message for one in answers]
     assert messages == ["WAITING"] + ["TRACKING"] * (len(frames) - 1)
+    assert values_of(answers[0])["reason"] == "vehicle 1 is followed from the next image on"
     assert {values_of(one)["id"] for one in answers[1:]} == {"1"}
     request = Trigger.Request()
     assert rig.bench.call(Trigger, f"{NODE}/reset", request).success

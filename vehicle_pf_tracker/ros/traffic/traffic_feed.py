@@ -168,7 +168,12 @@ class TrafficFeed:
         chosen = self.vehicles.selection.identity
         if selected is not None:
             return selected.mode.value, dict(messages.scalars(selected))
-        reason = f"vehicle {chosen} is not followed any more" if chosen else "none is selected"
+        if not chosen:
+            reason = "none is selected"
+        elif self.vehicles.begins:
+            reason = f"vehicle {chosen} is followed from the next image on"
+        else:
+            reason = f"vehicle {chosen} is not followed any more"
         return WAITING_MESSAGE, {"reason": reason}
 
     def _warn_of_unusable(self, detections: Detections | None, frame: Frame) -> None:

@@ -117,6 +117,9 @@ class Vehicles:
         Targets followed since whoever looks at them emptied it.
     selection : Selection
         The vehicle that is reported like that of a single tracker.
+    begins : bool
+        True where the selected vehicle was given with the last image: its first estimate is that of
+        the next.
 
     Raises
     ------
@@ -131,6 +134,7 @@ class Vehicles:
         self._configuration = configuration
         self.latest: dict[str, Crossing] = {}
         self.selection = Selection()
+        self.begins = False
         self._is_shown = False
         self._added = 0
         self.waiting: list[Box] = []
@@ -266,6 +270,7 @@ class Vehicles:
         self._configured = None
         for box in boxes:
             self._try_to_add(box, problems)
+        self.begins = configured is not None
         if configured is not None:
             self.selection.identity = self._try_to_add(configured, problems)
         return problems
