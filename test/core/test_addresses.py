@@ -4,6 +4,7 @@
 """Addresses without the passwords in them."""
 
 import pickle
+import time
 
 import pytest
 from hypothesis import given
@@ -58,6 +59,16 @@ def test_no_password_is_left(password, scheme):
     for words in (shown(address), str(InputError(f"{address} and {address}: no"))):
         assert "begin" not in words and "end@" not in words
         assert "cam.local:554/main" in words
+
+
+@pytest.mark.parametrize(
+    "text", ["y", "ab://x:y", "http://h/?", "key", "/_", "http://h:p", "a:/", "ab://@", "1a.-"]
+)
+def test_a_long_text_of_another_program_is_read_in_a_moment(text):
+    began = time.process_time()
+    long = f"http://h/?{text * (100_000 // len(text))}"
+    assert SECRET not in str(InputError(f"{long[10:]} {long} rtsp://admin:{SECRET}@cam/1"))
+    assert time.process_time() - began < 10
 
 
 def test_an_error_is_the_same_in_another_process():

@@ -13,17 +13,19 @@ from urllib.parse import unquote
 
 HIDDEN_MARK = "***"
 """Mark in place of a password."""
-_SCHEME = r"[A-Za-z][A-Za-z0-9+.-]+:/{1,2}"  # a path has one of the two slashes
+_SCHEME = r"(?<![A-Za-z0-9+.-])[0-9+.-]*[A-Za-z][A-Za-z0-9+.-]+:/{1,2}"
+"""Beginning of an address; a path has one of the two slashes. It is looked for where a word begins
+alone, since texts come from other programs: from each letter of a long one, it took minutes."""
 _USERINFO = re.compile(
     # Up to the last @ before the path; a password may have another @ in it. Or one that has a
     # slash in it, which shows by no port before that slash.
-    rf"({_SCHEME})(?:[^\s/?#]*@|[^\s/?#:@]*:(?!\d+(?:[/?#\s]|$))(?:\S*@|[^@\n]{{1,80}}@))"
+    rf"({_SCHEME})(?:[^\s/?#]*@|[^\s/?#:@]*:(?!\d+(?:[/?#\s]|$))(?:\S{{0,500}}@|[^@\n]{{1,80}}@))"
 )
 _WHOLE_USERINFO = re.compile(rf"^({_SCHEME})(?:[^/?#]*@|[^/?#:@]*:(?!\d+[/?#]).*@)", re.DOTALL)
 """User and password of a text that is one address as a whole, where they may have spaces."""
 _SECRET = re.compile(
     # Cameras take the password as part of the query, or of the path, with & or _ between the parts.
-    r"(?i)((?:^|[?&;/_])(?:[a-z]*pass(?:word|wd|phrase)?|pwd|[a-z_-]*token|[a-z_-]*key|secret"
+    r"(?i)((?:^|[?&;/_])(?:[a-z]{0,40}pass(?:word|wd|phrase)?|pwd|[a-z_-]{0,40}(?:token|key)|secret"
     r"|auth|sig|signature|x-amz-signature|x-amz-credential)=)[^&;\s\"'#]+"
 )
 _ADDRESS = re.compile(rf"{_SCHEME}\S+")

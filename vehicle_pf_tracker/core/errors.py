@@ -5,11 +5,16 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterable
 from difflib import get_close_matches
 from pathlib import Path
 
 from vehicle_pf_tracker.core.addresses import without_passwords
+
+# A value in an error is cut to 80 letters: it may be a whole file.
+_BRIEF = reprlib.Repr()
+_BRIEF.maxstring = _BRIEF.maxother = _BRIEF.maxlong = 80
 
 
 class InputError(ValueError):
@@ -22,6 +27,11 @@ class InputError(ValueError):
 
     def __init__(self, sentence: str = "") -> None:
         super().__init__(without_passwords(sentence))
+
+
+def brief(value: object) -> str:
+    """Write a value that came from outside for an error, however long it is."""
+    return _BRIEF.repr(value)
 
 
 def read_text(path: Path, what: str) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, brief
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.road.lens import LENS_MODELS, Lens
 from vehicle_pf_tracker.road.plane import Pair, RoadPlane
@@ -86,7 +86,9 @@ class RoadParameters:
         if coefficients and not numbers:
             raise InputError("road.distortion needs road.intrinsics (fx,fy,cx,cy) beside it")
         if len(numbers) not in (0, 4):
-            raise InputError(f"road.intrinsics must be fx,fy,cx,cy in px, got {self.intrinsics!r}")
+            raise InputError(
+                f"road.intrinsics must be fx,fy,cx,cy in px, got {brief(self.intrinsics)}"
+            )
         if not numbers:
             return None
         fx, fy, cx, cy = numbers
@@ -98,7 +100,8 @@ class RoadParameters:
         numbers = parse_numbers(self.camera_pose, "road.camera_pose")
         if len(numbers) not in (0, 7):
             raise InputError(
-                f"road.camera_pose must be x,y,z,qx,qy,qz,qw (m, unit), got {self.camera_pose!r}"
+                "road.camera_pose must be x,y,z,qx,qy,qz,qw (m, unit), "
+                f"got {brief(self.camera_pose)}"
             )
         return Pose.of(numbers[:3], numbers[3:]) if numbers else None
 
@@ -176,9 +179,9 @@ def parse_pairs(text: str) -> tuple[Pair, ...]:
 
 
 def _pair(word: str) -> Pair:
-    sides = [parse_numbers(side, f"the pair {word!r} of the road") for side in word.split("=")]
+    sides = [parse_numbers(side, f"the pair {brief(word)} of the road") for side in word.split("=")]
     if [len(numbers) for numbers in sides] != [2, 2]:
-        raise InputError(f"the pair {word!r} of the road is not u,v=x,y (pixels = metres)")
+        raise InputError(f"the pair {brief(word)} of the road is not u,v=x,y (pixels = metres)")
     (u, v), (x, y) = sides
     return Pair((u, v), (x, y))
 
@@ -201,9 +204,9 @@ def parse_numbers(text: str, name: str) -> tuple[float, ...]:
     try:
         numbers = tuple(float(word) for word in text.split(",")) if text.strip() else ()
     except ValueError:
-        raise InputError(f"{name} must be numbers apart by commas, got {text!r}") from None
+        raise InputError(f"{name} must be numbers apart by commas, got {brief(text)}") from None
     if not all(abs(number) <= _LARGEST_NUMBER for number in numbers):
         raise InputError(
-            f"{name} has a number that is not finite or above {_LARGEST_NUMBER:g}: {text!r}"
+            f"{name} has a number that is not finite or above {_LARGEST_NUMBER:g}: {brief(text)}"
         )
     return numbers

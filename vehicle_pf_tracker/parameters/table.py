@@ -15,14 +15,13 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
-import reprlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from operator import attrgetter
 from types import MappingProxyType
 from typing import Any, Literal, TypeAlias, TypeVar, cast, get_type_hints
 
-from vehicle_pf_tracker.core.errors import InputError, suggestion
+from vehicle_pf_tracker.core.errors import InputError, brief, suggestion
 
 Value: TypeAlias = bool | int | float | str
 Effect: TypeAlias = Literal["keeps", "relearns", "restarts", "starts"]
@@ -35,10 +34,6 @@ EFFECTS: Mapping[Effect, str] = {
     "starts": "starts again on the new target",
 }
 """Consequences of a change while tracking, in words for parameter files and pages."""
-
-# A value in an error is cut to 80 letters: it may be a whole file.
-_BRIEF = reprlib.Repr()
-_BRIEF.maxstring = _BRIEF.maxother = _BRIEF.maxlong = 80
 
 _KEY = "parameter"
 """Key of a field's metadata under which its specification, or its group's class, lies."""
@@ -114,22 +109,22 @@ class ParameterSpec:
             try:
                 value = float(value)
             except OverflowError:
-                raise InputError(f"{self.name} must be finite, got {_shown(value)}") from None
+                raise InputError(f"{self.name} must be finite, got {brief(value)}") from None
         if type(value) is not self.kind:
-            raise InputError(f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {_shown(value)}")
+            raise InputError(f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {brief(value)}")
         checked = value
         if self.choices and checked not in self.choices:
             known = ", ".join(self.choices)
-            raise InputError(f"{self.name} must be one of {known}, got {_shown(value)}")
+            raise InputError(f"{self.name} must be one of {known}, got {brief(value)}")
         if isinstance(checked, int | float):
             self._check_bounds(checked)
         return checked
 
     def _check_bounds(self, value: float) -> None:
         if isinstance(value, float) and not math.isfinite(value):
-            raise InputError(f"{self.name} must be finite, got {_shown(value)}")
+            raise InputError(f"{self.name} must be finite, got {brief(value)}")
         if self.bounds and not self.bounds[0] <= value <= self.bounds[1]:
-            raise InputError(f"{self.name} must be {self.bounds_text}, got {_shown(value)}")
+            raise InputError(f"{self.name} must be {self.bounds_text}, got {brief(value)}")
 
     @property
     def bounds_text(self) -> str:
@@ -143,7 +138,7 @@ class ParameterSpec:
             value = _BOOLEANS[word.lower()] if self.kind is bool else self.kind(word)
         except (ValueError, KeyError):
             raise InputError(
-                f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {_shown(text)}"
+                f"{self.name} must be {_TYPE_NAMES[self.kind]}, got {brief(text)}"
             ) from None
         return self.check(value)
 
@@ -268,7 +263,7 @@ def _build(cls: Any, values: Mapping[str, Value], prefix: str) -> Any:
 
 def unknown_name(name: str, known: Iterable[str]) -> str:
     """Write that there is no parameter `name`, and which one may be meant."""
-    return f"there is no parameter {name!r}{suggestion(name, known)}"
+    return f"there is no parameter {brief(name)}{suggestion(name, known)}"
 
 
 def parse_assignments(
@@ -285,13 +280,8 @@ def parse_assignments(
     for word in assignments:
         name, equals, text = word.partition("=")
         if not equals:
-            raise InputError(f"--set expects name=value, got {_shown(word)}")
+            raise InputError(f"--set expects name=value, got {brief(word)}")
         if name not in table:
             raise InputError(unknown_name(name, table))
         values[name] = table[name].parse(text)
     return values
-
-
-def _shown(value: object) -> str:
-    """Show a value in an error, however long it is."""
-    return _BRIEF.repr(value)

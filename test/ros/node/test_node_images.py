@@ -112,6 +112,14 @@ def test_a_compressed_image_that_claims_gigabytes_is_answered_and_the_track_kept
     assert "claims 30000x30000 px" in values_of(answers[3])["reason"]
 
 
+def test_a_format_that_is_a_long_text_holds_nobody_up(bench):
+    rig = compressed_rig(bench)
+    data = array.array("B", b"abc")
+    answer = rig.show(CompressedImage(header=header(0), format="f" * 200_000, data=data))
+    assert answer.status[0].message == "REJECTED"
+    assert len(values_of(answer)["reason"]) < 200
+
+
 def broken(index: int, **changes) -> Image:
     message = image_message(header(index), road(1)[0])
     for name, value in changes.items():
@@ -123,6 +131,7 @@ def broken(index: int, **changes) -> Image:
     ("changes", "words"),
     [
         ({"encoding": "rgb888"}, "'rgb888' is unknown"),
+        ({"encoding": "r" * 200_000}, "rrr' is unknown"),
         ({"data": array.array("B", b"abc")}, "but has 3"),
         ({"data": array.array("B")}, "but has 0"),
         ({"height": 0}, "no pixels"),
@@ -137,6 +146,7 @@ def test_an_unusable_image_is_answered_and_the_track_kept(bench, changes, words)
     answer = rig.show(broken(3, **changes))
     assert (answer.status[0].message, answer.status[0].level) == ("REJECTED", b"\x02")
     assert words in values_of(answer)["reason"]
+    assert len(values_of(answer)["reason"]) < 500
     # As if the bad one had never been there: the clock does not see its stamp either.
     last = rig.show_frame(frames[3], 3)
     assert without_times(last) == offline("apf", frames[:4])[3]

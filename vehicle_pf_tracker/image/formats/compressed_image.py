@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import cv2
 import numpy as np
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, brief
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.formats.encodings import LARGEST_SIDE_PX, Buffer, flat_bytes
 
@@ -96,7 +96,7 @@ def read_compressed(format: str, data: Buffer) -> CodedImage:  # noqa: A002
         If the data are empty, cut off, neither JPEG nor PNG, or if they claim a side above
         `LARGEST_SIDE_PX` or more than `MAX_PIXELS` pixels.
     """
-    name = f"a compressed image (format {format!r})"
+    name = f"a compressed image (format {brief(format)})"
     # Copied: the image may be decoded after the message is gone.
     coded = flat_bytes(data).tobytes()
     if not coded:

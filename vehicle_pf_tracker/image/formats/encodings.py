@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, brief
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 
 Bytes: TypeAlias = npt.NDArray[np.uint8]
@@ -77,7 +77,7 @@ def frame_of_message(message: Any) -> Frame:
     if layout is None:
         known = " ".join(ENCODINGS)
         raise InputError(
-            f"the image encoding {message.encoding!r} is unknown; these are read: {known}"
+            f"the image encoding {brief(message.encoding)} is unknown; these are read: {known}"
         )
     _check_layout(layout, message)
     # Checked first, so that OpenCV sees only what it can convert.

@@ -14,7 +14,7 @@ from rclpy.node import Node
 from std_msgs.msg import Header
 
 from vehicle_pf_tracker.core.box import Box, check_target
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, brief
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.formats.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.configuration import Configuration, NodeParameters
@@ -193,8 +193,8 @@ class ImagePath:
         suffix = self._configuration.node.output_frame_suffix
         if own is not None and given not in ("", own, own + suffix):
             raise InputError(
-                f"{topic} got a target in the frame {given!r}; give it in pixels of the image, "
-                f"with the image's frame_id {own!r} or none"
+                f"{topic} got a target in the frame {brief(given)}; give it in pixels of the "
+                f"image, with the image's frame_id {brief(own)} or none"
             )
 
     def write_incident(self) -> str:
