@@ -142,6 +142,32 @@ def test_nested_namespaces_and_later_sections_win(tmp_path):
         "pf_tracker:\n  ros__parameters: {count: 3}\n"
     )
     assert read_yaml(path, "apf_tracker") == {"count": 2, "quick": False}
+    assert read_yaml(path, "/camera/apf_tracker") == {"count": 2, "quick": False}
+    assert read_yaml(path, "/apf_tracker") == {"count": 1, "quick": False}
+
+
+@pytest.mark.parametrize(
+    ("section", "is_meant"),
+    [
+        ("apf_tracker", False),
+        ("/camera/apf_tracker", True),
+        ("/camera/*", True),
+        ("/*/apf_tracker", True),
+        ("/**/apf_tracker", True),
+        ("/**", True),
+        ("/*", False),
+        ("/*/*/apf_tracker", False),
+        ("/camera/pf_tracker", False),
+    ],
+)
+def test_a_section_is_for_a_node_by_its_full_name_as_in_ros(tmp_path, section, is_meant):
+    path = tmp_path / "p.yaml"
+    path.write_text(f"{section}:\n  ros__parameters: {{count: 3}}\n")
+    if is_meant:
+        assert read_yaml(path, "/camera/apf_tracker") == {"count": 3}
+    else:
+        with pytest.raises(InputError, match="has nothing for /camera/apf_tracker, only for /"):
+            read_yaml(path, "/camera/apf_tracker")
 
 
 @pytest.mark.parametrize(

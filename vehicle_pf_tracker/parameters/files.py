@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -103,7 +104,9 @@ def _scalar(value: Value) -> str:
 def read_yaml(path: Path, node_name: str) -> dict[str, object]:
     """Read the parameters that the file at `path` has for the node `node_name`.
 
-    Sections count when their last part is `node_name` or a wildcard; later ones win, as in ROS.
+    Later sections win, as in ROS. `node_name` is a node's full name, with a leading slash, which
+    sections name by ROS's rules; or a name alone, which the last part of a section may be, in any
+    namespace.
 
     Raises
     ------
@@ -118,7 +121,7 @@ def read_yaml(path: Path, node_name: str) -> dict[str, object]:
             f"the parameter file {path} has no ros__parameters section; "
             "`vehicle-pf-tracker params VARIANT` prints one to start from"
         )
-    chosen = [body for name, body in sections if name.rpartition("/")[2] in {node_name, "*", "**"}]
+    chosen = [body for name, body in sections if _is_for(name, node_name)]
     if not chosen:
         names = ", ".join(name for name, _ in sections)
         raise InputError(
@@ -129,6 +132,17 @@ def read_yaml(path: Path, node_name: str) -> dict[str, object]:
     for body in chosen:
         merged.update(flatten(body))
     return merged
+
+
+def _is_for(section: str, node_name: str) -> bool:
+    """Tell whether a section is one of a node's."""
+    parts = section.strip("/").split("/")
+    if not node_name.startswith("/"):
+        return parts[-1] in {node_name, "*", "**"}
+    # Of ROS's wildcards, one star is a part of the name, and two are any number of them.
+    wildcards = {"*": r"/\w+", "**": r"(/\w+)*"}
+    pattern = "".join(wildcards.get(part, f"/{re.escape(part)}") for part in parts)
+    return re.fullmatch(pattern, node_name) is not None
 
 
 def _sections(document: Any, prefix: str) -> Iterable[tuple[str, Mapping[str, Any]]]:

@@ -21,9 +21,14 @@ def ros_folder() -> Path:
     return Path(os.environ.get("ROS_HOME") or Path.home() / ".ros", "vehicle_pf_tracker")
 
 
+def own_name(node: str) -> str:
+    """Return what the files of a node begin with, whose full name is given."""
+    return node.strip("/").replace("/", ".")
+
+
 def own_file(node: str, ending: str) -> Path:
     """Return the path of a file of a node, whose full name is given."""
-    return ros_folder() / f"{node.strip('/').replace('/', '.')}.{ending}"
+    return ros_folder() / f"{own_name(node)}.{ending}"
 
 
 def write_private(path: Path, text: str) -> None:

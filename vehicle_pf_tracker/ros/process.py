@@ -177,7 +177,7 @@ def _files_for_others(arguments: Sequence[str], nodes: Sequence[Node]) -> Iterat
         refusals = []
         for node in nodes:
             try:
-                read_yaml(path, node.get_name())
+                read_yaml(path, node.get_fully_qualified_name())
             except InputError as error:  # noqa: PERF203 - of a node or two
                 refusals.append(str(error))
         if len(refusals) == len(nodes):

@@ -23,6 +23,7 @@ from tracker_rig import (
     TARGET,
     WIDTH,
     Rig,
+    diagnostics_of,
     header,
     on_target,
     overrides,
@@ -37,8 +38,11 @@ from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.bags.writer import RecordingWriter
 from vehicle_pf_tracker.results.estimates import read_estimates
 from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.ros.node import incidents
 from vehicle_pf_tracker.ros.node.incidents import IncidentRecorder
+from vehicle_pf_tracker.ros.node.tracker_node import TrackerNode
 from vehicle_pf_tracker.trackers.base import BaseTracker
+from vehicle_pf_tracker.trackers.registry import find_variant
 
 pytestmark = pytest.mark.ros
 
@@ -102,6 +106,27 @@ def test_a_snapshot_that_cannot_be_written_says_why(bench, tmp_path, monkeypatch
     answer = bench.call(Trigger, f"{rig.name}/snapshot", Trigger.Request())
     assert not answer.success
     assert "Not a directory" in answer.message
+
+
+def test_two_cameras_have_snapshots_and_reports_of_their_own(bench, monkeypatch):
+    monkeypatch.setattr(incidents.time, "strftime", lambda _: "now")  # in the same second
+    image = image_message(header(0), road(1)[0])
+    written = []
+    for side in ("front", "rear"):
+        options = {"namespace": side, "parameter_overrides": on_target(incident_memory=10)}
+        bench.add(TrackerNode(find_variant("apf"), context=bench.context, **options))
+        modes = bench.collect(DiagnosticArray, f"/{side}/apf_tracker/mode", QUEUE)
+        camera = bench.publisher(Image, f"/{side}/image", QUEUE)
+        bench.publish_until(lambda: modes, camera, image)  # noqa: B023 - called at once
+        answer = bench.call(Trigger, f"/{side}/apf_tracker/snapshot", Trigger.Request())
+        written.append(Path(answer.message.removeprefix("writing to ")))
+    assert [path.name for path in written] == ["front.apf_tracker_now", "rear.apf_tracker_now"]
+    for path in written:
+        bench.wait_for((path / "parameters.yaml").is_file)
+        assert Recording(path).frame_count >= 1
+    for side in ("front", "rear"):
+        told = diagnostics_of(bench, f"{side}/apf_tracker", lambda table: True)
+        assert int(told["images"]) >= 1
 
 
 def test_without_memory_there_is_no_such_service(bench):

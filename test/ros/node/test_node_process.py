@@ -125,12 +125,21 @@ def test_a_parameter_file_with_a_key_twice_is_refused(start_node, tmp_path):
     assert len(node.output.splitlines()) == 1
 
 
-def test_a_parameter_file_for_another_node_is_named_with_the_nodes_it_is_for(start_node, tmp_path):
+@pytest.mark.parametrize(
+    ("section", "name", "full_name"),
+    [
+        ("/front/apf_tracker", "__node:=rear", "/rear"),
+        ("/apf_tracker", "__ns:=/front", "/front/apf_tracker"),
+    ],
+)
+def test_a_parameter_file_for_another_node_is_named_with_the_nodes_it_is_for(
+    start_node, tmp_path, section, name, full_name
+):
     """ROS passes over it without a word."""
     path = tmp_path / "front.yaml"
-    path.write_text("/front/apf_tracker:\n  ros__parameters:\n    num_particles: 100\n")
-    node = start_node("apf", "--params-file", str(path), "-r", "__node:=rear")
-    node.wait_for_output("has nothing for rear, only for /front/apf_tracker; use /** as")
+    path.write_text(f"{section}:\n  ros__parameters:\n    num_particles: 100\n")
+    node = start_node("apf", "--params-file", str(path), "-r", name)
+    node.wait_for_output(f"has nothing for {full_name}, only for {section}; use /** as")
 
 
 def test_a_signal_while_the_node_is_made_leaves_no_words(start_process):

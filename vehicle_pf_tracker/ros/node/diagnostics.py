@@ -75,7 +75,8 @@ class Diagnostics:
         publishers = self.source.count_publishers() if self.source else 0
         values = {**self.health.report(), "matched publishers": publishers, **self._facts()}
         level, words = self._judge()
-        name = self._node.get_name()
+        # With its namespace, for who gathers the reports of several cameras.
+        name = self._node.get_fully_qualified_name().lstrip("/")
         topic = self.source.topic if self.source else ""
         message = DiagnosticArray(status=[status(level, f"{name}: tracker", words, topic, values)])
         message.header.stamp = self._node.get_clock().now().to_msg()

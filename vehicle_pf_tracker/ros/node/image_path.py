@@ -114,8 +114,9 @@ class ImagePath:
         self._frame_id: str | None = None
         own = configuration.node
         memory = own.incident_memory * 10**6
-        self.incidents = IncidentRecorder(str(node.get_name()), memory) if memory else None
-        self._kept = KeptTarget(node.get_fully_qualified_name()) if own.keep_target else None
+        name = str(node.get_fully_qualified_name())
+        self.incidents = IncidentRecorder(name, memory) if memory else None
+        self._kept = KeptTarget(name) if own.keep_target else None
         # Last: it starts the feed on the target, and logs.
         self._go_on_with_kept()
 

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.core.truth import Occlusion, Truth
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.parameters.files import to_yaml
 from vehicle_pf_tracker.ros.messages import stamp_ns
-from vehicle_pf_tracker.ros.own_files import ros_folder
+from vehicle_pf_tracker.ros.own_files import own_name, ros_folder
 from vehicle_pf_tracker.ros.serialized_image import ImageMessage, SerializedImage
 
 _LENGTH = 10.0
@@ -47,7 +47,7 @@ class IncidentRecorder:
     Parameters
     ----------
     name : str
-        Name of the node.
+        Full name of the node.
     most_bytes : int
         Bytes of messages to keep at most.
     clock : callable
@@ -57,7 +57,7 @@ class IncidentRecorder:
     def __init__(
         self, name: str, most_bytes: int, clock: Callable[[], float] = time.monotonic
     ) -> None:
-        self._name = name
+        self._name = name.strip("/")
         self._most = most_bytes
         self._clock = clock
         self._kept: deque[tuple[float, int, type[Any], bytes, Box | None]] = deque()
@@ -100,7 +100,7 @@ class IncidentRecorder:
             raise InputError(f"writing a recording needs {error.name} (pip)") from None
         with output_errors(ros_folder()):
             ros_folder().mkdir(parents=True, exist_ok=True)
-        folder = ros_folder() / f"{self._name}_{time.strftime('%Y%m%d_%H%M%S')}"
+        folder = ros_folder() / f"{own_name(self._name)}_{time.strftime('%Y%m%d_%H%M%S')}"
         # 1. Copy what is kept, while images wait: the thread must not see them come and go.
         messages = [(_TOPICS[kind], stamp, data) for _, stamp, kind, data, _ in self._kept]
         name = self._name
