@@ -20,7 +20,10 @@ TABLES = re.compile(r"Parameters$|Request$|Options?$|^Metrics$|^Estimate$")
 """Classes that are tables: of parameters, of options of a command, of results by name."""
 ROW = re.compile(r"^(share|parameter|\w+_parameter|option|positional|switch|group)$")
 """Calls that are a row of a table of parameters, laid out by hand."""
-VAGUE = {"HALF", "FEW", "FAR", "LITTLE", "SETTLED_AFTER"}
+VAGUE = {
+    "APART", "FAR", "FARTHEST", "FEW", "FEWEST", "HALF", "LEAST", "LITTLE", "MOST", "NEARLY",
+    "SETTLED_AFTER",
+}  # fmt: skip
 """Words that name no decision."""
 VAGUE_ELSEWHERE = {
     *VAGUE, "CELL", "CELLS", "DOUBT", "ENTRY", "EVEN", "EXIT", "FRAME", "MAX_DIFF", "MAX_SIDE",

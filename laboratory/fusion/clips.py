@@ -43,7 +43,7 @@ from vehicle_pf_tracker.scenes.lane_traffic import CAR_PAINTS, Lane, convoy
 from vehicle_pf_tracker.scenes.vehicles import saloon
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
-MOST = 8
+MOST_VEHICLES = 8
 """Vehicles followed in a clip at most, a choice: each is another run of `fusion`."""
 SURE, FEWEST = 0.55, 30
 """Score of the box that a vehicle is followed from, and fewest frames from there to its last."""
@@ -182,7 +182,9 @@ def leaving(
         if outside and is_at_border(own[last], size):
             runs.append(Run(identity, starts[0], last))
     runs.sort(key=lambda run: run.first)
-    chosen = np.unique(np.linspace(0, len(runs) - 1, min(MOST, len(runs))).round().astype(int))
+    chosen = np.unique(
+        np.linspace(0, len(runs) - 1, min(MOST_VEHICLES, len(runs))).round().astype(int)
+    )
     return [runs[number] for number in chosen]
 
 

@@ -42,7 +42,7 @@ NEAR, FAR = 33.0, 140.0
 """Stretch (y) that is in the image, m: a car is 50 px wide there, and 12 px."""
 _LOWEST = 8.0
 """Least y of a vehicle's middle, m: below the image, and all of a lorry is before the camera."""
-_FARTHEST = 170.0
+_CREST = 170.0
 """Largest y of a vehicle's middle that is shown, m: there the road goes over a crest."""
 _AHEAD = 110.0
 """Distance that the camera looks at, m: the horizon is in the image, the near end at its border."""
@@ -88,7 +88,7 @@ class OnRoad:
         """Set its way: the middle's position in each frame, m."""
         self.x = x
         # Beyond the crest it waits below the image, where nobody sees it.
-        self.y = np.where(y < _FARTHEST, np.maximum(y, _LOWEST), _LOWEST)
+        self.y = np.where(y < _CREST, np.maximum(y, _LOWEST), _LOWEST)
 
     def at(self, frame: float) -> tuple[float, float]:
         """Give its middle's position in `frame`; constant before the first and after the last.

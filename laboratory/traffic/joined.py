@@ -45,10 +45,10 @@ UNDER = 0.3
 """Least overlap of a vehicle that is followed with the true box: blobs are wider than vehicles."""
 FACTOR = 2.0
 """Factor, either way, within which a number holds: vehicles hide a half of each other in a jam."""
-FEW = 0.3
+EMPTY_ROAD = 0.3
 """Number that is added to both before their ratio is taken: a tenth of a vehicle beside none is no
 error."""
-LEAST = 20
+FEWEST_IMAGES = 20
 """Least images of a clip with known sizes that it has a vote with."""
 
 
@@ -75,7 +75,7 @@ def main() -> None:
             images = images_of(clip.sequence)
             rows.append(row(clip.sequence.name, images))
             known = [one for one in images if one.said is not None]
-            if len(known) >= LEAST:
+            if len(known) >= FEWEST_IMAGES:
                 errors.setdefault(clip.camera, []).append(error(known))
     print(markdown(HEADER, rows))
     if errors:
@@ -119,7 +119,7 @@ def error(known: Sequence[Image]) -> float:
     """Return the distance of the logarithms of the mean numbers."""
     said = fmean(one.said or 0.0 for one in known)
     true = fmean(one.true for one in known)
-    return abs(math.log((said + FEW) / (true + FEW)))
+    return abs(math.log((said + EMPTY_ROAD) / (true + EMPTY_ROAD)))
 
 
 def row(name: str, images: Sequence[Image]) -> list[str]:

@@ -23,7 +23,7 @@ _DRAWS = 1000
 """Particles drawn with each seed."""
 _SHOWN = 0.55
 """Uniform number whose way to its event is drawn; any would do."""
-_MOST = 4.0
+_LARGEST_DEVIATION = 4.0
 """Deviation of a frequency in standard deviations that chance alone exceeds in one of 1600 tables
 of ten events."""
 _SMALL = 0.01
@@ -87,7 +87,7 @@ def _finding(scheme: str, weights: Weights, counts: Array, total: int) -> ex.Fin
     name = f"{ex.PAPER_RULE}, {scheme}" if scheme != _PRINTED else ex.PAPER_RULE
     return ex.Finding(
         name,
-        ex.Holds.of(worst <= _MOST, _farthest(counts / total, weights) <= _SMALL),
+        ex.Holds.of(worst <= _LARGEST_DEVIATION, _farthest(counts / total, weights) <= _SMALL),
         f"{total} draws: frequencies are at most {worst:.1f} standard deviations of a multinomial "
         f"draw from the weights (largest difference {_farthest(counts / total, weights):.4f})",
     )

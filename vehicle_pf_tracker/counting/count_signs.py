@@ -10,7 +10,7 @@ from enum import Enum
 from vehicle_pf_tracker.counting.foot_point import FootPoint
 from vehicle_pf_tracker.counting.side_watch import Edge
 
-_NEAR = 1.0
+_HIDDEN_LENGTHS = 1.0
 """Lengths of a vehicle, before or behind a line, within which an end of its track may hide a
 crossing: a detector misses a vehicle for about as long as it drives its own length."""
 _DRIVEN = 0.5
@@ -80,6 +80,6 @@ def missed_at(
     x, y = first.point
     to_x, to_y = last.point
     at = x + share * (to_x - x), y + share * (to_y - y)
-    if not ((is_over or gap < _NEAR) and edge.has(at)):
+    if not ((is_over or gap < _HIDDEN_LENGTHS) and edge.has(at)):
         return None
     return side, Sign.PASSED if is_over else Sign.BROKEN

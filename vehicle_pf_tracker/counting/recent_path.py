@@ -21,7 +21,7 @@ _STEADY_NS = 500_000_000
 15 positions leaves 2 px/s, and no car changes its speed by more than 15 km/h meanwhile."""
 _STRAIGHT_NS = 200_000_000
 """Length of path in ns that is straight whatever the driver does: at 1 g it bends by 5 cm."""
-_FEWEST = 3
+_FEWEST_POSITIONS = 3
 """Positions that a speed needs; of two, all the error is the speed's."""
 _SETTLED = 4
 """Positions that the end of a steady drive needs: two more than a drive at one speed takes up."""
@@ -73,12 +73,12 @@ class RecentPath:
     def pixels(self) -> float | None:
         """Speed in px/s; None where the path is too short."""
         latest = self._latest()
-        return _speed(*_arrays(latest)) if len(latest) >= _FEWEST else None
+        return _speed(*_arrays(latest)) if len(latest) >= _FEWEST_POSITIONS else None
 
     def kmh(self) -> float | None:
         """Speed on the road in km/h; None where it has no road, or the path is too short."""
         latest = self._latest()
-        if self._plane is None or len(latest) < _FEWEST:
+        if self._plane is None or len(latest) < _FEWEST_POSITIONS:
             return None
         seconds, points = _arrays(latest)
         # Outside its calibrated area the plane extrapolates: no speed is better than a wrong one.

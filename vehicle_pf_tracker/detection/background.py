@@ -32,7 +32,7 @@ _SAMPLES = 10
 moves to and fro, like leaves, has more colours than a few."""
 _BETWEEN = 2
 """Images from one of the first samples to the next: most pixels are free in two of ten."""
-_APART = 0.06
+_SAMPLE_INTERVAL = 0.06
 """Interval of images, about two of 30 Hz, s, from which each of the first ones is a sample: by then
 what drives has moved on. A choice; between those of cameras of 15 and 20 Hz, so that the jitter of
 stamps decides nothing."""
@@ -107,7 +107,7 @@ class Background:
 
     def begin(self, image: Colours, period: float) -> None:
         """Take one of the first images, which are `period` s apart."""
-        if period >= _APART or self._age % _BETWEEN == 0:
+        if period >= _SAMPLE_INTERVAL or self._age % _BETWEEN == 0:
             self._samples.append(_planes(image))
         self._age += 1
 

@@ -22,7 +22,7 @@ _CORNERS = 120
 falls from 34 to 32."""
 _QUALITY = 0.01
 """Least strength of a corner, of the strongest one's. A choice: the number bounds them first."""
-_APART = 10
+_CORNER_DISTANCE = 10
 """Least distance between two corners, px. A choice: they spread over the image."""
 _STEADY_AFTER = 30
 """Images without a shake after which a camera is taken to be steady: one second of 30 Hz. The first
@@ -119,7 +119,7 @@ class Stabiliser:
         return shared_similarity(moved[good].astype(float), self._corners[good].astype(float))
 
     def _refer_to(self, grey: Image) -> None:
-        corners = cv2.goodFeaturesToTrack(grey, _CORNERS, _QUALITY, _APART)
+        corners = cv2.goodFeaturesToTrack(grey, _CORNERS, _QUALITY, _CORNER_DISTANCE)
         self._corners = np.asarray([] if corners is None else corners, np.float32).reshape(-1, 2)
         self._reference = grey
         self._age = 0

@@ -35,7 +35,7 @@ to eleven clips of six cameras by `laboratory.traffic.joined`; .8 or .9 without 
 _SEVERAL = 1.5
 """Least number of vehicles by its area of a blob that is taken for several, fitted with it: of 1.5,
 2 and 2.5 the first is best without any one of the cameras."""
-_FARTHEST = 1.5
+_EXTRAPOLATED = 1.5
 """Largest ratio of the usual size at a place to the nearest size that was learnt: beyond, trees
 at the horizon would be hundreds of vehicles."""
 
@@ -99,7 +99,7 @@ class UsualSize:
         usual = self._at(blob)
         # Not below nor above what was seen: the plane is learnt on a part of the image.
         learnt = min(max(usual, self._smallest), self._largest)
-        if not learnt / _FARTHEST < usual < learnt * _FARTHEST:
+        if not learnt / _EXTRAPOLATED < usual < learnt * _EXTRAPOLATED:
             return 0.0
         count = _PER_AREA * math.prod(blob.sides) / learnt**2
         return count if count >= _SEVERAL else 0.0

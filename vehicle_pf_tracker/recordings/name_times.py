@@ -29,7 +29,7 @@ _LONGEST_COUNT = 4000
 _SHORTEST_MS = 16
 """A smaller step is a count of frames: at rates above 1000 / 16 = 62 images/s a whole number of ms
 no longer tells one image from the next, and every second to tenth frame is what tools extract."""
-_NEAR = 0.15
+_STEP_TOLERANCE = 0.15
 """Steps of an even camera differ from the median by less than this fraction: 33 and 34 ms by 3 %,
 jitter of a driver by a tenth."""
 _LEAST_SHARE = 2 / 3
@@ -140,7 +140,7 @@ def _unit_of(steps: Sequence[int], fps: float | None) -> str | None:
     if unit is None:
         raise AmbiguousNamesError(f"the usual step of the numbers, {step}, fits no unit of time")
     # A camera's steps vary by the rounding to ms, or by jitter; those of a count do not.
-    near = [each for each in steps if abs(each - step) < _NEAR * step]
+    near = [each for each in steps if abs(each - step) < _STEP_TOLERANCE * step]
     is_varied = len(set(near)) > 1 and len(near) >= _LEAST_SHARE * len(steps)
     if unit == "ms" and not is_varied:
         raise AmbiguousNamesError(

@@ -19,6 +19,9 @@ from vehicle_pf_tracker.trackers.estimate import Mode
 
 _MOST_SPANS = 12
 """Spans in a summary; more are counted, since nobody reads a line of hundreds."""
+_ANOTHER_CLOCK_NS = 86_400 * 1_000_000_000
+"""Distance of stamps, a day, at which they are not of one clock: a camera without a time yet stamps
+its first images with zero."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,11 +203,6 @@ def clock_words(nanoseconds: int) -> str:
     """Return a time as min:s with tenths, as ``1:07.5``."""
     tenths = round(nanoseconds / 1e8)
     return f"{tenths // 600}:{tenths // 10 % 60:02d}.{tenths % 10}"
-
-
-_ANOTHER_CLOCK_NS = 86_400 * 1_000_000_000
-"""Distance of stamps, a day, at which they are not of one clock: a camera without a time yet stamps
-its first images with zero."""
 
 
 def start_of_clock(start_ns: int | None, stamp_ns: int) -> int:

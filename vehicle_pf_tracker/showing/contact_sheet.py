@@ -18,9 +18,9 @@ THUMB_WIDTH = 400
 """Width of a key frame on the sheet, px: words and boxes in it can still be read."""
 _COLUMNS = 3
 """Key frames beside each other: they fill the width of a page or a screen."""
-_MOST = 12
+_FRAMES_SHOWN = 12
 """Key frames on a sheet: four rows."""
-_KEPT = 200
+_FRAMES_KEPT = 200
 """Key frames kept in memory, 50 MB of them, of which the sheet shows an even choice."""
 
 
@@ -38,7 +38,7 @@ class ContactSheet:
         Before and after a change both frames are kept: an occlusion's way in and its way out.
         """
         changes = modes != self._modes
-        if changes and len(self._kept) < _KEPT:
+        if changes and len(self._kept) < _FRAMES_KEPT:
             if self._modes is not None and self._last is not None:
                 self._kept.append(thumbnail(self._last()))
             self._kept.append(thumbnail(draw()))
@@ -58,7 +58,7 @@ class ContactSheet:
         thumbs = [*self._kept, *([] if self._last is None else [thumbnail(self._last())])]
         if not thumbs:
             return
-        chosen = np.unique(np.linspace(0, len(thumbs) - 1, min(len(thumbs), _MOST)).round())
+        chosen = np.unique(np.linspace(0, len(thumbs) - 1, min(len(thumbs), _FRAMES_SHOWN)).round())
         shown = [thumbs[int(index)] for index in chosen]
         height = max(thumb.shape[0] for thumb in shown)
         columns = min(_COLUMNS, len(shown))

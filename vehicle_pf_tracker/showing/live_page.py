@@ -17,7 +17,7 @@ from vehicle_pf_tracker.showing.page_server import LOCAL_ADDRESS, Content, PageH
 
 PAGE_NAME = "the live page"
 """Name of the page in messages."""
-_FAREWELL = 2.0
+_LAST_FETCH = 2.0
 """Time at the end of a run in which a browser that looks on fetches the last picture, s."""
 _LOOKED_ON = 5.0
 """Time since the last question after which nobody looks on any more, s: a page asks for the next
@@ -64,7 +64,7 @@ class LivePage(PageServer):
             self._has_ended = True
             if self._latest is not None and self._is_watched():
                 self._draw(*self._latest)
-                self._shown.wait_for(lambda: self._was_told, _FAREWELL)
+                self._shown.wait_for(lambda: self._was_told, _LAST_FETCH)
         self.shutdown()
         self.server_close()
 

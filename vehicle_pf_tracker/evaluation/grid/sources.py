@@ -23,6 +23,12 @@ from vehicle_pf_tracker.recordings.recording_names import is_recording, is_url
 from vehicle_pf_tracker.recordings.source import open_source
 from vehicle_pf_tracker.recordings.url_copies import local_copy, recordings_at
 
+FRAMES_BYTES = 1 << 30
+"""Largest recording, in bytes of frames, that is decoded once: 1 GiB, a share of a small machine
+that leaves room for a worker per core. Larger ones are decoded for each run."""
+_BLOCK = 1 << 22
+"""Bytes of a file that are digested at once, so that a recording of gigabytes needs no memory."""
+
 
 def find_recordings(locations: Sequence[str]) -> list[str]:
     """Return the recordings that `locations` name, with folders of recordings spread out.
@@ -50,13 +56,6 @@ def _at_path(path: Path) -> list[str]:
     if not inside and not image_files(path):
         inside = [child for child in children if image_files(child)]
     return [str(child) for child in inside or [path]]
-
-
-FRAMES_BYTES = 1 << 30
-"""Largest recording, in bytes of frames, that is decoded once: 1 GiB, a share of a small machine
-that leaves room for a worker per core. Larger ones are decoded for each run."""
-_BLOCK = 1 << 22
-"""Bytes of a file that are digested at once, so that a recording of gigabytes needs no memory."""
 
 
 class SourceFootage:

@@ -34,9 +34,9 @@ from vehicle_pf_tracker.showing.drawing import draw_box, line_width, write_line
 
 FOLDER = "stills"
 """Folder of the stills in that of the evaluation."""
-_MOST = 9
+_STILLS = 9
 """Stills on a page: three rows, a quarter of a megabyte."""
-_APART = 30
+_FRAMES_APART = 30
 """Frames between two stills of a recording: those beside each other show the same failure."""
 _WIDTH = 480
 """Width of a still, px: a third of the page, at twice its pixels."""
@@ -96,7 +96,8 @@ def worst_moments(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[
             if frame <= len(errors) and np.isfinite(errors[frame - 1]):
                 relative[frame - 1] = errors[frame - 1] / truth.box.diagonal
         found += [
-            (relative[at], source, at + 1, float(errors[at])) for at in peaks(relative, _APART)
+            (relative[at], source, at + 1, float(errors[at]))
+            for at in peaks(relative, _FRAMES_APART)
         ]
     found.sort(key=lambda moment: -moment[0])
     return [
@@ -107,12 +108,12 @@ def worst_moments(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[
             _boxes(evaluation, aggregates, source.name, frame),
             evaluation.truths[source.name][frame].box,
         )
-        for _, source, frame, error in found[:_MOST]
+        for _, source, frame, error in found[:_STILLS]
     ]
 
 
 def peaks(values: Array, apart: int) -> Iterator[int]:
-    """Give the indices of the largest finite values, at most `_MOST`, each from its neighbours.
+    """Give the indices of the largest finite values, at most `_STILLS`, each from its neighbours.
 
     Parameters
     ----------
@@ -122,7 +123,7 @@ def peaks(values: Array, apart: int) -> Iterator[int]:
         Number of values on each side of a peak that are passed over.
     """
     values = values.copy()
-    for _ in range(_MOST):
+    for _ in range(_STILLS):
         index = int(np.argmax(values))
         if not np.isfinite(values[index]):
             return

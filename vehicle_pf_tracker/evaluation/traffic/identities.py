@@ -19,7 +19,7 @@ _WINDOW = 30
 """Frames before and after an occlusion in which the identity is looked for: a second at 30 Hz."""
 _GLIMPSE = 5
 """Frames in sight below which two occlusions are one, a choice: a gap between two posts."""
-_LEAST = 10
+_KNOWN_AFTER = 10
 """Frames in sight before an occlusion from which a tracker can know the vehicle, a choice: a
 third of a second at 30 Hz."""
 
@@ -34,7 +34,7 @@ def kept_identities(sequence: TrafficSequence, tracks: Array) -> tuple[int, int]
     Returns
     -------
     kept, judged : int
-        Occlusions of vehicles that were in sight for `_LEAST` frames before.
+        Occlusions of vehicles that were in sight for `_KNOWN_AFTER` frames before.
     """
     # Matched once per frame: an occlusion is then judged by looking up.
     followed = _followed(sequence, tracks)
@@ -46,7 +46,7 @@ def kept_identities(sequence: TrafficSequence, tracks: Array) -> tuple[int, int]
         spells = list(_spells(seen, hidden))
         for before, after in pairwise(spells):
             # A tracker that never had time to know the vehicle has nothing to keep.
-            if len(before) >= _LEAST:
+            if len(before) >= _KNOWN_AFTER:
                 judged += 1
                 first, then = (
                     [followed[at, vehicle] for at in frames if (at, vehicle) in followed]

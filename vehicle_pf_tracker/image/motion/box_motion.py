@@ -28,7 +28,7 @@ occluder leaves must not turn all."""
 FEWEST_POINTS = 12
 """Fewest tracked points that tell a change of size, a choice: of six pairs along an axis two may
 err without moving the median far."""
-APART = 0.25
+POINTS_APART = 0.25
 """Least distance of two points that tell a change of size, as a share of the box's side: 5 px of
 20, of which half a px is a tenth."""
 LARGEST_STRETCH = 0.15
@@ -45,7 +45,7 @@ STRAYED_PX = 3.0
 with a second occluder, or by flow that has failed. A choice: a cell of the surface has 4 px."""
 FEWEST_CARRIED = 8
 """Fewest points that a turn is fitted to, a choice: they give 16 numbers for its four."""
-NEARLY = 1.3
+FIT_REACH = 1.3
 """Factor to the limits within which points take part in the fit of the turn, a choice: some are
 beyond a limit only until the turn is taken off."""
 
@@ -110,7 +110,7 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
         old = sorted_before[-half:] - sorted_before[:half]
         new = sorted_after[-half:] - sorted_after[:half]
         # Of points that are close an error of half a px is a change of size of a tenth.
-        far = old > APART * size[axis]
+        far = old > POINTS_APART * size[axis]
         if np.count_nonzero(far) >= FEWEST_POINTS // 2:
             ratio = np.maximum(new[far] / old[far], LEAST_RATIO)
             change[axis] = median(np.log(ratio))
@@ -153,7 +153,7 @@ def carried_share(
         # A point nearer to the road behind than to its vehicle is the road, seen beside the
         # vehicle.
         limits = np.minimum(STRAYED_PX, np.hypot(stays[:, 0], stays[:, 1]))
-    near = np.hypot(off[:, 0], off[:, 1]) < NEARLY * limits
+    near = np.hypot(off[:, 0], off[:, 1]) < FIT_REACH * limits
     if np.count_nonzero(near) >= FEWEST_CARRIED:
         # The turn is fitted to the residual, so that only what all share is taken off.
         held = place[near]

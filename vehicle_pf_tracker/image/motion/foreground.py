@@ -24,17 +24,17 @@ from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 
 _KEPT_EVERY = 4
 """Frames between two that are kept for the background: those in a row show the same vehicles. With
-`_KEPT` two seconds at 30 Hz."""
+`_FRAMES_KEPT` two seconds at 30 Hz."""
 _LARGEST_SPACING = 16
 """The same for the outline of the vehicle itself once the camera has stood for long: of two seconds
 a slow one takes most for its length, and becomes a part of the background; of eight it does not.
 Chosen on scene `turn`, where a lorry of 69 px at 2 px per frame takes 35 frames of 60. What else
 moves stays with two seconds: with eight 15 of 17 painted signs are recovered from, instead of 16
 (laboratory/notes/fusion_tried.md)."""
-_KEPT = 15
+_FRAMES_KEPT = 15
 """Frames that a background is the median of: a vehicle that moves by its length within half of
 their time is no part of it."""
-_FEWEST = 6
+_FEWEST_FRAMES = 6
 """Frames below which there is no background yet, a choice: the median of six is wrong only where
 three of them show vehicles."""
 _LOOKED_AT = 4
@@ -97,8 +97,8 @@ class Foreground:
     """Keeps frames of a standing camera."""
 
     def __init__(self) -> None:
-        self._background: deque[_Kept] = deque(maxlen=_KEPT)
-        self._lasting: deque[_Kept] = deque(maxlen=_KEPT)
+        self._background: deque[_Kept] = deque(maxlen=_FRAMES_KEPT)
+        self._lasting: deque[_Kept] = deque(maxlen=_FRAMES_KEPT)
         self._spacing = _KEPT_EVERY
         self._latest: deque[_Kept] = deque(maxlen=_LATEST)
         self._frames = 0
@@ -131,14 +131,14 @@ class Foreground:
 
     def _spread_out(self) -> None:
         """Once all places are taken, go on with every second frame, so that they last longer."""
-        if len(self._lasting) == _KEPT and self._spacing < _LARGEST_SPACING:
-            self._lasting = deque(list(self._lasting)[::2], maxlen=_KEPT)
+        if len(self._lasting) == _FRAMES_KEPT and self._spacing < _LARGEST_SPACING:
+            self._lasting = deque(list(self._lasting)[::2], maxlen=_FRAMES_KEPT)
             self._spacing *= 2
 
     @property
     def is_known(self) -> bool:
         """True once the background has been seen for long enough, by a camera that stands."""
-        return len(self._background) >= _FEWEST
+        return len(self._background) >= _FEWEST_FRAMES
 
     @property
     def extent(self) -> Array:

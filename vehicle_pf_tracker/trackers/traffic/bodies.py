@@ -24,7 +24,7 @@ _INSIDE = 0.7
 """Mean share of the smaller box in the larger one above which it may be part of it, as in `parts`:
 a cab at the end of its lorry sticks out by the noise of three edges, a seventh, and a car in the
 lane before a lorry by a third."""
-_APART = 0.5
+_SHARED = 0.5
 """Share of the smaller box in the larger one, in one image, below which all that spoke for one body
 is void: most of it is beside."""
 MISSED_FOR = 4
@@ -104,12 +104,12 @@ def updated_companions(
         pair: each
         for pair, each in companions.items()
         if left.issuperset(pair)
-        and not (now.keys() >= set(pair) and shares[now[pair[0]], now[pair[1]]] < _APART)
+        and not (now.keys() >= set(pair) and shares[now[pair[0]], now[pair[1]]] < _SHARED)
     }
     # 2. One image more of those that are in each other; serials are those of birth.
     # While the border cuts the whole its part moves in what is seen of it.
     is_whole = np.asarray(~measurement.cut_edges(boxes).any(axis=1))
-    inside = np.triu((shares > _APART) & is_whole[:, np.newaxis] & is_whole, 1)
+    inside = np.triu((shares > _SHARED) & is_whole[:, np.newaxis] & is_whole, 1)
     serials = list(now)
     for pair in np.argwhere(inside).tolist():
         small, large = sorted(pair, key=sizes.__getitem__)

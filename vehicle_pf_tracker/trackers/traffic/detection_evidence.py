@@ -47,7 +47,7 @@ _LEAST_CLAIM = 0.01
 """Least probability that a detector's own score is taken for, either way: one in a hundred. It
 keeps the logarithm of the odds finite, and a detector from being surer than what became of its
 scores."""
-_MOST = 7.0
+_SUREST = 7.0
 """Log odds, one in a thousand, beyond which scores and places say nothing surer."""
 
 
@@ -150,7 +150,7 @@ class DetectionEvidence:
         # Relative to the usual odds, which scores have in them already: else they counted twice.
         by_place = np.log(here[1] / here[0]) - np.log(totals[1] / totals[0])
         both = by_score + np.minimum(by_place, 0.0)
-        return np.asarray(np.minimum(np.maximum(both, -_MOST), _MOST))
+        return np.asarray(np.minimum(np.maximum(both, -_SUREST), _SUREST))
 
     def gains(self, by_score: Array) -> Array:
         """Logarithm of how much more often vehicles have such scores (N,) than false alarms."""

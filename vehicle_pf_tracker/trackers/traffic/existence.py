@@ -25,7 +25,7 @@ from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 CERTAIN_LOG_ODDS = 7.0
 """Log odds, one in a thousand, beyond which nothing is surer: however long a vehicle was seen, some
 missed detections in plain sight speak against it."""
-_MOST = 3.0
+_MOST_PER_DETECTION = 3.0
 """Log odds, one in twenty, that one detection adds at most by its score, and by where it is: no
 single one proves a vehicle."""
 _SAID_OF_NOTHING = 5.0
@@ -36,9 +36,9 @@ _SCORE_DOUBT = 0.5
 """Log odds that one score of dense images takes off at most, so that a detector which knows little
 about a vehicle does not hide it for ever; and that are taken off each, in confirming by scores
 alone."""
-_PROVEN = 4.0
+_PROOF_BY_SCORES = 4.0
 """Sum of the log odds of scores that stands for a drive: one in 55, two detections at least."""
-_WAIT = 0.5
+_PIECE_FOR = 0.5
 """Time in s before a shape is a vehicle that has a rest beside it, or no straight drive: the pieces
 of a blob are soon joined. 34 public clips of 24 to 30 Hz, before a lone one was excepted: IDF1
 42.4, 44.0 and 43.3 at 8, 15 and 22 images."""
@@ -58,7 +58,7 @@ def position_evidence(
     where the detector says the same of nothing, as of lights far behind: some of it always fits.
     """
     stands = tracks.beliefs.has_driven & ~are_moving(tracks)
-    bounded = np.minimum(np.maximum(fits, -_MOST), _MOST)
+    bounded = np.minimum(np.maximum(fits, -_MOST_PER_DETECTION), _MOST_PER_DETECTION)
     usual = tracks.confirmed & _score_as_clutter(candidates, columns, _SAID_OF_NOTHING)
     bounded = np.where(usual, np.minimum(bounded, 0.0), bounded)
     return np.where(tracks.confirmed & stands, 0.0, bounded)
@@ -110,9 +110,9 @@ def add_evidence(
     now_drives = is_ripe & ~(beliefs.has_driven | tracks.names.given)
     if now_drives.any():
         now_drives &= have_driven(tracks, step, are_shapes=candidates.are_shapes)
-    proven = beliefs.strength > _PROVEN
+    proven = beliefs.strength > _PROOF_BY_SCORES
     if candidates.are_shapes:
-        is_old = beliefs.paths.age >= _WAIT / step.period
+        is_old = beliefs.paths.age >= _PIECE_FOR / step.period
         # A piece drives as straight as its vehicle, whose rest is beside it until both are joined.
         now_drives &= is_old | ~have_rest(edges, candidates.edges)
         # Scores say how full they are, and the hole of what has left, or a digit of a clock, is as
@@ -141,12 +141,12 @@ def _with_log_odds(
     gains = np.where(tracks.confirmed, log_odds, candidates.gains[columns])
     # Scores of one spot repeat from image to image, and a second of them says as much at any rate:
     # of fewer each takes off more, but no more than one may add.
-    most_doubt = min(_SCORE_DOUBT * step.sparsity, _MOST)
-    gains = np.minimum(np.maximum(gains, -most_doubt), _MOST)
+    most_doubt = min(_SCORE_DOUBT * step.sparsity, _MOST_PER_DETECTION)
+    gains = np.minimum(np.maximum(gains, -most_doubt), _MOST_PER_DETECTION)
     paths = beliefs.paths.added(candidates.edges[columns])
     lengths = paths.lengths(tracks.edges)
     proof = np.where(lengths < _STANDS, candidates.at_rest[columns], log_odds)
-    proof = np.minimum(np.maximum(proof - _SCORE_DOUBT, -_SCORE_DOUBT), _MOST)
+    proof = np.minimum(np.maximum(proof - _SCORE_DOUBT, -_SCORE_DOUBT), _MOST_PER_DETECTION)
     strength = beliefs.strength + proof
     stands = paths.stands
     beliefs = replace(
@@ -185,7 +185,7 @@ def _learn_outcomes(
     moves = tracks.names.given | are_moving(tracks)
     # A vehicle far away may take clutter for itself, and would teach that this is a vehicle: by
     # what is likelier clutter than any fit can outweigh.
-    moves &= ~_score_as_clutter(candidates, columns, _MOST)
+    moves &= ~_score_as_clutter(candidates, columns, _MOST_PER_DETECTION)
     if settled.all():  # the usual case, in one call
         evidence.learn(candidates.samples(columns[moves]), True)
         return tracks

@@ -38,7 +38,7 @@ longer."""
 _ASSUMED_SPREAD = 0.8
 """Standard deviation of the assumed growth per image height: from the side there is none, and from
 a bridge a vehicle in the middle doubles its size on a third of the height."""
-_FARTHEST = 3.0
+_OUTLYING = 3.0
 """Standard deviations of a growth beyond which it is another vehicle's, and counts no more: one in
 400 is as far."""
 _GROWTHS = np.geomspace(0.3, 30.0, 100)
@@ -194,5 +194,5 @@ def explaining_row(assumed: float, regressions: Array) -> float:
     # Error of a regression's slope, and the vehicle's own turning, which more boxes do not lessen.
     variance = _WIDTH_NOISE**2 / scatter + _TURN**2
     # Bounded, so that one vehicle that turned, or was two, does not move the horizon of the others.
-    costs = np.minimum((growth - expected) ** 2 / variance, _FARTHEST**2).sum(axis=0)
+    costs = np.minimum((growth - expected) ** 2 / variance, _OUTLYING**2).sum(axis=0)
     return float(rows[int(np.argmin(costs + ((growths - usual) / _ASSUMED_SPREAD) ** 2))])

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -33,60 +34,45 @@ a half, a threshold of .5 leaves predicted boxes out."""
 
 def estimates_of(tracks: Tracks) -> tuple[TrackEstimate, ...]:
     """Estimates of all tracks, by identity, tentative ones last."""
-    # 1. Lists, not arrays: estimates are of plain numbers.
+    # Lists, not arrays: estimates are of plain numbers.
     names = tracks.names
-    drives = tracks.drives
+    gaussians = tracks.drives.gaussians
     modes = _modes(tracks)
-    rows = zip(
-        names.identity.tolist(),
-        names.serial.tolist(),
-        names.joined.tolist(),
-        names.votes.tolist(),
-        _boxes(drives).tolist(),
-        drives.gaussians.velocity.tolist(),
-        drives.gaussians.foot_covariance.tolist(),
-        tracks.beliefs.log_odds.tolist(),
-        tracks.beliefs.paths.age.tolist(),
-        tracks.latest.score.tolist(),
-        modes,
-        _hiders(tracks, modes),
-        strict=True,
-    )
-    # 2. One estimate a track.
-    estimates = [
-        TrackEstimate(
-            identity=identity,
-            box=Box(*box),
-            velocity=(velocity[0], velocity[1]),
-            mode=mode,
-            confidence=_PLACED[mode] / (1 + math.exp(-log_odds)),
-            label=max(votes, key=votes.__getitem__) if votes else "",
-            # One object for all: estimates of two runs are equal only if their NaN is the same.
-            score=math.nan if math.isnan(score) else score,
-            age=age,
-            hidden_by=hider,
-            serial=serial,
-            joined=joined,
-            foot_covariance=(foot[0], foot[1], foot[2]),
-        )
-        for (
-            identity,
-            serial,
-            joined,
-            votes,
-            box,
-            velocity,
-            foot,
-            log_odds,
-            age,
-            score,
-            mode,
-            hider,
-        ) in rows
-    ]
-    # 3. Rows are sorted by distance; readers get them by number.
+    identities = names.identity.tolist()
+    serials = names.serial.tolist()
+    joined = names.joined.tolist()
+    boxes = _boxes(tracks.drives).tolist()
+    velocities = gaussians.velocity.tolist()
+    feet = gaussians.foot_covariance.tolist()
+    log_odds = tracks.beliefs.log_odds.tolist()
+    ages = tracks.beliefs.paths.age.tolist()
+    scores = tracks.latest.score.tolist()
+    hiders = _hiders(tracks, modes)
+    # Rows are sorted by distance; readers get them by number.
     order = np.lexsort((names.serial, names.identity, ~tracks.confirmed))
-    return tuple(estimates[row] for row in order.tolist())
+    return tuple(
+        TrackEstimate(
+            identity=identities[row],
+            box=Box(*boxes[row]),
+            velocity=tuple(velocities[row]),
+            mode=modes[row],
+            confidence=_PLACED[modes[row]] / (1 + math.exp(-log_odds[row])),
+            label=_label(names.votes[row]),
+            # One object for all: estimates of two runs are equal only if their NaN is the same.
+            score=math.nan if math.isnan(scores[row]) else scores[row],
+            age=ages[row],
+            hidden_by=hiders[row],
+            serial=serials[row],
+            joined=joined[row],
+            foot_covariance=tuple(feet[row]),
+        )
+        for row in order.tolist()
+    )
+
+
+def _label(votes: Mapping[str, int]) -> str:
+    """Class with the most votes, of equally many the first seen; "" without votes."""
+    return max(votes, key=votes.__getitem__) if votes else ""
 
 
 def _boxes(drives: Drives) -> Array:

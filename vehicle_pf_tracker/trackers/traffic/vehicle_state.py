@@ -42,9 +42,9 @@ first are completed by it."""
 _MOST_GROWTH = 2.0
 """Largest growth of a box from image to image, and largest fall. Beyond it the distance is down to
 the camera's own height, where the plane no longer describes what is seen."""
-_LEAST = 1.0
+_LEAST_PX = 1.0
 """Least distance from the horizon, and least side, px: velocities are divided by both."""
-_LARGEST = 1e5
+_LARGEST_PX = 1e5
 """Largest distance, side, place and standard deviation, px, which bounds velocities in their units,
 too. No image has a third of it (`image.formats.encodings.LARGEST_SIDE_PX`), so that a vehicle there
 has left."""
@@ -56,7 +56,7 @@ that time; without it IDF1 of YOLOX behind the bridge falls by 7."""
 
 _UNCHANGED = np.eye(6)
 """Jacobian of a map that changes no component of the state."""
-_LOWEST_MEAN = np.array([-_LARGEST, _LEAST, _LEAST, _LEAST, -_LARGEST, -_LARGEST])
+_LOWEST_MEAN = np.array([-_LARGEST_PX, _LEAST_PX, _LEAST_PX, _LEAST_PX, -_LARGEST_PX, -_LARGEST_PX])
 """Lower bounds of the mean, by component."""
 # Keeps a determinant that rounding made zero a divisor.
 _TINY = float(np.finfo(float).tiny)
@@ -138,7 +138,7 @@ class Gaussians(Rows):
         """
         left, top, right, bottom = edges.T
         # On the road a width is proportional to v, so that w / v is the unit of its speed.
-        v = np.maximum(bottom - horizon, _LEAST)
+        v = np.maximum(bottom - horizon, _LEAST_PX)
         zero = np.zeros(len(edges))
         mean = columns((left + right) / 2, v, right - left, bottom - top, zero, zero)
         by_left, by_top, by_right, by_bottom = (deviations**2).T
@@ -253,7 +253,7 @@ class Gaussians(Rows):
             return self
         x = self.mean[:, X]
         v = self.mean[:, V]
-        new = np.maximum(v + self.horizon - horizon, _LEAST)
+        new = np.maximum(v + self.horizon - horizon, _LEAST_PX)
         # The edge's speed in px is v² along, so that along changes by the square; that across, v
         # across - x v along, fixes the other one.
         ratio = v / new
@@ -263,14 +263,14 @@ class Gaussians(Rows):
         step[:, ACROSS, ACROSS] = ratio
         step[:, ACROSS, ALONG] = x * (ratio - 1) * ratio
         mean = (step @ self.mean[..., np.newaxis])[..., 0]
-        # Less than `_LEAST` below the new horizon it could not be: then its own row stays above it.
+        # It cannot be less than `_LEAST_PX` below the new horizon: its own row then stays above it.
         mean[:, V] = new
         return _bounded(mean, _transformed(self.covariance, step), v + self.horizon - new)
 
     def resized(self, edges: Array) -> Gaussians:
         """Take boxes (N, 4) for the vehicles' without doubt; they drive as before."""
         left, top, right, bottom = edges.T
-        v = np.maximum(bottom - self.horizon, _LEAST)
+        v = np.maximum(bottom - self.horizon, _LEAST_PX)
         mean = self.mean.copy()
         mean[:, :ACROSS] = columns((left + right) / 2, v, right - left, bottom - top)
         return Gaussians.of(mean, self.covariance, self.horizon)
@@ -290,7 +290,7 @@ class Gaussians(Rows):
             variance = edge_of(spread, edge) + noises[:, edge]
             mean = mean + spread * (residual / variance)[:, np.newaxis]
             sides = mean[:, V:ACROSS]
-            np.maximum(sides, _LEAST, out=sides)  # they stay positive
+            np.maximum(sides, _LEAST_PX, out=sides)  # they stay positive
             # Products of the spread with itself are symmetric to the last bit, as no gain's are.
             known = spread[:, :, np.newaxis] * spread[:, np.newaxis, :]
             covariance = covariance - known / variance[:, np.newaxis, np.newaxis]
@@ -309,11 +309,11 @@ def _transformed(covariance: Array, step: Array) -> Array:
 
 def _bounded(mean: Array, covariance: Array, horizon: Array) -> Gaussians:
     """Keep a prediction within bounds; a vehicle that is in sight is far inside them."""
-    mean = np.minimum(np.maximum(mean, _LOWEST_MEAN), _LARGEST)
+    mean = np.minimum(np.maximum(mean, _LOWEST_MEAN), _LARGEST_PX)
     variances = covariance.diagonal(axis1=-2, axis2=-1)
-    if variances.max(initial=0.0) > _LARGEST**2:
+    if variances.max(initial=0.0) > _LARGEST_PX**2:
         # Scaled from both sides a covariance stays one, and correlations stay what they are.
         with np.errstate(invalid="ignore"):  # of an unsound one, which is dropped
-            shares = np.minimum(_LARGEST / np.sqrt(variances), 1.0)
+            shares = np.minimum(_LARGEST_PX / np.sqrt(variances), 1.0)
         covariance = covariance * (shares[..., np.newaxis] * shares[..., np.newaxis, :])
     return Gaussians.of(mean, covariance, horizon)
