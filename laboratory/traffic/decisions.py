@@ -78,7 +78,7 @@ FITTED_DECISIONS: tuple[Decision, ...] = (
     Decision("detection.blobs:_LEAST_PART", (0.1, 0.2)),
     Decision("detection.blobs:_PIECE", (0.7, 0.9), 1e9),
     Decision("detection.blobs:_SPECK", (-3.0, -6.0), -1e9),
-    Decision("trackers.traffic.births:_THIN", (0.3, 0.7), 0.0),
+    Decision("trackers.traffic.first_state:_THIN", (0.3, 0.7), 0.0),
     Decision("trackers.traffic.correction:_WHOLE", (0.75, 0.95), 0.0),
     Decision("trackers.traffic.correction:_FOLLOWED", (0.15, 0.4)),
     Decision("trackers.traffic.existence:_SAID_OF_NOTHING", (3.0, 8.0), 1e9, True),

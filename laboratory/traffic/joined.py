@@ -90,11 +90,11 @@ def images_of(sequence: TrafficSequence) -> list[Image]:
     visible = sequence.truth[~sequence.hidden]
     images = []
     for number, frame in enumerate(sequence.frames(), start=1):
-        before = session.found.images
+        before = session.detected.images
         estimates = session.feed(frame, round(number * 1e9 / sequence.frame_rate))
-        if session.found.images > before:
+        if session.detected.images > before:
             true = without_number(visible[visible[:, 0] == number, 2:6], estimates)
-            images.append(Image(session.found.latest_unresolved, true))
+            images.append(Image(session.detected.latest_unresolved, true))
     return images
 
 

@@ -14,7 +14,7 @@ from vehicle_pf_tracker.cli.network_advice import (
     joined_vehicles,
     network_advice,
 )
-from vehicle_pf_tracker.trackers.traffic.session import DetectionTotals
+from vehicle_pf_tracker.trackers.traffic.detection_totals import DetectionTotals
 
 COMMAND = ["vehicle-pf-tracker", "traffic", "my clip.mp4", "--lines", "lines.yaml", "-o", "out"]
 

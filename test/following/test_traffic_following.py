@@ -79,7 +79,7 @@ def test_an_irregularity_that_lasts_is_noted_once(follow):
 @pytest.mark.parametrize(("count", "words"), [(1, "1 vehicle"), (2, "2 vehicles")])
 def test_a_picture_tells_the_number_of_vehicles(follow, monkeypatch, count, words):
     run, _ = follow([k * PERIOD_NS for k in range(2)])
-    run.session.found.images = 1
+    run.session.detected.images = 1
     run.estimates = [vehicle(number, 160, 200) for number in range(count)]
     monkeypatch.setattr(counted_vehicles, "frame_with_vehicles", lambda _, words, *rest: words)
     assert run.drawn(FRAME, "0:00.0  ") == f"0:00.0  {words}"

@@ -14,7 +14,7 @@ from vehicle_pf_tracker.detection.parameters import MOTION_DETECTOR
 from vehicle_pf_tracker.evaluation.evaluation_folder import read_document
 from vehicle_pf_tracker.following.networks.known_networks import KNOWN_NETWORKS
 from vehicle_pf_tracker.results.run_folder import RUN_FILE
-from vehicle_pf_tracker.trackers.traffic.session import DetectionTotals
+from vehicle_pf_tracker.trackers.traffic.detection_totals import DetectionTotals
 
 _AMBIGUOUS = 0.35
 """Share of images with ambiguous blobs above which a network counts better: on clips with truth, at

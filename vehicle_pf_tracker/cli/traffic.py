@@ -128,7 +128,7 @@ def run_one(request: Request) -> int:
         write_json(folder / RUN_FILE, document)
     sentences = tracking.sentences(document["detector"])
     if document["detector"] == MOTION_DETECTOR:
-        found = tracking.session.found
+        found = tracking.session.detected
         sentences += [*joined_vehicles(found), *network_advice(request.command, folder, found)]
     for sentence in sentences:
         print(sentence)
@@ -199,10 +199,10 @@ def _document(
         "seed": tracking.session.tracker.seed,
         "parameters": {**to_mapping(configuration.tracker), **to_mapping(configuration.session)},
         "detector": str(request.detections or kind),
-        "images_with_detections": tracking.session.found.images,
-        "images_with_ambiguous_blobs": tracking.session.found.ambiguous,
-        "images_with_known_sizes": tracking.session.found.sized,
-        "mean_vehicles_without_number": tracking.session.found.mean_unresolved,
+        "images_with_detections": tracking.session.detected.images,
+        "images_with_ambiguous_blobs": tracking.session.detected.ambiguous,
+        "images_with_known_sizes": tracking.session.detected.sized,
+        "mean_vehicles_without_number": tracking.session.detected.mean_unresolved,
         "summary": tracking.summary.to_json(),
     }
     document = describe_run(request.command, request.source, topic, notices, **facts)

@@ -105,7 +105,7 @@ class CountedVehicles:
     @property
     def is_learning(self) -> bool:
         """True while a detector of motion does not know yet what stands, and reports nothing."""
-        return self.session.detector is not None and not self.session.found.images
+        return self.session.detector is not None and not self.session.detected.images
 
     def drawn(self, frame: Frame, head: str = "") -> Frame:
         """Return a copy of the last image with vehicles, counts, `head` and their number."""

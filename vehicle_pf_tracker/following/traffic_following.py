@@ -153,7 +153,7 @@ class TrafficRun(CountedVehicles):
         if self.summary.vehicles:
             return self.summary.sentences()
         frames = self.summary.frames
-        detected = self.session.found
+        detected = self.session.detected
         inside = detected.boxes - detected.outside
         # From the first cause that would explain it to the last: each further one supposes that
         # those before it hold.

@@ -9,10 +9,10 @@ from measured_vehicle import BOX, SIZE, Vehicle
 from traffic_samples import changed, step_of, track_of
 
 from vehicle_pf_tracker.core.overlaps import overlaps
-from vehicle_pf_tracker.trackers.traffic.births import first_gaussians
 from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
 from vehicle_pf_tracker.trackers.traffic.correction import Comparison, correct, which_edges
 from vehicle_pf_tracker.trackers.traffic.edge_observation import Edge
+from vehicle_pf_tracker.trackers.traffic.first_state import first_gaussians
 from vehicle_pf_tracker.trackers.traffic.prediction import driven
 from vehicle_pf_tracker.trackers.traffic.report import estimates_of
 from vehicle_pf_tracker.trackers.traffic.vehicle_state import Motion

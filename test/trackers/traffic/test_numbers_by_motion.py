@@ -47,10 +47,10 @@ def followed(images):
     boxes, blobs = [], []
     for index, image in enumerate(images):
         detector = session.detector
-        before = session.found.boxes
+        before = session.detected.boxes
         estimates = session.feed(image, round(index * 1e9 / RATE))
         boxes.append({one.identity: one.box for one in estimates if one.identity})
-        blobs.append(session.found.boxes - before)
+        blobs.append(session.detected.boxes - before)
         assert session.detector is detector
     return session, boxes, blobs
 
@@ -106,7 +106,7 @@ def test_a_jump_of_the_exposure_gives_no_numbers_and_loses_none(gain, offset):
         scene(lefts, lambda index, image: gain * image + offset if index >= 70 else image)
     )
     assert set().union(*boxes) == {1}
-    assert session.found.disturbed == 0
+    assert session.detected.disturbed == 0
     assert overlap(boxes[95][1], lefts[95]) > 0.6
 
 

@@ -180,7 +180,7 @@ def test_images_with_ambiguous_blobs_are_counted():
         detections = replace(Detections.none(), are_shapes=True, ambiguous=ambiguous)
         session.feed(FRAME, index * PERIOD_NS, detections)
         assert session.ambiguous == ambiguous
-    assert (session.found.images, session.found.ambiguous) == (3, 2)
+    assert (session.detected.images, session.detected.ambiguous) == (3, 2)
     session.feed(FRAME, 3 * PERIOD_NS, Detections.none())
     assert session.ambiguous is None
 
@@ -188,12 +188,12 @@ def test_images_with_ambiguous_blobs_are_counted():
 def test_vehicles_in_joined_blobs_are_summed_where_sizes_are_known_and_within_regions():
     right = Region(((20, 0), (40, 0), (40, 30), (20, 30)), True)
     session = TrafficSession(Steps(), frame_rate=25.0, regions=(right,))
-    assert session.found.mean_unresolved is None
+    assert session.detected.mean_unresolved is None
     # Centres at 8 and 28 px across: the first is outside the region.
     both = np.array([[0.0, 0, 16, 16, 3.5], [20, 0, 16, 16, 1.5]])
     for index, joined in enumerate((None, both, both[:0])):
         detections = replace(Detections.none(), are_shapes=True, joined=joined)
         session.feed(FRAME, index * PERIOD_NS, detections)
         expected = (None, 1.5, 0.0)[index]
-        assert session.found.latest_unresolved == expected
-    assert (session.found.sized, session.found.mean_unresolved) == (2, 0.75)
+        assert session.detected.latest_unresolved == expected
+    assert (session.detected.sized, session.detected.mean_unresolved) == (2, 0.75)

@@ -78,7 +78,7 @@ class LineCounts:
 
     def add(self, number: int, stamp_ns: int, session: TrafficSession) -> None:
         """Take what a session has estimated of an image; there is no truth before it looked."""
-        if not session.found.images:
+        if not session.detected.images:
             return
         self._first = self._first or number
         # In regions without truth a crossing would count as false.

@@ -66,7 +66,7 @@ class TrafficFeed:
     def facts(self) -> Mapping[str, object]:
         """Values for the node's report: seed, detector, vehicles."""
         tracker = self.vehicles.session.tracker
-        found = self.vehicles.session.found
+        found = self.vehicles.session.detected
         detector = self.vehicles.session.detector
         kind = self._configuration.tracker.detector.kind
         waiting = self._waiting

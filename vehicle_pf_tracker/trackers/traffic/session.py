@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
 
 from vehicle_pf_tracker.core.box import Box
@@ -23,6 +22,7 @@ from vehicle_pf_tracker.image.formats.compressed_image import CodedImage
 from vehicle_pf_tracker.parameters.counting_plan import Region
 from vehicle_pf_tracker.trackers.attempts import Attempts
 from vehicle_pf_tracker.trackers.image_stream import ImageStream, Turn
+from vehicle_pf_tracker.trackers.traffic.detection_totals import DetectionTotals
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
 
@@ -30,64 +30,6 @@ _DISTURBED = (
     "most of the image changed at once: the camera moves, or the light was switched; nothing is "
     "detected until the background is learnt anew"
 )
-
-
-@dataclass(slots=True)
-class DetectionTotals:
-    """Totals of what was detected, for a user who finds no vehicle.
-
-    Attributes
-    ----------
-    images : int
-        Images with detections, or that a detector has looked at.
-    disturbed : int
-        Images that differed too much from those before.
-    boxes : int
-        Detections.
-    outside : int
-        Those of them that are outside the regions.
-    ambiguous : int
-        Images with blobs of which the detector is not sure how many vehicles they hold.
-    latest : int or None
-        Such blobs in the latest image; None where its detections are no blobs.
-    sized : int
-        Images in which it was known how large vehicles are.
-    unresolved : float
-        Sum over these of the vehicles in joined blobs that no followed one stands for, estimated by
-        the blobs' size.
-    latest_unresolved : float or None
-        Such vehicles in the latest image; None where nobody knows.
-    """
-
-    images: int = 0
-    disturbed: int = 0
-    boxes: int = 0
-    outside: int = 0
-    ambiguous: int = 0
-    latest: int | None = None
-    sized: int = 0
-    unresolved: float = 0.0
-    latest_unresolved: float | None = None
-
-    @property
-    def mean_unresolved(self) -> float | None:
-        """Mean number of vehicles in joined blobs without a number; None where nobody knows."""
-        return self.unresolved / self.sized if self.sized else None
-
-    def count(self, detections: Detections) -> None:
-        """Count all that was detected in an image."""
-        self.latest = detections.ambiguous if detections.are_shapes else None
-        self.images += 1
-        self.boxes += len(detections)
-        self.ambiguous += detections.ambiguous > 0
-
-    def count_inside(self, detections: Detections, inside: Detections) -> None:
-        """Count what regions left of detections."""
-        self.outside += len(detections) - len(inside)
-        if inside.joined is not None:
-            self.sized += 1
-            self.latest_unresolved = float(inside.joined[:, 4].sum())
-            self.unresolved += self.latest_unresolved
 
 
 class TrafficSession:
@@ -117,7 +59,7 @@ class TrafficSession:
         Estimates of the last image.
     detector : Detector or None
         The detector in use.
-    found : DetectionTotals
+    detected : DetectionTotals
         Totals of what was detected.
     tracker : MultiVehicleTracker
         As given.
@@ -140,7 +82,7 @@ class TrafficSession:
         self._stream = ImageStream(frame_rate, reset_on_time_jump)
         self._attempts = Attempts()
         self.estimates: tuple[TrackEstimate, ...] = ()
-        self.found = DetectionTotals()
+        self.detected = DetectionTotals()
         self.restarts = 0
         self.successors: Mapping[int, int] = {}
         self.detector = make_detector() if make_detector else None
@@ -167,7 +109,7 @@ class TrafficSession:
     @property
     def ambiguous(self) -> int | None:
         """Blobs of the last image that may hold several vehicles; None where it has no blobs."""
-        return self.found.latest
+        return self.detected.latest
 
     def add(self, box: Box, label: str = "") -> int:
         """Follow the vehicle in `box` of the last image; see `MultiVehicleTracker.add`."""
@@ -238,13 +180,13 @@ class TrafficSession:
             detections = self._detected(self.detector, turn)
         # 2. Count before regions apply, so that a user sees what they took. Reset first: without
         # detections the number of the image before would stay.
-        self.found.latest = None
-        self.found.latest_unresolved = None
+        self.detected.latest = None
+        self.detected.latest_unresolved = None
         if detections is not None:
-            self.found.count(detections)
+            self.detected.count(detections)
             # Regions bound detections, not vehicles: one that is followed may leave them.
             inside = detections.within(self._regions) if self._regions else detections
-            self.found.count_inside(detections, inside)
+            self.detected.count_inside(detections, inside)
             detections = inside
         # 3. None, unlike no detections, says that nobody has looked: nothing is missed.
         self.estimates = self.tracker.step(turn.frame, detections, turn.elapsed)
@@ -258,7 +200,7 @@ class TrafficSession:
         """Return the detections; None where it did not look, so that no vehicle is missed."""
         found = detector.detect(turn.frame, self.estimates, turn.period)
         if detector.disturbed:
-            self.found.disturbed += 1
+            self.detected.disturbed += 1
             self.events.append(_DISTURBED)
         return None if detector.is_blind else found
 
