@@ -38,6 +38,8 @@ from vehicle_pf_tracker.results.output_files import make_folder, write_csv, writ
 from vehicle_pf_tracker.trackers.registry import VARIANTS, find_variant
 
 if TYPE_CHECKING:
+    from optuna.trial import FrozenTrial
+
     from vehicle_pf_tracker.evaluation.tuning import SearchTask
 
 TRIALS = 60
@@ -141,16 +143,7 @@ def _tune(
     with counting("tuned", "runs") as on_progress:
         trials = tuning.search(what, request.trials, study, runner_of(request), on_progress)
     # 2. Write the trials, and the parameters of the best one.
-    header = ["trial", what.objective, *what.space]
-    rows = (
-        [trial.number, trial.value, *(trial.params[name] for name in what.space)]
-        for trial in trials
-    )
-    write_csv(folder / "trials.csv", header, rows)
-    if all(trial.value is None for trial in trials):
-        raise InputError(
-            "no trial could be scored on all recordings; run `evaluate` on them to see why"
-        )
+    _write_trials(folder / "trials.csv", what, trials)
     best = study.best_trial
     names = ", ".join(source.name for source in what.sources)
     title = (
@@ -171,6 +164,20 @@ def _tune(
         f"evaluate REC --variants {variant} --params {folder / BEST} -o DIR"
     )
     return 0
+
+
+def _write_trials(path: Path, what: SearchTask, trials: Sequence[FrozenTrial]) -> None:
+    """Write a row for each trial, and raise InputError if none has a score."""
+    header = ["trial", what.objective, *what.space]
+    rows = (
+        [trial.number, trial.value, *(trial.params[name] for name in what.space)]
+        for trial in trials
+    )
+    write_csv(path, header, rows)
+    if all(trial.value is None for trial in trials):
+        raise InputError(
+            "no trial could be scored on all recordings; run `evaluate` on them to see why"
+        )
 
 
 def _judge(

@@ -210,18 +210,10 @@ class Counter:
         return tuple(counted)
 
     def _follow(self, estimate: TrackEstimate, stamp_ns: int) -> list[Crossing]:
-        mode: TrackMode = estimate.mode
-        if mode is TrackMode.LOST:
+        if estimate.mode is TrackMode.LOST:
             return []
-        # 1. Its memory, by its track: a tentative one has no number yet. After a gap the path is
-        # unknown, so that a passage in it is marked as not seen.
-        vehicle = self.vehicles.get(estimate.serial)
-        if vehicle is None:
-            vehicle = self.vehicles[estimate.serial] = self._made(FootPoint.of(estimate, stamp_ns))
-        elif vehicle.last_ns != self._before_ns:  # back after it was lost
-            vehicle.path.clear()
-            mode = TrackMode.LOST
-            self._signs.withdraw(estimate.serial)
+        # 1. Its memory, and after a gap a mark on what it passes: nobody saw the path.
+        vehicle, is_back = self._remembered(estimate, stamp_ns)
         # 2. The track that it turned out to be, before its own point: passages in the gap are
         # earlier.
         joined = self.vehicles.pop(estimate.joined, None)
@@ -229,6 +221,7 @@ class Counter:
         passages = [] if joined is None else self._join(vehicle, joined)
         # 3. Its next point. A vehicle that was once confirmed stays one, whatever its mode
         # becomes.
+        mode = TrackMode.LOST if is_back else estimate.mode
         foot = replace(FootPoint.of(estimate, stamp_ns), mode=mode)
         passages += vehicle.follow(foot)
         vehicle.last_ns = stamp_ns
@@ -237,14 +230,29 @@ class Counter:
         vehicle.is_confirmed = vehicle.is_confirmed or estimate.mode in COUNTED_MODES
         vehicle.waiting += _crossings(passages, vehicle.path, estimate)
         # 4. Only confirmed vehicles count; then also what they passed before.
-        if not vehicle.is_confirmed:
-            return []
+        return self._counted(vehicle, estimate) if vehicle.is_confirmed else []
+
+    def _remembered(self, estimate: TrackEstimate, stamp_ns: int) -> tuple[WatchedVehicle, bool]:
+        """Return what is known of a track, and whether it is back after it was lost."""
+        # By its track: a tentative one has no number yet.
+        vehicle = self.vehicles.get(estimate.serial)
+        if vehicle is None:
+            vehicle = self.vehicles[estimate.serial] = self._made(FootPoint.of(estimate, stamp_ns))
+            return vehicle, False
+        is_back = vehicle.last_ns != self._before_ns
+        if is_back:
+            vehicle.path.clear()
+            self._signs.withdraw(estimate.serial)
+        return vehicle, is_back
+
+    def _counted(self, vehicle: WatchedVehicle, estimate: TrackEstimate) -> list[Crossing]:
+        """Count a confirmed vehicle in the zones it is in, and what it has passed so far."""
         for zone in vehicle.zones:
             is_one_more = zone.is_inside and self.is_vehicle(estimate.label)
             self._occupancy[zone.zone.name] += is_one_more
-        counted = vehicle.waiting
+        waiting = vehicle.waiting
         vehicle.waiting = []
-        judged = [self._judged(one, estimate, vehicle.life) for one in counted]
+        judged = [self._judged(one, estimate, vehicle.life) for one in waiting]
         # Kept for `join`: another track of the same vehicle may have passed here, too.
         vehicle.counted.update({one.sign[:2]: one for one in judged})
         return [one.crossing for one in judged]
