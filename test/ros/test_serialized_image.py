@@ -18,6 +18,7 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
+from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.ros.node.image_input import read_image
 from vehicle_pf_tracker.ros.serialized_image import SerializedImage, read_serialized_image
 
@@ -68,5 +69,5 @@ def test_the_other_order_of_bytes_is_left_to_rclpy():
 
 @pytest.mark.parametrize("length", [2, 14, 30, 50, 60])
 def test_bytes_that_are_cut_off_are_no_image(length):
-    with pytest.raises(RuntimeError):
+    with pytest.raises(InputError, match=f"{length} bytes came that are no Image"):
         read_serialized_image(serialize_message(image())[:length])

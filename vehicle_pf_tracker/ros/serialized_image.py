@@ -14,9 +14,10 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from builtin_interfaces.msg import Time
-from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
+
+from vehicle_pf_tracker.ros.reading import read_message
 
 _LITTLE_ENDIAN: Final = b"\0\1"
 """Encapsulation of plain CDR with the lowest byte first, which all but exotic machines send."""
@@ -69,13 +70,13 @@ def read_serialized_image(serialized: bytes) -> SerializedImage | Image:
 
     Raises
     ------
-    RuntimeError
-        If it is no image, of rclpy's own kind.
+    InputError
+        If it is no image.
     """
     try:
         return _read(serialized)
     except (struct.error, ValueError):
-        return deserialize_message(serialized, Image)
+        return read_message(serialized, Image)
 
 
 def _read(serialized: bytes) -> SerializedImage:

@@ -12,6 +12,7 @@ import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not installed")
 
+from rclpy.serialization import serialize_message
 from sensor_msgs.msg import CompressedImage, Image
 from tracker_rig import FIRST_NS, PERIOD_NS, TARGET, Rig, header, on_target, road, values_of
 
@@ -110,6 +111,19 @@ def test_a_compressed_image_that_claims_gigabytes_is_answered_and_the_track_kept
     modes = [answer.status[0].message for answer in answers]
     assert modes == ["TRACKING"] * 3 + ["REJECTED", "TRACKING"]
     assert "claims 30000x30000 px" in values_of(answers[3])["reason"]
+
+
+def test_messages_that_are_no_images_are_left_out_and_counted(bench):
+    rig = Rig(bench, on_target())
+    frames = road(5)
+    rig.play(frames[:2])
+    rejections = rig.node.diagnostics.health.rejections
+    whole = serialize_message(image_message(header(2), frames[2]))
+    for count in range(1, 26):  # more than the failures that end a node
+        rig.camera.publish(whole[: 30 + count])
+        bench.wait_for(lambda: rejections.count == count)  # noqa: B023 - called at once
+    assert "bytes came that are no Image: they are cut off" in rejections.last
+    assert rig.play(frames[2:], 2) == ["TRACKING"] * 3
 
 
 def test_a_format_that_is_a_long_text_holds_nobody_up(bench):

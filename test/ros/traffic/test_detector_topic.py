@@ -155,6 +155,19 @@ def test_a_detector_that_stops_is_told_once_and_vehicles_stay(bench, vision, mon
     assert "1 images waited in vain for detections" in rig.said[0]
 
 
+def test_messages_that_are_no_detections_are_told_once(rig):
+    numbers = rig.follow()
+    for index in range(rig.next, rig.next + 3):
+        rig.camera.publish(image_message(header(index), rig.frames[index]))
+        whole = serialize_message(rig.message(rig.truth(index), index))
+        before = len(rig.modes)
+        rig.detector.publish(whole[:80])
+        rig.bench.wait_for(lambda: len(rig.modes) > before)  # noqa: B023 - called at once
+    assert {one.identity for one in rig.vehicles.estimates} == numbers
+    words = "80 bytes came that are no Detection2DArray"
+    assert sum(words in line for line in rig.said) == 1
+
+
 def test_a_detector_may_answer_every_third_image(bench, vision, monkeypatch):
     rig = DetectorRig(bench, vision, monkeypatch, detector__every=3)
     tracker = TrafficSession(MultiVehicleTracker(TRAFFIC_VARIANT.parameters()))

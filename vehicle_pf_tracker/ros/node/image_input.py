@@ -77,6 +77,8 @@ class ImageInput:
         Images that may wait.
     callback : callable
         Takes the image and its info.
+    leave_out : callable
+        Takes the reason where a message is no image, so that there is no header to answer.
 
     Raises
     ------
@@ -84,7 +86,14 @@ class ImageInput:
         If a QoS override is not usable.
     """
 
-    def __init__(self, node: Node, transport: str, depth: int, callback: ImageCallback) -> None:
+    def __init__(
+        self,
+        node: Node,
+        transport: str,
+        depth: int,
+        callback: ImageCallback,
+        leave_out: Callable[[str], None],
+    ) -> None:
         self._node = node
         self._transport = transport
         self._kind = Image if transport == "raw" else CompressedImage
@@ -93,7 +102,12 @@ class ImageInput:
         qos = QoSProfile(depth=depth, reliability=ReliabilityPolicy.BEST_EFFORT)
 
         def take(serialized: bytes, info: Mapping[str, Any]) -> None:
-            callback(read_serialized_image(serialized), info)
+            try:
+                image = read_serialized_image(serialized)
+            except InputError as error:
+                leave_out(str(error))
+            else:
+                callback(image, info)
 
         is_raw = self._kind is Image
         self._subscription = subscribe(

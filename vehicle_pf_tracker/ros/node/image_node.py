@@ -121,7 +121,9 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
     def open_images(self) -> ImageInput:
         """Listen to images."""
         own = self.table.configuration.node
-        source = ImageInput(self, own.image_transport, own.queue_depth, self._on_image)
+        source = ImageInput(
+            self, own.image_transport, own.queue_depth, self._on_image, self._leave_out
+        )
         self.diagnostics.listen_to(source)
         return source
 
@@ -210,6 +212,12 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
         self.diagnostics.health.arrivals.add(info, age * 1e-9, source.count_publishers)
         # Counted first: an image that fails has arrived, too.
         self.accept(image)
+
+    def _leave_out(self, reason: str) -> None:
+        """Report a message that is no image; without a header it has no answer."""
+        if self.path is not None:
+            self.path.journal.health.rejections.add(reason)
+            self.path.journal.errors.say("no image", f"image left out: {reason}")
 
     def warn_of_overrides(self, *, qos: bool) -> None:
         """Log the overrides that are ignored, a line each: of QoS, once all topics are open."""

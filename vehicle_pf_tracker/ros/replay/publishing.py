@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import CompressedImage, Image
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -22,6 +21,7 @@ from vehicle_pf_tracker.recordings.bags.messages import COMPRESSED_IMAGE
 from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.bags.topic_table import TopicInfo
 from vehicle_pf_tracker.ros.messages import image_message
+from vehicle_pf_tracker.ros.reading import read_message
 from vehicle_pf_tracker.ros.replay.recorded_qos import recorded_qos
 from vehicle_pf_tracker.ros.replay.replay_options import ReplayOptions
 
@@ -125,9 +125,9 @@ def decompressed(data: bytes) -> Image:
     Raises
     ------
     InputError
-        If it cannot be decoded.
+        If it is no such message, or cannot be decoded.
     """
-    compressed = deserialize_message(data, CompressedImage)
+    compressed = read_message(data, CompressedImage)
     frame = decode_compressed(compressed.format, compressed.data)
     return image_message(compressed.header, frame)
 

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point
-from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
@@ -25,6 +24,7 @@ from vehicle_pf_tracker.counting.counter import COUNTED_MODES, Counter
 from vehicle_pf_tracker.counting.crossing import Crossing
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.ros import messages
+from vehicle_pf_tracker.ros.reading import read_message
 from vehicle_pf_tracker.showing.drawing import NEUTRAL
 from vehicle_pf_tracker.showing.traffic_drawing import identity_colour
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMode
@@ -187,14 +187,14 @@ def read_serialized_detections(message: bytes) -> Detections:
     Raises
     ------
     InputError
-        If it is too long to be read in time.
+        If it is too long to be read in time, or no such message.
     """
     if len(message) > LONGEST_MESSAGE:
         raise InputError(
             f"a message of detections has {len(message) / 1e6:.1f} MB, more than the "
             f"{LONGEST_MESSAGE / 1e6:g} MB that are read; is the detector in order?"
         )
-    found = deserialize_message(message, messages.detections_type()).detections
+    found = read_message(message, messages.detections_type()).detections
     rows = [_row(one.bbox) for one in found]
     best = [_best(one.results) for one in found]
     boxes = np.array(rows, dtype=np.float64).reshape(-1, 5)
