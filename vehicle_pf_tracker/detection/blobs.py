@@ -24,6 +24,7 @@ from vehicle_pf_tracker.core.overlaps import areas
 from vehicle_pf_tracker.detection.motion_thresholds import SHIPPED_THRESHOLDS, MotionThresholds
 from vehicle_pf_tracker.detection.pieces import Piece
 from vehicle_pf_tracker.detection.usual_size import MEMORY, SIZES_NEEDED, SPREAD, UsualSize
+from vehicle_pf_tracker.image.motion.mask_parts import connected_parts
 
 Mask: TypeAlias = npt.NDArray[np.uint8]
 
@@ -219,8 +220,8 @@ class BlobReader:
 
 def _components(mask: Mask) -> Iterator[tuple[Mask, Array]]:
     """Divide a mask into what hangs together: pixels within a box (4,), and this box."""
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask)
-    for index in range(1, count):
+    labels, stats = connected_parts(mask)
+    for index in range(1, len(stats)):
         x, y, width, height, area = stats[index].tolist()
         if area >= _LEAST_PIECE:
             part = labels[y : y + height, x : x + width] == index

@@ -17,6 +17,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from vehicle_pf_tracker.image.motion.mask_parts import connected_parts
+
 Levels: TypeAlias = npt.NDArray[np.float32] | npt.NDArray[np.uint8]
 Mask: TypeAlias = npt.NDArray[np.uint8]
 Section: TypeAlias = tuple[slice, slice]
@@ -48,9 +50,9 @@ def standing_parts(
     least : float
         Least mean of these over a part.
     """
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(changed)
+    labels, stats = connected_parts(changed)
     height, width = changed.shape
-    for index in range(1, count):
+    for index in range(1, len(stats)):
         x, y, across, down, area = stats[index].tolist()
         is_free = x > 0 and y > 0 and x + across < width and y + down < height
         if area < _LEAST_AREA or not is_free:

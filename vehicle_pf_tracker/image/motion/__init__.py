@@ -8,4 +8,5 @@
 - `box_motion`: turn and stretch of the points in a box
 - `camera_motion`: motion of the background, measured by `camera_flow` in a `small_grey` frame
 - `foreground`: pixels that differ from the background of a standing camera, a `median_image`
+- `mask_parts`: parts of such a mask that hang together
 """

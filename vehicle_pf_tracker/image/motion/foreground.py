@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image.motion.mask_parts import connected_parts
 from vehicle_pf_tracker.image.motion.median_image import median
 from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 
@@ -246,7 +247,8 @@ def _moving(
 ) -> npt.NDArray[np.uint8]:
     """Mask of what differs from the background."""
     change = np.asarray(cv2.absdiff(image, background), np.uint8)
-    moving = (cv2.GaussianBlur(change, (3, 3), 0) > _level(change)).astype(np.uint8)
+    blurred = cv2.GaussianBlur(change, (3, 3), 0)
+    _, moving = cv2.threshold(blurred, _level(change), 1, cv2.THRESH_BINARY)
     # A windscreen of the road's grey would cut a car in two.
     closed = cv2.morphologyEx(moving, cv2.MORPH_CLOSE, _CLOSED)
     return np.asarray(closed, np.uint8)
@@ -254,8 +256,9 @@ def _moving(
 
 def _level(change: npt.NDArray[np.uint8]) -> float:
     """Difference above which a pixel is foreground."""
-    # The usual case first: the median is so low that it does not count.
-    if np.count_nonzero(change <= _LEAST_CONTRAST / _NOISE_FACTOR) > change.size // 2:
+    # The usual case first: the median is so low that it does not count. Whole numbers are compared
+    # as such, in a third of the time.
+    if np.count_nonzero(change <= int(_LEAST_CONTRAST / _NOISE_FACTOR)) > change.size // 2:
         return _LEAST_CONTRAST
     # The median by a histogram, in a tenth of the time of `np.median`.
     counts = cv2.calcHist([change], [0], None, [256], [0, 256]).cumsum()
@@ -265,7 +268,7 @@ def _level(change: npt.NDArray[np.uint8]) -> float:
 
 def _pieces(moving: npt.NDArray[np.uint8]) -> Array:
     """Left and upper, right and lower side (N, 2, 2) of each connected piece of a mask."""
-    *_, stats, _ = cv2.connectedComponentsWithStats(moving)
+    _, stats = connected_parts(moving)
     low = stats[1:, :2]
     return np.stack([low, low + stats[1:, 2:4]], axis=1).astype(float)
 
@@ -290,12 +293,12 @@ def _bounds(
     moving: npt.NDArray[np.uint8], centre: Array, size: Array
 ) -> tuple[Array, Array] | None:
     """Bounds of the connected pieces that lie mostly in a box; None where they touch the rim."""
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(moving)
+    labels, stats = connected_parts(moving)
     height, width = moving.shape
     half = _GROWN * size / 2
     (left, top), (right, bottom) = (centre - half).tolist(), (centre + half).tolist()
     box = labels[_within(top, bottom, height), _within(left, right, width)]
-    inside = np.bincount(box.ravel(), minlength=count)
+    inside = np.bincount(box.ravel(), minlength=len(stats))
     areas = stats[:, cv2.CC_STAT_AREA]
     # Mostly inside: the outline of the car behind touches the box, and is another one's.
     own = (areas >= _LEAST_PIECE) & (inside >= 0.5 * areas)
