@@ -29,7 +29,7 @@ print(*sorted(kernel.__name__ for kernel in kernels))
 @pytest.mark.parametrize(
     ("variant", "needed"),
     [
-        ("apf", {"number_cells", "joint_cells", "compare_joint"}),
+        ("apf", {"number_cells", "joint_shares", "compare_joint"}),
         (
             "ms",
             {

@@ -101,8 +101,8 @@ class Cloud:
 
     def mean(self) -> tuple[float, float]:
         """Weighted mean of the positions (P1 eq. 5)."""
-        # A product and a sum: a dot product of BLAS would depend on its threads.
-        x, y = (self.weights[:, np.newaxis] * self.positions).sum(axis=0).tolist()
+        # A dot product of BLAS would depend on its threads.
+        x, y = np.einsum("i,ij->j", self.weights, self.positions).tolist()
         return x, y
 
 
@@ -283,7 +283,8 @@ class BaseTracker(ABC, Generic[ParametersT]):
         """Displace particles inside the image; also True if their mean crossed its border."""
         # The mean is taken before positions are clipped, which would keep it inside for ever.
         proposed = positions + moves
-        x, y = (proposed.sum(axis=0) / len(proposed)).tolist()
+        # Summed thus, it takes half of the time of `sum`: rows are as short as two.
+        x, y = (np.einsum("ij->j", proposed) / len(proposed)).tolist()
         return keep_inside(frame, proposed), is_outside(frame, x, y)
 
     def _estimate(self, outcome: Outcome, mode: Mode, confidence: float, began: float) -> Estimate:

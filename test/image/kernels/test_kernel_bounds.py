@@ -81,6 +81,7 @@ for _ in range(1500):
     attempt(numba_counts.compare_counts, counts, rng.integers(0, 90, 3), scale)
     table = rng.integers(0, 99, int(rng.choice([0, 5, 64, 512]))).astype(np.uint16)
     attempt(numba_pixel_cells.joint_cells, frame, int(rng.integers(-1, 10)), table)
+    attempt(numba_pixel_cells.joint_shares, frame, int(rng.integers(-1, 7)))
     attempt(numba_pixel_cells.marginal_cells, frame, int(rng.integers(-1, 300)), table)
     attempt(numba_pixel_cells.pair_cells, frame[..., 0], table)
     grey = np.ascontiguousarray(frame[..., 0])

@@ -31,6 +31,7 @@ from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.kernels.numba_edges import Numbers
 from vehicle_pf_tracker.image.kernels.numba_pixel_cells import (
     joint_cells,
+    joint_shares,
     marginal_cells,
     number_cells,
     pair_cells,
@@ -227,10 +228,11 @@ def _histogram_of_pixels(
     """Count every bin of one window's pixels."""
     left, top, right, bottom = bounds_of_one(frame, position, window)
     part = frame[top:bottom, left:right]
-    table = _every_bin(feature.bins)
     if isinstance(feature, JointColour):
-        cells = joint_cells(part, feature.bits, table)
-    elif isinstance(feature, RgbMarginals):
+        shares: Histogram = joint_shares(part, feature.bits)
+        return shares
+    table = _every_bin(feature.bins)
+    if isinstance(feature, RgbMarginals):
         cells = marginal_cells(part, CHANNEL_BINS, table)
     else:
         cells = pair_cells(to_grey(part), table)

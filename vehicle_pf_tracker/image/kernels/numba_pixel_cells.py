@@ -45,6 +45,33 @@ def joint_cells(pixels: Frame, bits: int, table: Table) -> Cells:
     return cells
 
 
+@compiled("float64[::1]", RGB_IMAGE, "int64")
+def joint_shares(pixels: Frame, bits: int) -> Histogram:
+    """Share of each joint RGB bin, all zero where there is no pixel.
+
+    In one pass: to count the cells of all pixels with numpy took twice as long.
+    """
+    height, width, channels = pixels.shape
+    if channels != 3 or not 1 <= bits <= 5:
+        raise IndexError("the image has other channels, or the feature other bits")
+    shares = np.empty(1 << (3 * bits))
+    for k in range(len(shares)):
+        shares[k] = 0.0
+    drop = 8 - bits
+    for y in range(height):
+        for x in range(width):
+            red = pixels[y, x, 0]
+            green = pixels[y, x, 1]
+            blue = pixels[y, x, 2]
+            number = ((red >> drop) << (2 * bits)) | ((green >> drop) << bits) | (blue >> drop)
+            shares[number] += 1
+    # Whole numbers until here, so that the shares have the bits of any other count.
+    total = max(height * width, 1)
+    for k in range(len(shares)):
+        shares[k] /= total
+    return shares
+
+
 @compiled(CELL_PLANES, RGB_IMAGE, "int64", BIN_TABLE)
 def marginal_cells(pixels: Frame, levels: int, table: Table) -> Cells:
     """Cells of each channel's own bins, a plane each; channel `c` has bins from ``c * levels``."""

@@ -220,7 +220,8 @@ class ApfTracker(ParticleTracker[ApfParameters]):
         if regular:
             # Nothing is known of where the vehicle turns, so the density is symmetric (eq. 7).
             ancestors = self._draw(self._cloud.weights, settings.resampling)
-            parents = self._cloud.positions[ancestors]  # steps 5 and 6 (Algorithm 2)
+            # Steps 5 and 6 (Algorithm 2).
+            parents = self._cloud.positions.take(ancestors, axis=0)
             moves = sample_normal(
                 self._rng, len(parents), settings.motion.sigma_w * elapsed
             )  # step 7

@@ -146,7 +146,7 @@ class PfTracker(ColourTracker[PfParameters]):
         settings = self.parameters
         # Resampling opens the frame, so that the estimate before it is taken from the weights.
         ancestors = self._draw(self._cloud.weights, settings.resampling)
-        parents = self._cloud.positions[ancestors]
+        parents = self._cloud.positions.take(ancestors, axis=0)
         speeds = self._speeds[ancestors]
         expected = parents
         if settings.dynamics == "second_order":

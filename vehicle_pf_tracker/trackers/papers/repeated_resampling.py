@@ -202,7 +202,7 @@ class RepeatedResampling(ColourTracker[RepeatedParametersT]):
         draw = RESAMPLING_SCHEMES[self._settings.resampling]
         ancestors = draw(choice.parent_weights, count, self._rng)
         spread = choice.jitter * self._settings.sigma * elapsed
-        parents = particles.cloud.positions[ancestors]
+        parents = particles.cloud.positions.take(ancestors, axis=0)
         copies = keep_inside(frame, parents + sample_normal(self._rng, count, spread))
         rho = self.similarity(frame, copies)
         if count == len(choice.replaced):  # `conventional`: nothing of the old cloud is left
