@@ -67,13 +67,14 @@ class FilterWeights:
         The weights of the target's cells; outside they are zero.
     faded : (rows, channels, columns) array of float32
         Weights of the target's cells times the window that an image's cells are faded out by.
-    spectrum : (channels, n, n // 2 + 1) array of complex64
-        Half spectrum of the weights.
+    spectrum, conjugate : (channels, n, n // 2 + 1) arrays of complex64
+        Half spectrum of the weights, and its conjugate, which responses are made with.
     """
 
     target: CellFeatures
     faded: CellFeatures
     spectrum: Spectrum
+    conjugate: Spectrum
 
 
 class CorrelationFilter:
@@ -181,11 +182,12 @@ class CorrelationFilter:
             cells = self._target.cells_of(multiplier, self.waves)
             confined = self._target.spectrum_of(cells, self.waves)
         self._wide_weights = None
-        self.weights = FilterWeights(cells, cells.transpose(1, 0, 2) * self._fading, confined)
+        faded = cells.transpose(1, 0, 2) * self._fading
+        self.weights = FilterWeights(cells, faded, confined, confined.conj())
 
     def respond(self, spectrum: Spectrum) -> Response:
         """Respond to cells (half spectrum), at `UPSAMPLING` places per cell."""
-        return self._response(spectrum, self._trained.spectrum)
+        return self._response(spectrum * self._trained.conjugate)
 
     @property
     def extent(self) -> tuple[int, int]:
@@ -217,16 +219,17 @@ class CorrelationFilter:
         if self._wide_weights is None:
             # Transformed when first asked for: a wide search happens in few frames.
             target = self._wide(spectrum.shape[1])[1]
-            self._wide_weights = target.spectrum_of(self._trained.target, self.waves)
-        return self._response(spectrum, self._wide_weights)
+            self._wide_weights = target.spectrum_of(self._trained.target, self.waves).conj()
+        return self._response(self._wide_weights * spectrum)
 
     @property
     def _trained(self) -> FilterWeights:
         assert self.weights is not None, "train the filter first"
         return self.weights
 
-    def _response(self, spectrum: Spectrum, weights: Spectrum) -> Response:
-        return upsampled((spectrum * weights.conj()).sum(axis=0), UPSAMPLING, self.waves)
+    def _response(self, answers: Spectrum) -> Response:
+        """Response by the products of the spectra of cells and conjugate weights."""
+        return upsampled(answers.sum(axis=0), UPSAMPLING, self.waves)
 
     def _wide(self, size: int) -> tuple[PartialFourier, PartialFourier]:
         """Return transforms of a larger square of cells, and of the target in its middle."""

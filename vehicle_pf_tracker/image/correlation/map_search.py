@@ -40,14 +40,19 @@ def climbed(values: Array, places: Places, costs: Array) -> tuple[Places, Array]
     reach = side // 2
     # Repeated values make places beyond the border no better than those on it.
     padded = cv2.copyMakeBorder(values, reach, reach, reach, reach, cv2.BORDER_REPLICATE)
-    # One `take` reads the neighbourhoods of all places.
+    # Places are numbered by the first of their neighbours. Many are the same: of 200 hypotheses
+    # about a visible vehicle some 30 are not, and each is searched once.
     width = padded.shape[1]
-    first = places[:, 1] * width + places[:, 0]
-    gains = padded.take(first[:, np.newaxis] + _neighbours(side, width))
+    numbers = places[:, 1] * width + places[:, 0]
+    first = np.flatnonzero(np.bincount(numbers))
+    which = first.searchsorted(numbers)
+    # One `take` reads all neighbourhoods.
+    gains = np.asarray(padded.take(first[:, np.newaxis] + _neighbours(side, width)), float)
     gains -= costs.ravel()
     best = gains.argmax(axis=1)
     # Picked, as a second search of all neighbourhoods would cost as much as the first.
-    return _moves(side)[best], gains[np.arange(len(best)), best]
+    highest = gains[np.arange(len(best)), best]
+    return _moves(side).take(best.take(which), axis=0), highest.take(which)
 
 
 # The maps of a tracker have one size, so that the tables below are made once.

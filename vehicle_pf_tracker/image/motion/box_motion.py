@@ -92,7 +92,7 @@ def staying(before: Array, after: Array, alive: Alive, strayed: float) -> Alive:
     strayed : float
         A place farther than this from where it should be does not stay.
     """
-    turn = shared_turn(before[alive], after[alive], strayed)
+    turn = shared_turn(before.compress(alive, axis=0), after.compress(alive, axis=0), strayed)
     off = after - before @ turn
     return np.asarray(alive & (np.hypot(off[:, 0], off[:, 1]) < strayed))
 

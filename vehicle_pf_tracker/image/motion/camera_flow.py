@@ -121,9 +121,9 @@ class CameraFlow:
         guess = self._motion.apply(corners.astype(np.float64)).astype(np.float32)
         moved, found = _FLOW.follow(last, reduced, corners, guess)
         # Corners are carried on: those of the same points need no search of the grid.
-        self._corners = moved[found]
-        before, after = (ends[found].astype(np.float64) for ends in (corners, moved))
-        motion = fit_camera_motion(before, after)
+        self._corners = moved.compress(found, axis=0)
+        before = corners.compress(found, axis=0)
+        motion = fit_camera_motion(before.astype(np.float64), self._corners.astype(np.float64))
         self._motion = motion
         if motion.still:
             self._still += 1
@@ -148,7 +148,7 @@ class CameraFlow:
         # Of the two axes one is enough: a corner above the box is as far off as one beside it.
         outside = off[:, 0] > _CLEARANCE * target.width
         outside |= off[:, 1] > _CLEARANCE * target.height
-        return np.ascontiguousarray(self._corners[outside])
+        return self._corners.compress(outside, axis=0)
 
 
 def _stand(
@@ -163,8 +163,9 @@ def _stand(
     change = cv2.absdiff(
         *(grey.take(numbers.reshape(len(corners), -1)) for grey in (last, present))
     )
-    unchanged = change.mean(axis=1) < _UNCHANGED
-    return bool(unchanged.mean() >= STILL_SHARE)
+    # Sums instead of means, which numpy takes twice as long for.
+    unchanged = np.count_nonzero(change.sum(axis=1) < _UNCHANGED * _NEIGHBOURHOOD**2)
+    return bool(unchanged >= STILL_SHARE * len(corners))
 
 
 def _find_corners(grey: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:

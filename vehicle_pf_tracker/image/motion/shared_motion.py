@@ -46,7 +46,7 @@ def shared_similarity(before: Array, after: Array) -> Array:
     if len(flow) < LEAST_CORNERS:
         return rest
     # A camera that stands is the usual case, and exactly none is better than a fit to noise.
-    if (np.abs(flow) < AGREEING_PX).mean() >= STILL_SHARE:
+    if np.count_nonzero(np.abs(flow) < AGREEING_PX) >= STILL_SHARE * len(flow):
         return rest
     # A zoom or a roll spreads the flow over the image, hence the wide neighbourhood.
     apart = np.abs(flow[:, np.newaxis] - flow)
@@ -63,21 +63,26 @@ def shared_similarity(before: Array, after: Array) -> Array:
 
 def _robust_similarity(start: _Complex, end: _Complex) -> tuple[complex, complex]:
     """Fit by least squares, reweighted so that points far off count little."""
-    weights = np.ones(len(start))
-    for _ in range(FITS):
-        shares = weights / weights.sum()
-        middle = shares @ start
-        target = shares @ end
-        off = start - middle
-        weighted = weights * off.conj()
-        # Weighted least squares in closed form; the summand bears corners that coincide.
-        factor = weighted @ (end - target) / ((weighted @ off).real + 1e-9)
-        shift = target - factor * middle
+    factor, shift = _weighted_similarity(start, end, np.ones(len(start)))
+    for _ in range(FITS - 1):
         residual = np.abs(end - factor * start - shift)
         # Half of the limit at least: a perfect fit would leave the median of noise as the scale.
         scale = max(1.5 * median(residual), AGREEING_PX / 2)
         weights = 1 / (1 + (residual / scale) ** 2) ** 2
+        factor, shift = _weighted_similarity(start, end, weights)
     return factor, shift
+
+
+def _weighted_similarity(start: _Complex, end: _Complex, weights: Array) -> tuple[complex, complex]:
+    """Fit by weighted least squares, in closed form: a factor and a summand."""
+    shares = weights / weights.sum()
+    middle = shares @ start
+    target = shares @ end
+    off = start - middle
+    weighted = weights * off.conj()
+    # The summand bears corners that coincide.
+    factor = weighted @ (end - target) / ((weighted @ off).real + 1e-9)
+    return factor, target - factor * middle
 
 
 def median(values: Array) -> float:

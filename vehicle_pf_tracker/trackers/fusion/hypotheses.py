@@ -225,7 +225,7 @@ class Hypotheses(NamedTuple):
             return self
         # Systematic: the least variance of the counts, and one random number a frame.
         chosen = systematic(self.weights, count, rng)
-        drawn = Hypotheses(*(values[chosen] for values in self))
+        drawn = Hypotheses(*(values.take(chosen, axis=0) for values in self))
         return drawn._replace(weights=np.full(count, 1 / count))
 
 

@@ -234,7 +234,7 @@ def _searched(
     way = _way_of(state)
     # What answers where it cannot be, or at another vehicle in view, is no evidence for it, only
     # against it.
-    if way is not None:
+    if way is not None and (ratios > 0).any():  # seldom, and the way costs time
         ratios = np.where(way.excludes(positions), np.minimum(ratios, 0.0), ratios)
     return view, positions, ratios
 

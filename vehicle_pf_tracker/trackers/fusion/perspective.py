@@ -164,7 +164,7 @@ class Sightings(NamedTuple):
         # The last one is the youngest.
         oldest = KEPT_FRAMES + (proven[clear[-1], 0] if len(clear) else 0.0)
         # A mask copies: the rows of the state before stay as they were.
-        rows = self.rows[self.rows[:, 0] < oldest]
+        rows = self.rows.compress(self.rows[:, 0] < oldest, axis=0)
         rows[:, 0] += elapsed
         if camera.still:
             return self._replace(rows=rows, camera_stood=self.camera_stood + elapsed)

@@ -134,7 +134,7 @@ class SurfacePoints(NamedTuple):
         if not alive.any():
             return SurfacePoints(self.previous, self.points._replace(age=age + 1))
         previous, started = self.previous
-        before = positions[alive]
+        before = positions.compress(alive, axis=0)
         start = np.asarray(previous.to_patch(before) - 0.5, np.float32)
         # The peak has found the motion: without a pyramid only the rest is within a window's reach.
         guess = np.asarray(patch.to_patch(before + position - started) - 0.5, np.float32)
@@ -142,7 +142,9 @@ class SurfacePoints(NamedTuple):
         after = patch.to_frame(end.astype(np.float64) + 0.5)
         # With the strays: they are found by the box, which this has to correct, and few do not move
         # a median.
-        stretch = box_motion.shared_stretch(before[found], after[found], size)
+        stretch = box_motion.shared_stretch(
+            before.compress(found, axis=0), after.compress(found, axis=0), size
+        )
         # Copied: the state of the frame before shares the arrays.
         positions = positions.copy()
         living = alive.copy()
