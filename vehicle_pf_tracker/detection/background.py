@@ -11,6 +11,7 @@ until it has stayed for long: a lorry of one colour hides a place for seconds, a
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import cv2
@@ -120,7 +121,8 @@ class Background:
 
     def _unlike(self, planes: Planes) -> Pixels:
         """Mark the pixels whose colour too few samples have."""
-        limit = self._thresholds.colour_threshold
+        # A whole number, as levels are: with a fraction all of them would be compared as floats.
+        limit = math.ceil(self._thresholds.colour_threshold)
         height = len(planes) // 3
         width = planes.shape[1]
         # Two rounds: few samples of all pixels, and the others of the few that are still in doubt.
