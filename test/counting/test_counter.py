@@ -175,6 +175,16 @@ def test_memory_does_not_grow_with_vehicles_that_are_gone():
     assert len(counter.vehicles) <= 601
 
 
+def test_memory_does_not_grow_where_stamps_stand_still():
+    counter = line_counter()
+    for identity in range(1, 5101):
+        counter.update([vehicle(identity, 100, 80)], LATE)
+    assert len(counter.vehicles) == 5000
+    # Those that came last: one that is in view is among them.
+    assert list(counter.vehicles)[-1] == 5100
+    assert counter.update([vehicle(5100, 100, 120)], LATE)
+
+
 def test_speed_in_pixels_is_that_of_the_path():
     (crossing,) = drive(line_counter(), [40 + 4.0 * k for k in range(20)])
     assert crossing.speed_px == pytest.approx(4.0 / 0.04)  # px per period of 0.04 s

@@ -118,6 +118,12 @@ def test_a_point_is_forgotten_when_it_is_older_than_four_seconds():
     assert found == pytest.approx(math.sqrt(50.0 / (2 + 11.5)))
 
 
+def test_a_thousand_points_at_one_time_are_remembered():
+    flat = path([0.0] * 1000, 0).scatter((0.0, 1.0))
+    assert path([40.0, *[0.0] * 999], 0).scatter((0.0, 1.0)) > flat
+    assert path([40.0, *[0.0] * 1000], 0).scatter((0.0, 1.0)) == flat
+
+
 def test_a_fifth_of_a_second_of_seven_images_is_three():
     # 6 px at three images, 36; one bend of 2 px at one image, and 2, 4 and 2 px at two.
     found = path([0.0, 2.0, 4.0, 6.0, 4.0, 2.0, 0.0], 200 / 3).scatter((0.0, 1.0))

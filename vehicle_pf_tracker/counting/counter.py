@@ -28,6 +28,9 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMod
 REMEMBERED_NS = 600 * 10**9
 """Time in ns that a vehicle which is not among the estimates is remembered: the longest that a
 tracker keeps the number of a lost one for."""
+_MOST_REMEMBERED = 5000
+"""Vehicles that are remembered at most, eight new ones a second: where the stamps of a camera stand
+still, no time lets go of any."""
 
 COUNTED_MODES = (TrackMode.TRACKING, TrackMode.OCCLUDED)
 """Modes of vehicles that count."""
@@ -286,11 +289,16 @@ class Counter:
         return WatchedVehicle(lines, zones, path, first.stamp_ns, Life(first, first, path))
 
     def _drop_old(self, stamp_ns: int) -> None:
+        vehicles = self.vehicles
         old = [
             identity
-            for identity, vehicle in self.vehicles.items()
+            for identity, vehicle in vehicles.items()
             if stamp_ns - vehicle.last_ns > REMEMBERED_NS
         ]
+        surplus = len(vehicles) - _MOST_REMEMBERED
+        if surplus > len(old):
+            # Those that are gone for longest, among which are the old ones.
+            old = sorted(vehicles, key=lambda identity: vehicles[identity].last_ns)[:surplus]
         for identity in old:
             del self.vehicles[identity]
             self._signs.keep(identity)

@@ -36,6 +36,10 @@ _REMEMBERED_NS = 4 * 10**9
 _REMEMBERED = 24
 """Positions that it is taken from at least, where images are rare: they give it to a fifth."""
 
+_MOST_REMEMBERED = 1000
+"""Positions that are kept at most, four seconds of 250 images each: where the stamps of a camera
+stand still, no time lets go of those of a parked vehicle."""
+
 
 class RecentPath:
     """Latest points of one vehicle.
@@ -48,7 +52,7 @@ class RecentPath:
 
     def __init__(self, plane: RoadPlane | None = None) -> None:
         self._plane = plane
-        self._points: deque[FootPoint] = deque()
+        self._points: deque[FootPoint] = deque(maxlen=_MOST_REMEMBERED)
         self._scatter: list[tuple[Array, float]] | None = None
 
     def add(self, foot: FootPoint) -> None:

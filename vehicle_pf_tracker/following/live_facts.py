@@ -18,12 +18,16 @@ from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate, TrackMod
 _MINUTE_NS = 60 * 10**9
 """Time that counts as recent, ns: a page with crossings per minute needs no other."""
 
+_MOST_RECENT = 10_000
+"""Crossings that are kept at most, far more than any road has in a minute: where the stamps of a
+camera stand still, no time lets go of any."""
+
 
 class RecentCrossings:
     """Crossings of the last minute, by the stamps."""
 
     def __init__(self) -> None:
-        self._of: deque[Crossing] = deque()
+        self._of: deque[Crossing] = deque(maxlen=_MOST_RECENT)
 
     def add(self, crossings: Iterable[Crossing], stamp_ns: int) -> None:
         """Take the plausible crossings of the next image."""
