@@ -67,7 +67,6 @@ MECHANISMS: Mapping[str, tuple[Replacement, ...]] = {
     ),
     "returns far ahead": (Replacement(reappearance, "_EARLY", np.inf),),
     "returns behind": (Replacement(Reappearance, "is_behind", _nowhere),),
-    "returns in others in view": (Replacement(Reappearance, "is_another", _nowhere),),
     "returns in another paint": (Replacement(observe, "LEAST_PAINT", -1.0),),
     "hypotheses drawn to what stands": (Replacement(observe, "_is_covered", _always(False)),),
     "turns in another paint": (Replacement(turning, "_OTHER_PAINT", np.inf),),

@@ -34,7 +34,7 @@ def driving(time, ahead=20.0, aside=0.0, speed=2.0, scale=1.0, out=10):
 
 def first_proof(outline, judge=None, frames=40):
     """Frame in which an outline is proven to be the vehicle's, and its velocity; None if never."""
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0, LAST)
+    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0)
     for time in range(1, frames):
         sides = outline(time)
         boxes = np.empty((0, 2, 2)) if sides is None else sides[np.newaxis]
@@ -94,7 +94,7 @@ def test_an_outline_that_jumps_is_another_one():
 
 
 def test_outlines_are_looked_at_in_every_second_frame_until_one_drives_on():
-    hidden, looks = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0, LAST), []
+    hidden, looks = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0), []
     for time in range(1, 24):
         hidden = hidden.aged(1.0)
         if hidden.is_due:
@@ -105,26 +105,8 @@ def test_outlines_are_looked_at_in_every_second_frame_until_one_drives_on():
     assert looks == [*range(1, 20, 2), 20, 21, 22, 23]
 
 
-def test_a_vehicle_ahead_that_was_in_view_is_another_where_it_merges_too():
-    """It drives 40 px ahead; from frame 10 on its outline merges with that of the vehicle."""
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0, LAST)
-    for time in range(1, 20):
-        x = LAST[0] + 2.0 * time
-        boxes = [box(x + 40, LAST[1], *SIZE)] if time < 10 else [box(x + 20, LAST[1], 60, 12)]
-        hidden = hidden.aged(1.0).observed(np.array(boxes), judged())
-        positions = np.array([[x + 42, LAST[1]], [x + 20, LAST[1]], [x, LAST[1]]])
-        assert hidden.is_another(positions).tolist() == [True, False, False]
-
-
-def test_a_rest_of_the_vehicle_itself_is_no_other_vehicle():
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0, LAST).aged(1.0)
-    rest = box(LAST[0] + 9.0, LAST[1], 12, 12)
-    hidden = hidden.observed(rest[np.newaxis], judged())
-    assert not hidden.is_another(rest.mean(axis=0))
-
-
 def test_behind_the_last_sighting_by_half_a_size_is_another_vehicle():
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0, LAST)
+    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0)
     # Half of the size, the root of 20 x 12, is 7.7 px.
     positions = LAST + np.array([[-8.0, 0.0], [-7.0, 20.0], [60.0, 0.0]])
     assert hidden.is_behind(positions).tolist() == [True, False, False]
@@ -133,20 +115,20 @@ def test_behind_the_last_sighting_by_half_a_size_is_another_vehicle():
 @pytest.mark.parametrize(("age", "bound"), [(4.0, -0.5 * 15.5 + 0.75 * 8), (8.0, 3.9), (90.0, 3.9)])
 def test_what_should_have_moved_by_its_size_is_not_where_it_was(age, bound):
     """By less than a size in 4 frames; after 8, one that brakes may fall behind for long."""
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, age, LAST)
+    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, age)
     positions = LAST + np.array([[bound - 0.1, 5.0], [bound + 0.1, -5.0]])
     assert hidden.is_behind(positions).tolist() == [True, False]
 
 
 def test_of_a_vehicle_that_stood_nothing_is_behind():
     standing = PerspectiveMotion(LAST, np.zeros(2), 0.0)
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), standing, 30.0, LAST)
+    hidden = Reappearance(Sighting(0.0, LAST, SIZE), standing, 30.0)
     assert not hidden.is_behind(LAST - np.array([[30.0, 0.0]])).any()
 
 
 def test_a_size_ahead_of_the_prediction_is_another_in_its_lane():
     """After 20 frames it is expected 40 px ahead; a size is 15.5 px."""
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 20.0, LAST)
+    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 20.0)
     positions = LAST + np.array([[20.0, 5.0], [55.0, -5.0], [56.0, -5.0]])
     assert hidden.excludes(positions).tolist() == [False, False, True]
     standing = hidden._replace(motion=PerspectiveMotion(LAST, np.zeros(2), 0.0))
@@ -159,24 +141,7 @@ def test_a_size_ahead_of_the_prediction_is_another_in_its_lane():
     ids=["nothing", "the vehicle itself", "another ahead"],
 )
 def test_it_is_covered_where_nothing_moves_at_the_predicted_place(moving, is_covered):
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0, LAST).aged(1.0)
+    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0).aged(1.0)
     assert not hidden.is_covered
     boxes = np.array(moving).reshape(-1, 2, 2)
     assert hidden.observed(boxes, judged()).is_covered is is_covered
-
-
-def test_a_large_outline_in_view_may_be_several_vehicles_the_hidden_one_among_them():
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0, LAST).aged(1.0)
-    merged = box(LAST[0] + 30.0, LAST[1], 45, 14)
-    assert not hidden.observed(merged[np.newaxis], judged()).is_another(merged.mean(axis=0))
-    single = box(LAST[0] + 30.0, LAST[1], 22, 14)
-    assert hidden.observed(single[np.newaxis], judged()).is_another(single.mean(axis=0))
-
-
-def test_what_was_followed_last_is_no_other_vehicle_though_the_prediction_is_off():
-    """It came back for a few frames, less clearly, and is hidden again."""
-    ahead = LAST + np.array([40.0, 0.0])
-    for position, another in ((LAST, True), (ahead, False)):
-        hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0, position).aged(1.0)
-        hidden = hidden.observed(box(*ahead, *SIZE)[np.newaxis], judged())
-        assert bool(hidden.is_another(ahead)) is another

@@ -81,7 +81,7 @@ def drive(
                 foreground.learn_background()
             motion = PerspectiveMotion(centres[DOUBT], np.array([SPEED, 0.0]), 0.0)
             last = Sighting(late, centres[DOUBT], SIZE)
-            turning = Outlines.begun(foreground, motion, last, centre)
+            turning = Outlines.begun(foreground, motion, last)
     return given, centres[DOUBT + late + 1 :]
 
 
@@ -215,4 +215,4 @@ def test_frames_of_another_size_begin_anew():
     assert not foreground.is_known
     motion = PerspectiveMotion(START, np.array([SPEED, 0.0]), 0.0)
     last = Sighting(0.0, START, SIZE)
-    assert Outlines.begun(foreground, motion, last, START) == Outlines()
+    assert Outlines.begun(foreground, motion, last) == Outlines()

@@ -11,7 +11,7 @@
   memory that all share
 - measured: `appearance` (filter) and `paint`; `surface_flow`, `surface_points`; `size_search`
 - hidden: `perspective` predicts, by sightings that `standing_occluder` restores
-- before a standing camera outlines (`outline_boxes`) show what turns (`turning`, `unfolding`),
-  comes out (`emergence`, `reappearance`) or is another vehicle (`known_others`)
+- before a standing camera outlines (`outline_boxes`) show what turns (`turning`, `unfolding`) or
+  comes out (`emergence`, `reappearance`)
 - gone: `departure`
 """

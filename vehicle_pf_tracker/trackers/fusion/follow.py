@@ -140,7 +140,7 @@ def _enter_occlusion(state: State, step: Step) -> State:
     # Once, of the frames before: all hidden frames are compared with the same background.
     if foreground.is_known:
         foreground.learn_background()
-    outlines = Outlines.begun(foreground, path, last, state.position)
+    outlines = Outlines.begun(foreground, path, last)
     state = state._replace(verdict=Hidden(outlines))
     # The size too: the occluder has shrunk the box in the frames since.
     size = last.size * path.scale_at(last.age)

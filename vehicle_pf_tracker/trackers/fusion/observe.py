@@ -176,7 +176,7 @@ def observe(state: State, prediction: Prediction, step: Step) -> tuple[State, Ob
 
 
 def _is_stranger(state: State, position: Array, step: Step) -> bool:
-    """Test whether what would return is off its way, a known other one, or of another paint.
+    """Test whether what would return is off its way, or of another paint.
 
     Only before a standing camera, where outlines are followed and the paint is learnt.
     """
@@ -232,8 +232,7 @@ def _searched(
     options = step.parameters.visibility
     positions, ratios = response_evidence(view, particles.positions, climb, options)
     way = _way_of(state)
-    # What answers where it cannot be, or at another vehicle in view, is no evidence for it, only
-    # against it.
+    # What answers where it cannot be is no evidence for it, only against it.
     if way is not None and (ratios > 0).any():  # seldom, and the way costs time
         ratios = np.where(way.excludes(positions), np.minimum(ratios, 0.0), ratios)
     return view, positions, ratios

@@ -6,7 +6,7 @@
 Behind an occluder it may have come nearer, or driven on faster, than its earlier sightings told: it
 is in full view then, beside the hypotheses and at another size. The outline that appears on its
 heading and drives on along it is the vehicle, if the filter and the paint agree at its own size.
-What was in view before, or came from elsewhere, is another vehicle; nothing returns there.
+What was in view before, or came from elsewhere, is another vehicle.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.fusion.known_others import KnownOthers
 from vehicle_pf_tracker.trackers.fusion.outline_boxes import areas, front_move
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import (
@@ -39,9 +38,6 @@ near were predicted at .36 to .8 of their size, others at up to 1.4 of it."""
 _LEAST_AREA = 0.25
 """Least area of an outline beside the heading that is another vehicle, fraction of the predicted
 one: less is a piece, and may be the tip of the vehicle's own shadow. The quarter is a choice."""
-_LARGEST_KNOWN = 2.0
-"""Area of an outline, in predicted ones, at which it may no longer be one other vehicle: two may
-have merged, and the vehicle itself with them. Two is a choice."""
 _SPEEDS = 0.4, 3.0
 """Bounds of its speed, fractions of the predicted one: twice as near it is four times as fast."""
 LEAST_PAINT = 0.1
@@ -112,14 +108,10 @@ class Reappearance(NamedTuple):
         Motion of the vehicle then, whose time 0 is that sighting.
     age : float
         Periods since that sighting.
-    position : (2,) array
-        Centre of the last estimate before it was hidden, px: seen less clearly, and later.
     rested : int
         Frames since the last look at the outlines.
     others : tuple of (N, 2, 2) arrays
         Bounding boxes (low, high; px) of other vehicles, in the last looks.
-    known : KnownOthers
-        Those of them that were in view when the vehicle was hidden.
     track : tuple of (float, (2, 2) array)
         Ages and bounding boxes of the outline, in the last looks.
     judged : tuple of Candidate
@@ -132,10 +124,8 @@ class Reappearance(NamedTuple):
     last: Sighting
     motion: PerspectiveMotion
     age: float
-    position: Array
     rested: int = _EVERY
     others: tuple[Array, ...] = ()
-    known: KnownOthers = KnownOthers()
     track: tuple[tuple[float, Array], ...] = ()
     judged: tuple[Candidate, ...] = ()
     is_covered: bool = False
@@ -166,33 +156,16 @@ class Reappearance(NamedTuple):
         is_other = ~self._on_heading(boxes) & is_large
         if self.others:
             is_other |= _touch(boxes, np.concatenate(self.others))
-            known = self.known.seen(boxes, self.age)
         else:  # what is in view elsewhere when the vehicle is hidden is not the vehicle
             is_other |= ~is_there
-            known = KnownOthers.begun(boxes[is_other & self._is_single(boxes)], self.age)
         others = (*self.others[1 - _REMEMBERED :], boxes[is_other])
         is_covered = not (is_there & is_large).any()
-        new = self._replace(others=others, known=known, rested=0, is_covered=is_covered)
+        new = self._replace(others=others, rested=0, is_covered=is_covered)
         return new._followed(boxes[~is_other], judge)
-
-    def _is_single(self, boxes: Array) -> Mask:
-        """Test which boxes are of one vehicle, and of another one."""
-        position, size = self.place
-        # The centre is outside of all of the predicted box: a rest a little ahead is its own. And
-        # after a short return the prediction may be off, but not the last estimate.
-        is_apart = (np.abs(boxes.mean(axis=1) - position) > size / 2).any(axis=1)
-        is_apart &= ~((boxes[:, 0] < self.position) & (self.position < boxes[:, 1])).all(axis=1)
-        shares = areas(boxes) / size.prod()
-        return np.asarray(is_apart & (shares > _LEAST_AREA) & (shares < _LARGEST_KNOWN))
 
     def excludes(self, positions: Array) -> Mask:
         """Test at which positions (..., 2), px, no hypothesis is the vehicle."""
-        is_early = self._ahead(positions) > _EARLY
-        return is_early | self.is_behind(positions) | self.is_another(positions)
-
-    def is_another(self, positions: Array) -> Mask:
-        """Test which positions (..., 2) are in the middle of one that was in view all the time."""
-        return self.known.has(positions, self.age)
+        return np.asarray((self._ahead(positions) > _EARLY) | self.is_behind(positions))
 
     def _ahead(self, positions: Array) -> Array:
         """Distances (...) of positions ahead of the prediction, along its heading, in its sizes."""

@@ -190,7 +190,7 @@ class Outlines(NamedTuple):
     emergence : Emergence or None
         Search for one that comes out beside the path.
     reappearance : Reappearance or None
-        Search for one that comes out on the way, and the other vehicles in view.
+        Search for one that comes out on the way, and where no hypothesis is the vehicle.
     """
 
     branch: Branch | None = None
@@ -198,22 +198,15 @@ class Outlines(NamedTuple):
     reappearance: Reappearance | None = None
 
     @classmethod
-    def begun(
-        cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting, position: Array
-    ) -> Outlines:
+    def begun(cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting) -> Outlines:
         """Begin at the last clear sighting, `last.age` frames ago.
 
         Without a background, which has to be learnt before, there are no outlines.
-
-        Parameters
-        ----------
-        position : (2,) array
-            Centre of the last estimate, px: that of a sighting that was less clear.
         """
         if not foreground.is_known:
             return cls()
         # On its way it may come out even if its outline was cut: that one is not compared.
-        reappearance = Reappearance(last, motion, last.age, position)
+        reappearance = Reappearance(last, motion, last.age)
         if last.cut:  # its outline was not the vehicle's
             return cls(reappearance=reappearance)
         emergence = Emergence(last, motion, foreground.extent)
