@@ -41,6 +41,16 @@ def test_the_outline_is_that_of_what_moves(zoom):
     assert outline.size == pytest.approx(SIZE / zoom, abs=2 / zoom)
 
 
+@pytest.mark.parametrize("zoom", [1.0, 0.5])
+def test_what_moves_around_a_box_ends_at_its_sides(zoom):
+    foreground, centre = watched(zoom)
+    around = foreground.around(centre, SIZE / zoom)
+    assert np.abs(around.beyond(centre, SIZE / zoom) * SIZE).max() < 1
+    # Four px of a box that is wider by them are beside the vehicle.
+    wider = around.beyond(centre - np.array([2, 0]) / zoom, np.array([28.0, 14.0]) / zoom)
+    assert wider[0, 0] * 28 == pytest.approx(-4, abs=1)
+
+
 def test_a_box_of_some_frames_ago_is_seen_there():
     foreground, centre = watched()
     before = centre - (6, 0)

@@ -3,6 +3,7 @@
 
 """The flagship on streets and synthetic scenes: in view, hidden, recovered, and at the limits."""
 
+import copy
 import itertools
 import math
 
@@ -25,6 +26,7 @@ from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion.hypotheses import HIDDEN_SCALES
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
+from vehicle_pf_tracker.trackers.fusion.sides import Sides
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 from vehicle_pf_tracker.trackers.fusion.verdict import Hidden, Turning
@@ -196,6 +198,34 @@ def test_follows_a_turn_by_the_outline_before_a_standing_camera():
         pairs = run("turn", seed)
         assert max(distance(*pair) for pair in pairs) < 0.4
         assert np.mean([e.mode is Mode.TRACKING for e, _ in pairs]) > 0.9
+
+
+def test_only_the_reported_box_has_the_sides_of_the_vehicle():
+    street, tracker = Street(speed=2.0), fusion()
+    follow(tracker, street, range(40))
+    beyond = np.array([[0.1, 0.0], [0.0, 0.2]])
+    other = copy.deepcopy(tracker)
+    tracker.state = tracker.state._replace(sides=Sides())
+    other.state = other.state._replace(sides=Sides(beyond))
+    box, wider = tracker.step(street.frame(40)).box, other.step(street.frame(40)).box
+    assert wider.x == pytest.approx(box.x - 0.1 * box.width)
+    assert wider.y + wider.height == pytest.approx(box.y + 1.2 * box.height)
+    assert other.state.box == tracker.state.box
+
+
+def test_the_sides_are_looked_at_before_a_standing_camera_in_full_view():
+    street, tracker = Street(speed=2.0, hidden=(50, 60)), fusion()
+    tracker.start(street.frame(0), street.box(0))
+    followed = [tracker.state.sides]
+    for time in range(1, 56):
+        tracker.step(street.frame(time))
+        followed.append(tracker.state.sides)
+    # No background in the first twenty frames; a look counts a third of a second later.
+    assert not followed[20].bias.any()
+    assert followed[45].bias.any()
+    assert np.abs(followed[45].beyond).max() < 0.05
+    assert any(sides.looks for sides in followed[:50])
+    assert not followed[-1].looks
 
 
 class FastStart:

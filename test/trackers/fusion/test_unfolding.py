@@ -56,6 +56,12 @@ def test_looks_are_apart_by_time_and_not_by_frames(rate, frames):
     assert ages[0] < 2.6
 
 
+def test_what_moves_around_is_kept_of_the_frames_that_are_looked_at():
+    seen = [unfolding.around is not None for _, _, unfolding in looks(lambda time: 12)]
+    # A background is known from the 21st frame on, and every fourth one is looked at.
+    assert np.flatnonzero(seen).tolist() == list(range(23, FRAMES, 4))
+
+
 def test_a_side_that_unfolds_is_found_and_followed():
     found = drive(lambda time: min(max(time - BEGINS, 0), 60))
     assert found is not None

@@ -21,6 +21,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.motion.mask_parts import connected_parts
 from vehicle_pf_tracker.image.motion.median_image import median
+from vehicle_pf_tracker.image.motion.side_edges import edges_beyond
 from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 
 _KEPT_EVERY = 4
@@ -85,6 +86,43 @@ class Outline(NamedTuple):
     def size(self) -> Array:
         """Width and height, px."""
         return np.asarray(self.high - self.low)
+
+
+class Around(NamedTuple):
+    """What moves around a box.
+
+    Attributes
+    ----------
+    mask : (h, w) array of uint8
+        1 where something moves, by px of a reduced frame.
+    corner : (2,) array
+        First column and row of it in that frame.
+    zoom : float
+        Px of the reduced frame per px of the frame.
+    """
+
+    mask: npt.NDArray[np.uint8]
+    corner: Array
+    zoom: float
+
+    def outline(self, centre: Array, size: Array) -> Outline | None:
+        """Outline of what moves in a box of this centre and size, px.
+
+        None where nothing moves, or it reaches out of the neighbourhood.
+        """
+        # In px of the piece; the outline goes back to px of the frame.
+        inner = centre * self.zoom - self.corner
+        bounds = _bounds(self.mask, inner, size * self.zoom)
+        if bounds is None:
+            return None
+        low, high = bounds
+        return Outline((low + self.corner) / self.zoom, (high + self.corner) / self.zoom)
+
+    def beyond(self, centre: Array, size: Array) -> Array | None:
+        """Distances beyond the sides of a box of this centre and size, px; see `edges_beyond`."""
+        middle = centre * self.zoom - self.corner
+        half = size * (self.zoom / 2)
+        return edges_beyond(self.mask, middle - half, middle + half)
 
 
 class _Kept(NamedTuple):
@@ -220,6 +258,14 @@ class Foreground:
 
         None where there is no background, nothing moves, or it reaches out of the neighbourhood.
         """
+        around = self.around(centre, size, ago)
+        return around and around.outline(centre, size)
+
+    def around(self, centre: Array, size: Array, ago: int = 0) -> Around | None:
+        """Find what moves around a box of this centre and size, px, some frames `ago`.
+
+        None where there is no background, or the box is outside the image.
+        """
         if not self.is_known or ago >= len(self._latest):
             return None
         small = self._latest[-1 - ago].small
@@ -232,14 +278,7 @@ class Foreground:
             background = self._whole_lasting[rows, columns]
         else:
             background = median([each.small.image[rows, columns] for each in self._lasting])
-        moving = _moving(piece, background)
-        # From here on in px of the piece; the outline goes back to px of the frame.
-        inner = centre * small.zoom - corner
-        bounds = _bounds(moving, inner, size * small.zoom)
-        if bounds is None:
-            return None
-        low, high = bounds
-        return Outline((low + corner) / small.zoom, (high + corner) / small.zoom)
+        return Around(_moving(piece, background), corner, small.zoom)
 
 
 def _moving(

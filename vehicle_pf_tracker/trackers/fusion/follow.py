@@ -19,6 +19,7 @@ from vehicle_pf_tracker.trackers.fusion.observe import gathered
 from vehicle_pf_tracker.trackers.fusion.parameters import SIZE_RESPONSE, SizeParameters
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
+from vehicle_pf_tracker.trackers.fusion.sides import Sides
 from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
 from vehicle_pf_tracker.trackers.fusion.state import State, Wholeness
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Step
@@ -83,7 +84,7 @@ def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> Sta
     # The box becomes larger at once where a side has unfolded: that is no growth.
     if isinstance(verdict, Turning) and isinstance(state.verdict, Visible):
         state = state._replace(sightings=state.sightings.begun_anew())
-    state = state._replace(verdict=verdict)
+    state = state._replace(verdict=verdict, sides=_sides(state, verdict, seen, step))
     match verdict:
         # Before the peak: a filter that does not know the new side has its peak anywhere.
         case Turning(outlines=outlines):
@@ -102,6 +103,17 @@ def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> Sta
         case Gone():
             state = state._replace(particles=state.particles.all_visible(0.0))
     return state._replace(position=step.inside(state.particles.mean))
+
+
+def _sides(state: State, verdict: Verdict, seen: Observation, step: Step) -> Sides:
+    """Follow the sides of a vehicle in full view, where its surroundings were looked at."""
+    sides = state.sides.passed(step.elapsed * step.period)
+    match verdict:
+        case Visible(unfolding=unfolding):
+            return sides.looked(unfolding.around, seen.position, state.size)
+        case Turning():  # its box is the outline
+            return Sides()
+    return sides.doubted()
 
 
 def _with_whole(state: State, whole: float, seen: Observation, step: Step) -> State:

@@ -13,6 +13,7 @@ from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.trackers.fusion.departure import Strangers
 from vehicle_pf_tracker.trackers.fusion.hypotheses import Hypotheses
 from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
+from vehicle_pf_tracker.trackers.fusion.sides import Sides
 from vehicle_pf_tracker.trackers.fusion.surface_flow import SurfaceFlow
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
 from vehicle_pf_tracker.trackers.fusion.verdict import (
@@ -75,6 +76,8 @@ class State(NamedTuple):
         Earlier patches, and the share of the surface that moves with the vehicle.
     strangers : Strangers
         Highest response to what is not the vehicle, which a return has to exceed.
+    sides : Sides
+        Sides of the vehicle relative to the box, which only the reported box has.
     """
 
     particles: Hypotheses
@@ -90,6 +93,7 @@ class State(NamedTuple):
     points: SurfacePoints = SurfacePoints()
     surface: SurfaceFlow = SurfaceFlow()
     strangers: Strangers = Strangers()
+    sides: Sides = Sides()
 
     @property
     def box(self) -> Box:

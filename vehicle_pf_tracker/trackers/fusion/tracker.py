@@ -157,9 +157,10 @@ class FusionTracker(ParticleTracker[FusionParameters]):
 def _outcome(state: State, response: float, step: Step, *, has_left: bool) -> Outcome:
     """Report a state in the terms that all variants share."""
     particles = state.particles
-    x, y = state.position.tolist()
+    centre, size = state.sides.box(state.position, state.size)
+    x, y = step.inside(centre).tolist()
     vx, vy = particles.mean_velocity.tolist()
-    width, height = state.size.tolist()
+    width, height = size.tolist()
     match state.verdict:
         case Gone(departure=departure):
             regime = departure.reason

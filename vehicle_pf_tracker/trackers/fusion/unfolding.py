@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.image.motion.foreground import Foreground, Outline
+from vehicle_pf_tracker.image.motion.foreground import Around, Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion
 from vehicle_pf_tracker.trackers.fusion.turning import Branch
 
@@ -78,11 +78,14 @@ class Unfolding(NamedTuple):
         Time since the last of them, s.
     outline : Outline or None
         The outline, if it proves that a side unfolds.
+    around : Around or None
+        What moves around the box in the present frame, where that was looked at.
     """
 
     looks: tuple[Look, ...] = ()
     since: float = 0.0
     outline: Outline | None = None
+    around: Around | None = None
 
     def looked(
         self, foreground: Foreground, position: Array, size: Array, times: tuple[float, float]
@@ -98,11 +101,12 @@ class Unfolding(NamedTuple):
         # Outlines cost time: they are not asked for in each frame.
         since = self.since + elapsed * period
         if since < _EVERY:
-            return self._replace(since=since)
-        outline = foreground.outline(position, size)
+            return self._replace(since=since, around=None)
+        around = foreground.around(position, size)
+        outline = around and around.outline(position, size)
         # In a row: a look that tells nothing begins anew.
         if outline is None:
-            return Unfolding()
+            return Unfolding(around=around)
         low = position - size / 2
         high = position + size / 2
         beyond = np.array([low - outline.low, outline.high - high]) / size
@@ -110,11 +114,11 @@ class Unfolding(NamedTuple):
         ago = max(round(_AGO / period), 1)
         moves = _moves(foreground, outline, (low, high), (end, axis), ago)
         if beyond.min() < _LEAST_BEYOND or not moves:
-            return Unfolding()
+            return Unfolding(around=around)
         aged = (look._replace(age=look.age + since) for look in self.looks)
         looks = (*(look for look in aged if look.age < _KEPT), Look(0.0, beyond, position))
         has_grown = _grows(looks, size, end, axis)
-        return Unfolding(looks, 0.0, outline if has_grown else None)
+        return Unfolding(looks, 0.0, outline if has_grown else None, around)
 
     def branch(self, motion: PerspectiveMotion, size: Array) -> Branch | None:
         """Follow the outline of a vehicle of this size, px, as in a turn; None: it proves none."""
