@@ -26,7 +26,7 @@ from laboratory.stress import StressSystem, variant_system
 from laboratory.stress.systems import Follower
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.fusion import observe, reappearance, turning, visibility
+from vehicle_pf_tracker.trackers.fusion import exclusion, observe, reappearance, turning, visibility
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
 from vehicle_pf_tracker.trackers.fusion.reappearance import Reappearance
 from vehicle_pf_tracker.trackers.fusion.turning import Branch
@@ -67,8 +67,8 @@ MECHANISMS: Mapping[str, tuple[Replacement, ...]] = {
     ),
     "returns far ahead": (Replacement(reappearance, "_EARLY", np.inf),),
     "returns behind": (Replacement(Reappearance, "is_behind", _nowhere),),
-    "returns in another paint": (Replacement(observe, "LEAST_PAINT", -1.0),),
-    "hypotheses drawn to what stands": (Replacement(observe, "_is_covered", _always(False)),),
+    "returns in another paint": (Replacement(exclusion, "LEAST_PAINT", -1.0),),
+    "hypotheses drawn to what stands": (Replacement(observe, "is_covered", _always(False)),),
     "turns in another paint": (Replacement(turning, "_OTHER_PAINT", np.inf),),
     "turns behind the path": (Replacement(turning, "_BEHIND_PATH", np.inf),),
     "no outline in a turn": (Replacement(Branch, "begun", classmethod(_always(None))),),

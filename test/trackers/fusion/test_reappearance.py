@@ -105,32 +105,13 @@ def test_outlines_are_looked_at_in_every_second_frame_until_one_drives_on():
     assert looks == [*range(1, 20, 2), 20, 21, 22, 23]
 
 
-def test_behind_the_last_sighting_by_half_a_size_is_another_vehicle():
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 0.0)
-    # Half of the size, the root of 20 x 12, is 7.7 px.
-    positions = LAST + np.array([[-8.0, 0.0], [-7.0, 20.0], [60.0, 0.0]])
-    assert hidden.is_behind(positions).tolist() == [True, False, False]
-
-
-@pytest.mark.parametrize(("age", "bound"), [(4.0, -0.5 * 15.5 + 0.75 * 8), (8.0, 3.9), (90.0, 3.9)])
-def test_what_should_have_moved_by_its_size_is_not_where_it_was(age, bound):
-    """By less than a size in 4 frames; after 8, one that brakes may fall behind for long."""
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, age)
-    positions = LAST + np.array([[bound - 0.1, 5.0], [bound + 0.1, -5.0]])
-    assert hidden.is_behind(positions).tolist() == [True, False]
-
-
-def test_of_a_vehicle_that_stood_nothing_is_behind():
-    standing = PerspectiveMotion(LAST, np.zeros(2), 0.0)
-    hidden = Reappearance(Sighting(0.0, LAST, SIZE), standing, 30.0)
-    assert not hidden.is_behind(LAST - np.array([[30.0, 0.0]])).any()
-
-
 def test_a_size_ahead_of_the_prediction_is_another_in_its_lane():
     """After 20 frames it is expected 40 px ahead; a size is 15.5 px."""
     hidden = Reappearance(Sighting(0.0, LAST, SIZE), MOTION, 20.0)
     positions = LAST + np.array([[20.0, 5.0], [55.0, -5.0], [56.0, -5.0]])
     assert hidden.excludes(positions).tolist() == [False, False, True]
+    # What is behind is excluded, too (`behind`).
+    assert hidden.excludes(LAST - np.array([8.0, 0.0]))
     standing = hidden._replace(motion=PerspectiveMotion(LAST, np.zeros(2), 0.0))
     assert not standing.excludes(positions).any()
 

@@ -17,6 +17,7 @@ from vehicle_pf_tracker.image.motion.small_grey import small_grey
 from vehicle_pf_tracker.image.windows.window import is_outside
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.departure import Departure
+from vehicle_pf_tracker.trackers.fusion.exclusion import exclusion_of, is_covered, is_stranger
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     ACROSS_LANES,
     HIDDEN_SCALES,
@@ -25,7 +26,6 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     Hypotheses,
 )
 from vehicle_pf_tracker.trackers.fusion.parameters import EVEN_RESPONSE, VisibilityParameters
-from vehicle_pf_tracker.trackers.fusion.reappearance import LEAST_PAINT, Reappearance
 from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
 from vehicle_pf_tracker.trackers.fusion.state import State
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Prediction, Step
@@ -143,7 +143,7 @@ def _predicted(state: State, step: Step) -> tuple[State, Array]:
         grown = size * np.exp(float(particles.weights @ particles.growths) * elapsed)
         size = step.bounded(np.minimum(grown, LARGEST_GROWTH * state.whole.measured))
     across = 1.0 if visible else ACROSS_LANES
-    covered = _is_covered(state)
+    covered = is_covered(state)
     predicted = particles.predicted(step.rng, elapsed, sigmas, across, keeps_mean=covered)
     predicted = predicted.passed(elapsed)
     inside = predicted._replace(positions=step.inside(predicted.positions))
@@ -166,27 +166,13 @@ def observe(state: State, prediction: Prediction, step: Step) -> tuple[State, Ob
         response = view.at(position)
     else:
         position, response = likeliest_peak(view, state.particles, state.extent)
-    if was_hidden and _is_stranger(state, position, step):
+    if was_hidden and is_stranger(state, position, step):
         # The hypotheses have gathered at it: those of before are kept, hidden but for the prior.
         state = state._replace(particles=before.all_visible(PRIOR_DOUBT), size=size)
         position = before.mean
         response = 0.0  # of the vehicle nothing was observed, whatever the stranger answers
     tasks = _next_tasks(state, response, step)
     return state, Observation(view, step.inside(position), response, was_hidden, tasks)
-
-
-def _is_stranger(state: State, position: Array, step: Step) -> bool:
-    """Test whether what would return is off its way, or of another paint.
-
-    Only before a standing camera, where outlines are followed and the paint is learnt.
-    """
-    way = _way_of(state)
-    if way is None or state.particles.probability_visible <= 0.5:
-        return False
-    if way.excludes(position):
-        return True
-    appearance = step.memory.appearance
-    return appearance.paint_share(step.frame, position, state.size) < LEAST_PAINT
 
 
 def _next_tasks(state: State, response: float, step: Step) -> Tasks:
@@ -212,7 +198,7 @@ def _weighed(state: State, climb: tuple[int, float], step: Step) -> tuple[State,
     view, positions, ratios, scale = best
     # Where something moves at the predicted place it may be the vehicle, in doubt in full view, and
     # they move to it; what answers on an occluder stands, and would hold them back.
-    covered = _is_covered(state)
+    covered = is_covered(state)
     particles = state.particles.climbed(positions, ratios, keeps_mean=covered)
     # While hidden it stays the predicted one: taken over from clutter, it would drift.
     size = step.bounded(scale * state.size) if particles.probability_visible > 0.5 else state.size
@@ -231,25 +217,12 @@ def _searched(
     view = _viewed(patch, step)
     options = step.parameters.visibility
     positions, ratios = response_evidence(view, particles.positions, climb, options)
-    way = _way_of(state)
     # What answers where it cannot be is no evidence for it, only against it.
-    if way is not None and (ratios > 0).any():  # seldom, and the way costs time
-        ratios = np.where(way.excludes(positions), np.minimum(ratios, 0.0), ratios)
+    if (ratios > 0).any():  # seldom, and the way costs time
+        excludes = exclusion_of(state, step)
+        if excludes is not None:
+            ratios = np.where(excludes(positions), np.minimum(ratios, 0.0), ratios)
     return view, positions, ratios
-
-
-def _way_of(state: State) -> Reappearance | None:
-    """Way on which a hidden vehicle is expected, before a standing camera."""
-    match state.verdict:
-        case Hidden(outlines=outlines):
-            return outlines.reappearance
-    return None
-
-
-def _is_covered(state: State) -> bool:
-    """Test whether the vehicle is hidden behind something that stands."""
-    way = _way_of(state)
-    return way is not None and way.is_covered
 
 
 def _viewed(patch: Patch, step: Step) -> View:

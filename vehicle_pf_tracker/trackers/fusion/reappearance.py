@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.fusion.behind import is_behind
 from vehicle_pf_tracker.trackers.fusion.outline_boxes import areas, front_move
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import (
@@ -46,12 +47,6 @@ is a choice: 7 of the 64 spots that are compared."""
 _LARGEST_JUMP = 0.5
 """Largest move of a side from frame to frame, in predicted diagonals: more is another piece. The
 half is a choice; two vehicles in a lane are a whole length apart."""
-_BEHIND = 0.5
-"""Distance in sizes against the heading, from the last clear sighting, beyond which nothing is the
-vehicle: it does not reverse on a road, and what comes up from behind is another one."""
-_MOVED = 0.75
-"""Distance in sizes by which that bound moves on while the vehicle is predicted to move by its
-size: an occluder that stands hides a vehicle only until it has moved by about its own length."""
 _EARLY = 1.0
 """Distance in predicted sizes ahead of the prediction beyond which no hypothesis is the vehicle:
 there is the one ahead of it in its lane. Only an outline that came out is believed there. Chosen
@@ -224,14 +219,7 @@ class Reappearance(NamedTuple):
 
     def is_behind(self, positions: Array) -> Mask:
         """Test which positions (..., 2) are against the heading from where the vehicle was last."""
-        # Both sides times the speed, undivided: of a vehicle that stood nothing is behind.
-        velocity = self.motion.velocity
-        speed = float(np.hypot(*velocity))
-        reach = float(np.sqrt(self.last.size.prod())) * speed
-        # The bound stops at a size: one that brakes falls behind its prediction more and more.
-        predicted = float((self.place[0] - self.last.position) @ velocity)
-        bound = _MOVED * min(max(predicted, 0.0), reach) - _BEHIND * reach
-        return np.asarray((positions - self.last.position) @ velocity < bound)
+        return is_behind(positions, self.motion, self.last, self.age)
 
     def _on_heading(self, boxes: Array) -> Mask:
         """Test which boxes are within reach of the predicted path."""

@@ -1,0 +1,81 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Where, and as what, a hidden vehicle cannot be back.
+
+Each hypothesis there has no evidence for it, and no return is believed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.trackers.fusion.behind import is_behind
+from vehicle_pf_tracker.trackers.fusion.reappearance import LEAST_PAINT, Reappearance
+from vehicle_pf_tracker.trackers.fusion.state import State
+from vehicle_pf_tracker.trackers.fusion.step import Step
+from vehicle_pf_tracker.trackers.fusion.verdict import Hidden
+
+_LEAST_WAY = 0.5
+"""Predicted way since the last clear sighting, in sizes, from which its heading tells what is
+behind, before a moving camera: as far as what is behind has to be (`behind`). Of .34, a vehicle of
+13 px came back .58 behind (S0601)."""
+
+Exclusion = Callable[[Array], npt.NDArray[np.bool_]]
+"""Function of positions (..., 2), px: at which of them no hypothesis is the vehicle."""
+
+
+def exclusion_of(state: State, step: Step) -> Exclusion | None:
+    """Give the places where a hidden vehicle cannot be; None where none are known."""
+    if not isinstance(state.verdict, Hidden):
+        return None
+    way = _way_of(state)
+    if way is not None:
+        return way.excludes
+    if step.memory.foreground.is_known:
+        return None
+    # Before a moving camera there is no outline, but sightings are carried along with it.
+    fitted = state.sightings.fit()
+    if fitted is None:
+        return None
+    motion, last = fitted
+    # What is carried along is off by the camera's error: a short way tells no heading.
+    moved = float(np.hypot(*(motion.position_at(last.age) - last.position)))
+    if moved < _LEAST_WAY * float(np.sqrt(last.size.prod())):
+        return None
+    return partial(is_behind, motion=motion, last=last, age=last.age)
+
+
+def is_stranger(state: State, position: Array, step: Step) -> bool:
+    """Test whether what would return is off its way, or of another paint.
+
+    Paint is learnt before a standing camera only.
+    """
+    if state.particles.probability_visible <= 0.5:
+        return False
+    excludes = exclusion_of(state, step)
+    if excludes is not None and excludes(position):
+        return True
+    if _way_of(state) is None:
+        return False
+    appearance = step.memory.appearance
+    return appearance.paint_share(step.frame, position, state.size) < LEAST_PAINT
+
+
+def is_covered(state: State) -> bool:
+    """Test whether the vehicle is hidden behind something that stands."""
+    way = _way_of(state)
+    return way is not None and way.is_covered
+
+
+def _way_of(state: State) -> Reappearance | None:
+    """Way on which a hidden vehicle is expected, before a standing camera."""
+    match state.verdict:
+        case Hidden(outlines=outlines):
+            return outlines.reappearance
+    return None
