@@ -423,6 +423,32 @@ def test_a_pan_is_noticed_as_a_camera_that_moves():
     assert not tracker.state.sightings.are_steady
 
 
+class Jolted:
+    """A car before a camera that is jolted by a px at time 60."""
+
+    road, car = texture(5, 330, 230, 2.5, 5.0), texture(6, 48, 30, 2.5, 5.0)
+
+    def box(self, time):
+        return Box.around((60.0 + 3 * time - (1 if time >= 60 else 0), 120.0), 48, 30)
+
+    def frame(self, time):
+        picture = self.road.copy()
+        picture[105:135, 36 + 3 * time : 84 + 3 * time] = self.car
+        left = 1 if time >= 60 else 0
+        return np.ascontiguousarray(picture[:220, left : left + 320])
+
+
+def test_a_camera_that_is_jolted_stands_and_keeps_its_background():
+    tracker, jolted = fusion(), Jolted()
+    estimate = follow(tracker, jolted, range(64))[-1]
+    memory, state = tracker.memory, tracker.state
+    assert state.sightings.are_steady
+    assert memory.foreground.is_known
+    outline = memory.foreground.outline(np.array(jolted.box(63).centre), np.array([48.0, 30.0]))
+    assert outline.size == pytest.approx([48, 30], abs=2)
+    assert error(estimate, jolted, 63) < 2
+
+
 def counted(monkeypatch):
     """Names of the costly tasks, in the order in which the tracker does them."""
     done = []

@@ -146,6 +146,14 @@ def test_sightings_are_steady_when_the_camera_has_stood_for_as_long_as_they_are_
     assert sightings.are_steady
 
 
+def test_a_camera_that_sways_stands_and_carries_sightings_along():
+    sightings = Sightings().added(np.array([50.0, 40.0]), np.array([20.0, 12.0]), 1.0)
+    sways = CameraMotion(np.eye(2), np.array([1.5, -1.0]))
+    sightings = sightings.moved_on(1.0, sways, stands=True)
+    assert sightings.are_steady
+    assert sightings.rows[0, 1:3].tolist() == [51.5, 39.0]
+
+
 def test_without_clear_sightings_there_is_nothing_to_fit():
     sightings = Sightings()
     assert sightings.fit() is None

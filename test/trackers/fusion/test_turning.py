@@ -54,7 +54,7 @@ def drive(
     turns,
     paint=lambda picture, time: None,
     response=0.1,
-    still=lambda time: True,
+    stands=lambda time: True,
     late=0,
     difference=1.0,
 ):
@@ -68,7 +68,7 @@ def drive(
         left, top = np.rint(centre - SIZE / 2).astype(int)
         picture[top : top + 16, left : left + 26] = 230
         paint(picture, time)
-        foreground.keep(SmallGrey(picture, 1.0), still=still(time))
+        foreground.keep(SmallGrey(picture, 1.0), stands=stands(time))
         if not foreground.is_known:
             turning = Outlines()
         if time > DOUBT + late:
@@ -126,7 +126,7 @@ def lorry(picture, time):
     "options",
     [
         {"turns": 0.0}, {"turns": 0.0, "paint": wall}, {"turns": 0.0, "paint": lorry},
-        {"turns": 0.08, "still": lambda time: time != DOUBT + 1},
+        {"turns": 0.08, "stands": lambda time: time != DOUBT + 1},
         {"turns": 0.08, "difference": 1.1}, {"turns": 0.04, "difference": 1.1, "late": 20},
     ],
     ids=[
@@ -197,7 +197,7 @@ def test_frames_that_were_dropped_are_not_counted_back():
         picture = ROAD.copy()
         left, top = np.rint(centre - SIZE / 2).astype(int)
         picture[top : top + 16, left : left + 26] = 230
-        foreground.keep(SmallGrey(picture, 1.0), still=True, elapsed=2.0)
+        foreground.keep(SmallGrey(picture, 1.0), stands=True, elapsed=2.0)
     motion = PerspectiveMotion(centres[-6], np.array([SPEED, 0.0]), 0.0)
     branch = Branch.begun(foreground, motion, Sighting(10.0, centres[-6], SIZE))
     assert branch.age == 10.0
@@ -211,7 +211,7 @@ def test_frames_of_another_size_begin_anew():
     for time in range(60):
         picture = ROAD if time < 59 else ROAD[:100]
         assert foreground.is_known is (time > 20)
-        foreground.keep(SmallGrey(picture, 1.0), still=True)
+        foreground.keep(SmallGrey(picture, 1.0), stands=True)
     assert not foreground.is_known
     motion = PerspectiveMotion(START, np.array([SPEED, 0.0]), 0.0)
     last = Sighting(0.0, START, SIZE)

@@ -33,7 +33,7 @@ def looks(left, rate=30, stops=FRAMES):
         # Its surface moves with it.
         body = np.roll(BODY, 2 * max(time - stops, 0), axis=1)
         picture[40:64, right - width : right] = body[:, 120 - width :]
-        foreground.keep(SmallGrey(picture, 1.0), still=True)
+        foreground.keep(SmallGrey(picture, 1.0), stands=True)
         if foreground.is_known:
             position = np.array([right - 15.0, 52.0])
             unfolding = unfolding.looked(foreground, position, BOX, (1.0, 1 / rate))
@@ -96,7 +96,7 @@ def test_the_ghost_of_where_it_stood_is_none():
         right = 90 + max(time - 30, 0)
         picture = ROAD.copy()
         picture[40:64, right - 30 : right] = BODY[:, 90:]
-        foreground.keep(SmallGrey(picture, 1.0), still=True)
+        foreground.keep(SmallGrey(picture, 1.0), stands=True)
         if foreground.is_known:
             unfolding = unfolding.looked(
                 foreground, np.array([right - 15.0, 52.0]), BOX, (1.0, 1 / 30)

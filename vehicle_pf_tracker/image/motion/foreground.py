@@ -3,14 +3,12 @@
 
 """Foreground of a standing camera: what differs from the median of earlier frames.
 
-Nothing is computed before it is asked for; frames are kept as they are.
+Nothing is computed before it is asked for; `kept_frames.py` has the frames.
 """
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections import deque
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -19,33 +17,16 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.motion.kept_frames import KeptFrames, moved_along
 from vehicle_pf_tracker.image.motion.mask_parts import connected_parts
 from vehicle_pf_tracker.image.motion.median_image import median
 from vehicle_pf_tracker.image.motion.side_edges import edges_beyond
 from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 
-_KEPT_EVERY = 4
-"""Frames between two that are kept for the background: those in a row show the same vehicles. With
-`_FRAMES_KEPT` two seconds at 30 Hz."""
-_LARGEST_SPACING = 16
-"""The same for the outline of the vehicle itself once the camera has stood for long: of two seconds
-a slow one takes most for its length, and becomes a part of the background; of eight it does not.
-Chosen on scene `turn`, where a lorry of 69 px at 2 px per frame takes 35 frames of 60. What else
-moves stays with two seconds: with eight 15 of 17 painted signs are recovered from, instead of 16
-(laboratory/notes/fusion_tried.md)."""
-_FRAMES_KEPT = 15
-"""Frames that a background is the median of: a vehicle that moves by its length within half of
-their time is no part of it."""
-_FEWEST_FRAMES = 6
-"""Frames below which there is no background yet, a choice: the median of six is wrong only where
-three of them show vehicles."""
 _LOOKED_AT = 4
 """Step between kept frames that are searched for other vehicles when one is hidden: with
 `_KEPT_EVERY` half a second at 30 Hz."""
-_LATEST = 24
-"""Latest frames kept besides, 0.8 s at 30 Hz: outlines of just before a doubt are what later ones
-are compared with, and where a turn is slow the last clear sighting is 15 frames old by then (scene
-`turn` at 2 px per frame, on which it was chosen)."""
 _AROUND = 1.5
 """Half side of the square that is looked at around a box, in longer sides of it, a choice: the box
 may have moved by its length, and what reaches the rim has no outline."""
@@ -63,6 +44,9 @@ _CLOSED = np.ones((3, 3), np.uint8)
 """Neighbourhood in px of the reduced frame within which gaps are closed, the smallest."""
 _LEAST_PIECE = 4
 """Area in px of the reduced frame below which a connected piece is noise: 2 x 2, a choice."""
+
+
+_STANDING = CameraMotion()
 
 
 class Outline(NamedTuple):
@@ -125,92 +109,63 @@ class Around(NamedTuple):
         return edges_beyond(self.mask, middle - half, middle + half)
 
 
-class _Kept(NamedTuple):
-    """A frame, and the frame periods from the first one to it."""
-
-    small: SmallGrey
-    time: float
-
-
 class Foreground:
-    """Keeps frames of a standing camera."""
+    """Tells what moves before a standing camera."""
 
     def __init__(self) -> None:
-        self._background: deque[_Kept] = deque(maxlen=_FRAMES_KEPT)
-        self._lasting: deque[_Kept] = deque(maxlen=_FRAMES_KEPT)
-        self._spacing = _KEPT_EVERY
-        self._latest: deque[_Kept] = deque(maxlen=_LATEST)
-        self._frames = 0
-        self._time = 0.0
-        self._whole = np.empty((0, 0), np.uint8)
-        self._whole_lasting = self._whole
+        self._kept = KeptFrames()
+        self._whole: SmallGrey | None = None
+        self._whole_lasting: SmallGrey | None = None
         self._learnt_at = -1
 
-    def keep(self, small: SmallGrey, *, still: bool, elapsed: float = 1.0) -> None:
+    def keep(
+        self,
+        small: SmallGrey,
+        camera: CameraMotion = _STANDING,
+        *,
+        stands: bool,
+        elapsed: float = 1.0,
+    ) -> None:
         """Keep a frame, `elapsed` periods after the last one.
 
-        Earlier ones are discarded if they are of another size, or if the camera has moved.
+        Earlier ones are discarded if they are of another size, or if the camera does not stand. If
+        it stands and yet sways, by `camera` (px of the whole frame), they are carried along.
         """
-        self._time += elapsed
-        # A background of another view is worse than none.
-        if not still or (self._latest and self._latest[-1].small.image.shape != small.image.shape):
-            self._background.clear()
-            self._lasting.clear()
-            self._latest.clear()
-            self._frames = 0
-            self._spacing = _KEPT_EVERY
-        # Frames in a row show the same vehicles: those farther apart tell road from traffic.
-        if self._frames % _KEPT_EVERY == 0:
-            self._background.append(_Kept(small, self._time))
-        if self._frames % self._spacing == 0:
-            self._lasting.append(_Kept(small, self._time))
-            self._spread_out()
-        self._latest.append(_Kept(small, self._time))
-        self._frames += 1
-
-    def _spread_out(self) -> None:
-        """Once all places are taken, go on with every second frame, so that they last longer."""
-        if len(self._lasting) == _FRAMES_KEPT and self._spacing < _LARGEST_SPACING:
-            self._lasting = deque(list(self._lasting)[::2], maxlen=_FRAMES_KEPT)
-            self._spacing *= 2
+        self._kept.keep(small, camera, stands=stands, elapsed=elapsed)
+        if self._whole is not None and self._whole_lasting is not None and not camera.still:
+            self._whole = moved_along(self._whole, camera)
+            self._whole_lasting = moved_along(self._whole_lasting, camera)
 
     @property
     def is_known(self) -> bool:
         """True once the background has been seen for long enough, by a camera that stands."""
-        return len(self._background) >= _FEWEST_FRAMES
+        return self._kept.are_enough
 
     @property
     def extent(self) -> Array:
         """Width and height of the frames, px."""
-        small = self._latest[-1].small
+        small = self._kept.present
         return np.array(small.image.shape[::-1]) / small.zoom
 
     def learn_background(self) -> None:
         """Learn the whole background from the frames that are kept now."""
-        self._whole = median([each.small.image for each in self._background])
-        self._whole_lasting = median([each.small.image for each in self._lasting])
-        self._learnt_at = self._frames
+        zoom = self._kept.present.zoom
+        self._whole = SmallGrey(median([each.small.image for each in self._kept.spread]), zoom)
+        lasting = median([each.small.image for each in self._kept.lasting])
+        self._whole_lasting = SmallGrey(lasting, zoom)
+        self._learnt_at = self._kept.number
 
     def history(self) -> Iterator[tuple[float, Array]]:
         """Give the ages in periods of kept frames, and the boxes of what moves in them.
 
         The background has to be learnt.
         """
-        kept = list(self._background)[::-1]
-        return ((self._time - each.time, self._boxes(each.small)) for each in kept[::_LOOKED_AT])
+        kept = list(self._kept.spread)[::-1]
+        return ((self._kept.age(each), self._boxes(each.small)) for each in kept[::_LOOKED_AT])
 
     def periods_since(self, age: float) -> list[float] | None:
-        """Periods from each of the latest frames to the next, from the one of this age on.
-
-        Oldest first; None where that one is no longer kept.
-        """
-        # Where frames were dropped there are fewer of them than periods have passed.
-        times = [each.time for each in self._latest]
-        wanted = self._time - age
-        if wanted < times[0] - 0.5:
-            return None
-        first = min(range(len(times)), key=lambda number: abs(times[number] - wanted))
-        return [after - before for before, after in itertools.pairwise(times[first:])]
+        """Periods between the latest frames; see `KeptFrames.periods_since`."""
+        return self._kept.periods_since(age)
 
     def boxes(self) -> Array:
         """Find all that moves now, against the background that was learnt.
@@ -220,19 +175,24 @@ class Foreground:
         (N, 2, 2) array
             Left and upper, right and lower side of each connected piece, px.
         """
-        return self._boxes(self._latest[-1].small)
+        return self._boxes(self._kept.present)
 
     def boxes_near(self, centre: Array, size: Array) -> Array:
         """Find what moves now within three of its longer sides of a box (px), as `boxes`."""
-        small = self._latest[-1].small
+        small = self._kept.present
         rows, columns, corner = _neighbourhood(small, centre, _WIDER * size)
         piece = small.image[rows, columns]
         if min(piece.shape) < 3:
             return np.empty((0, 2, 2))
-        return (_pieces(_moving(piece, self._whole[rows, columns])) + corner) / small.zoom
+        return (_pieces(_moving(piece, self._learnt[rows, columns])) + corner) / small.zoom
+
+    @property
+    def _learnt(self) -> npt.NDArray[np.uint8]:
+        """The background that was learnt; nothing differs from an empty one."""
+        return np.empty((0, 0), np.uint8) if self._whole is None else self._whole.image
 
     def _boxes(self, small: SmallGrey) -> Array:
-        return _pieces(_moving(small.image, self._whole)) / small.zoom
+        return _pieces(_moving(small.image, self._learnt)) / small.zoom
 
     def changed(self, low: Array, high: Array, ago: int) -> float:
         """Share of a part of the frame that has changed since `ago` frames before.
@@ -244,13 +204,13 @@ class Foreground:
         low, high : (2,) arrays
             Left and upper, right and lower side of the part, px.
         """
-        if ago >= len(self._latest):
+        if ago >= len(self._kept.latest):
             return 0.0
-        small = self._latest[-1].small
+        small = self._kept.present
         left, top = np.floor(np.maximum(low * small.zoom, 0)).astype(int).tolist()
         right, bottom = np.ceil(np.maximum(high * small.zoom, 0)).astype(int).tolist()
         now = small.image[top:bottom, left:right]
-        before = self._latest[-1 - ago].small.image[top:bottom, left:right]
+        before = self._kept.latest[-1 - ago].small.image[top:bottom, left:right]
         return float((cv2.absdiff(now, before) > _LEAST_CONTRAST).mean()) if now.size else 0.0
 
     def outline(self, centre: Array, size: Array, ago: int = 0) -> Outline | None:
@@ -266,18 +226,18 @@ class Foreground:
 
         None where there is no background, or the box is outside the image.
         """
-        if not self.is_known or ago >= len(self._latest):
+        if not self.is_known or ago >= len(self._kept.latest):
             return None
-        small = self._latest[-1 - ago].small
+        small = self._kept.latest[-1 - ago].small
         rows, columns, corner = _neighbourhood(small, centre, size)
         piece = small.image[rows, columns]
         if min(piece.shape) < 3:
             return None
         # The whole background is known for this frame; else that of the neighbourhood is enough.
-        if self._learnt_at == self._frames:
-            background = self._whole_lasting[rows, columns]
+        if self._whole_lasting is not None and self._learnt_at == self._kept.number:
+            background = self._whole_lasting.image[rows, columns]
         else:
-            background = median([each.small.image[rows, columns] for each in self._lasting])
+            background = median([each.small.image[rows, columns] for each in self._kept.lasting])
         return Around(_moving(piece, background), corner, small.zoom)
 
 

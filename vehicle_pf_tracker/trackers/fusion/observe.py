@@ -10,6 +10,7 @@ import functools
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
 from vehicle_pf_tracker.image.correlation.map_search import climbed
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
@@ -85,9 +86,12 @@ def _moved_with_camera(state: State, step: Step) -> State:
     camera = CameraMotion()
     if step.parameters.motion.camera:  # else it is taken to stand, and outlines are found
         camera = memory.camera.measure(small, state.box)
-    memory.foreground.keep(small, still=camera.still, elapsed=step.elapsed)
+    extent = np.array(frame_size(step.frame), float)
+    drift = state.drift.moved_on(camera, step.elapsed, extent)
+    memory.foreground.keep(small, camera, stands=drift.stands, elapsed=step.elapsed)
     state = state._replace(
-        sightings=state.sightings.moved_on(step.elapsed, camera),
+        drift=drift,
+        sightings=state.sightings.moved_on(step.elapsed, camera, stands=drift.stands),
         surface=state.surface.moved(camera),
     )
     # Outlines are places in an image whose background is gone, and cannot be carried along.

@@ -156,8 +156,8 @@ class Sightings(NamedTuple):
         # What is left was in view for long enough, or is all there is.
         return self._replace(rows=self.rows[:before], in_view=PROOF_FRAMES)
 
-    def moved_on(self, elapsed: float, camera: CameraMotion) -> Sightings:
-        """Let `elapsed` frames pass and the camera move."""
+    def moved_on(self, elapsed: float, camera: CameraMotion, *, stands: bool = False) -> Sightings:
+        """Let `elapsed` frames pass and the camera move; `stands` if it only sways."""
         # They are kept from the last clear one on: a vehicle may be hidden for as long again.
         proven = self.proven().rows
         clear = np.flatnonzero(proven[:, 5] >= CLEAR_RESPONSE)
@@ -166,10 +166,10 @@ class Sightings(NamedTuple):
         # A mask copies: the rows of the state before stay as they were.
         rows = self.rows.compress(self.rows[:, 0] < oldest, axis=0)
         rows[:, 0] += elapsed
-        if camera.still:
-            return self._replace(rows=rows, camera_stood=self.camera_stood + elapsed)
-        rows[:, 1:3] = camera.apply(rows[:, 1:3])
-        return self._replace(rows=rows, camera_stood=0.0)
+        if not camera.still:
+            rows[:, 1:3] = camera.apply(rows[:, 1:3])
+        stood = self.camera_stood + elapsed if camera.still or stands else 0.0
+        return self._replace(rows=rows, camera_stood=stood)
 
     @property
     def are_steady(self) -> bool:

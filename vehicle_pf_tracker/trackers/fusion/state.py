@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.image.motion.camera_drift import CameraDrift
 from vehicle_pf_tracker.trackers.fusion.departure import Strangers
 from vehicle_pf_tracker.trackers.fusion.hypotheses import Hypotheses
 from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
@@ -76,6 +77,8 @@ class State(NamedTuple):
         Earlier patches, and the share of the surface that moves with the vehicle.
     strangers : Strangers
         Highest response to what is not the vehicle, which a return has to exceed.
+    drift : CameraDrift
+        How far the camera has moved on of late.
     sides : Sides
         Sides of the vehicle relative to the box, which only the reported box has.
     """
@@ -93,6 +96,7 @@ class State(NamedTuple):
     points: SurfacePoints = SurfacePoints()
     surface: SurfaceFlow = SurfaceFlow()
     strangers: Strangers = Strangers()
+    drift: CameraDrift = CameraDrift()
     sides: Sides = Sides()
 
     @property
