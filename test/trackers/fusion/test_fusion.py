@@ -424,17 +424,20 @@ def test_a_pan_is_noticed_as_a_camera_that_moves():
 
 
 class Jolted:
-    """A car before a camera that is jolted by a px at time 60."""
+    """A car before a camera that is jolted once, by a px or more."""
 
-    road, car = texture(5, 330, 230, 2.5, 5.0), texture(6, 48, 30, 2.5, 5.0)
+    road, car = texture(5, 380, 230, 2.5, 5.0), texture(6, 48, 30, 2.5, 5.0)
+
+    def __init__(self, at=60, px=1):
+        self.at, self.px = at, px
 
     def box(self, time):
-        return Box.around((60.0 + 3 * time - (1 if time >= 60 else 0), 120.0), 48, 30)
+        return Box.around((60.0 + 3 * time - (self.px if time >= self.at else 0), 120.0), 48, 30)
 
     def frame(self, time):
         picture = self.road.copy()
         picture[105:135, 36 + 3 * time : 84 + 3 * time] = self.car
-        left = 1 if time >= 60 else 0
+        left = self.px if time >= self.at else 0
         return np.ascontiguousarray(picture[:220, left : left + 320])
 
 
@@ -447,6 +450,14 @@ def test_a_camera_that_is_jolted_stands_and_keeps_its_background():
     outline = memory.foreground.outline(np.array(jolted.box(63).centre), np.array([48.0, 30.0]))
     assert outline.size == pytest.approx([48, 30], abs=2)
     assert error(estimate, jolted, 63) < 2
+
+
+def test_a_camera_that_was_moved_has_a_new_background_once_it_has_stood_for_a_second():
+    tracker, moved = fusion(), Jolted(at=30, px=12)
+    follow(tracker, moved, range(32))
+    assert not tracker.memory.foreground.is_known
+    follow(tracker, moved, range(56))
+    assert tracker.memory.foreground.is_known
 
 
 def counted(monkeypatch):

@@ -88,10 +88,12 @@ def _moved_with_camera(state: State, step: Step) -> State:
         camera = memory.camera.measure(small, state.box)
     extent = np.array(frame_size(step.frame), float)
     drift = state.drift.moved_on(camera, step.elapsed, extent)
-    memory.foreground.keep(small, camera, stands=drift.stands, elapsed=step.elapsed)
+    # A camera that has come to rest shows a new background, however far it came.
+    stands = camera.still or drift.stands
+    memory.foreground.keep(small, camera, stands=stands, elapsed=step.elapsed)
     state = state._replace(
         drift=drift,
-        sightings=state.sightings.moved_on(step.elapsed, camera, stands=drift.stands),
+        sightings=state.sightings.moved_on(step.elapsed, camera, stands=stands),
         surface=state.surface.moved(camera),
     )
     # Outlines are places in an image whose background is gone, and cannot be carried along.
