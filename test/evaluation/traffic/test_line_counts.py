@@ -34,9 +34,8 @@ def counts(sequence, seen=lambda number: True, first=1):
     lines = LineCounts(sequence)
     for number, bottom in enumerate(BOTTOMS, start=1):
         estimates = [vehicle(1, LEFT + WIDTH / 2, bottom)] if seen(number) else []
-        session = SimpleNamespace(
-            found=SimpleNamespace(images=int(number >= first)), estimates=estimates, ambiguous=None
-        )
+        detected = SimpleNamespace(images=int(number >= first))
+        session = SimpleNamespace(detected=detected, estimates=estimates, ambiguous=None)
         lines.add(number, round(number * 1e9 / 25), session)
     return lines.results()
 
