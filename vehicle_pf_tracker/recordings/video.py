@@ -31,7 +31,7 @@ _ROUNDING_NS = 1_000_000
 """Largest difference of a stated time from an even rate that is rounding: containers keep ms."""
 
 _WHOLE = 0.95
-"""Share of the stated length from which on a video is whole. A choice: some decoders count the
+"""Least share of the stated length that a whole video has. A choice: some decoders count the
 frames behind damaged ones as if these had never been, and lengths are rounded."""
 
 

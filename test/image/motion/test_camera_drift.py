@@ -9,7 +9,7 @@ import pytest
 from vehicle_pf_tracker.image.motion.camera_drift import CameraDrift
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 
-EXTENT = np.array([640.0, 360.0])
+EXTENT = (640, 360)
 UPRIGHT = np.eye(2)
 
 
@@ -53,7 +53,7 @@ def test_a_camera_that_pans_does_not_stand_once_it_has_moved_by_half_a_hundredth
 def test_a_camera_that_turns_about_the_middle_of_the_image_does_not_stand():
     angle = 0.02
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    middle = EXTENT / 2
+    middle = np.array(EXTENT) / 2
     # The middle stays, the corners move by 367 px times the angle.
     assert not drifted([CameraMotion(turn, middle - turn @ middle)]).stands
 

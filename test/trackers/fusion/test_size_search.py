@@ -6,9 +6,8 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.trackers.fusion.follow import believed_stretch
 from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
-from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
+from vehicle_pf_tracker.trackers.fusion.size_search import believed_stretch, searched_size
 
 STEP = np.log(1.03)
 SIZE = np.array([40.0, 20.0])

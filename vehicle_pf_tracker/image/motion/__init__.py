@@ -7,6 +7,8 @@
 - `shared_motion`: the motion that most points share
 - `box_motion`: turn and stretch of the points in a box
 - `camera_motion`: motion of the background, measured by `camera_flow` in a `small_grey` frame
-- `foreground`: pixels that differ from the background of a standing camera, a `median_image`
-- `mask_parts`: parts of such a mask that hang together
+- `camera_drift`: whether a camera that moves only sways
+- `foreground`: pixels that differ from the background of a standing camera, a `median_image` of its
+  `kept_frames`
+- `mask_parts`: connected parts of such a mask; `side_edges`: where it ends at the sides of a box
 """

@@ -34,13 +34,15 @@ class CameraDrift(NamedTuple):
 
     corners: Array = np.zeros((4, 2))
 
-    def moved_on(self, camera: CameraMotion, elapsed: float, extent: Array) -> CameraDrift:
-        """Let `elapsed` periods pass, and a camera move whose images have this extent (2,), px."""
+    def moved_on(
+        self, camera: CameraMotion, elapsed: float, extent: tuple[int, int]
+    ) -> CameraDrift:
+        """Let `elapsed` periods pass; move with a camera whose images have this extent, px."""
         if camera.still and not self.corners.any():
             return self
         # Corners, as they move in a turn and a zoom, too.
-        places = _CORNERS * extent
-        moved = (camera.apply(places) - places) / float(extent.max())
+        places = _CORNERS * np.array(extent)
+        moved = (camera.apply(places) - places) / max(extent)
         return CameraDrift(self.corners * math.exp(-elapsed / _FADES) + moved)
 
     @property

@@ -73,7 +73,7 @@ class Outline(NamedTuple):
 
 
 class Around(NamedTuple):
-    """What moves around a box.
+    """Mask of the moving pixels around a box.
 
     Attributes
     ----------
@@ -131,8 +131,11 @@ class Foreground:
         Earlier ones are discarded if they are of another size, or if the camera does not stand. If
         it stands and yet sways, by `camera` (px of the whole frame), they are carried along.
         """
-        self._kept.keep(small, camera, stands=stands, elapsed=elapsed)
-        if self._whole is not None and self._whole_lasting is not None and not camera.still:
+        self._kept.keep(small, camera, elapsed, stands=stands)
+        if not stands:
+            self._whole = None
+            self._whole_lasting = None
+        elif self._whole is not None and self._whole_lasting is not None and not camera.still:
             self._whole = moved_along(self._whole, camera)
             self._whole_lasting = moved_along(self._whole_lasting, camera)
 
@@ -188,8 +191,9 @@ class Foreground:
 
     @property
     def _learnt(self) -> npt.NDArray[np.uint8]:
-        """The background that was learnt; nothing differs from an empty one."""
-        return np.empty((0, 0), np.uint8) if self._whole is None else self._whole.image
+        """The background that was learnt."""
+        assert self._whole is not None, "learn the background first"
+        return self._whole.image
 
     def _boxes(self, small: SmallGrey) -> Array:
         return _pieces(_moving(small.image, self._learnt)) / small.zoom

@@ -37,7 +37,6 @@ _LATEST = 24
 """Latest frames kept besides, 0.8 s at 30 Hz: outlines of just before a doubt are what later ones
 are compared with, and where a turn is slow the last clear sighting is 15 frames old by then (scene
 `turn` at 2 px per frame, on which it was chosen)."""
-_STANDING = CameraMotion()
 
 
 class Kept(NamedTuple):
@@ -70,14 +69,7 @@ class KeptFrames:
         self._spacing = _KEPT_EVERY
         self._time = 0.0
 
-    def keep(
-        self,
-        small: SmallGrey,
-        camera: CameraMotion = _STANDING,
-        *,
-        stands: bool,
-        elapsed: float = 1.0,
-    ) -> None:
+    def keep(self, small: SmallGrey, camera: CameraMotion, elapsed: float, *, stands: bool) -> None:
         """Keep a frame; see `Foreground.keep`."""
         self._time += elapsed
         # A background of another view is worse than none.

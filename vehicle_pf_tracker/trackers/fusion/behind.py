@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""What is behind a hidden vehicle: it does not reverse, whatever answers there."""
+"""Places behind a hidden vehicle, where it cannot be back, as it does not reverse."""
 
 from __future__ import annotations
 

@@ -16,11 +16,11 @@ from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.hypotheses import PRIOR_DOUBT, hidden_hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
-from vehicle_pf_tracker.trackers.fusion.parameters import SIZE_RESPONSE, SizeParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import SIZE_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 from vehicle_pf_tracker.trackers.fusion.sides import Sides
-from vehicle_pf_tracker.trackers.fusion.size_search import searched_size
+from vehicle_pf_tracker.trackers.fusion.size_search import believed_stretch, searched_size
 from vehicle_pf_tracker.trackers.fusion.state import State, Wholeness
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Step
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
@@ -38,21 +38,6 @@ from vehicle_pf_tracker.trackers.fusion.verdict import (
 _SURE = 0.8
 """Probability of being visible above which size, usual share and paint are measured: odds of 4 to
 1, since an occluder that is measured once stays in the size of all later frames."""
-_WHOLE_SHARE = 0.8
-"""Share of the surface above which the points' spread gives both sides. A prototype with true boxes
-has .96 of a vehicle wholly visible, and .72 with a tenth to a third of it covered
-(laboratory/notes/fusion_tried.md)."""
-_POINTS_GAIN = 0.5
-"""Weight of a stretch along one axis, as an occluder makes it too. A fitted weight was set to one
-half together with others, at no cost (laboratory/notes/fusion.md, twelve tuned numbers)."""
-_COMMON_SHARE = 0.5
-"""Share of the surface above which a stretch that both axes have in common is believed: from .8 on
-only, .926 instead of .964 of the frames are on vehicles that shrink fast
-(laboratory/notes/fusion_tried.md)."""
-_LEAST_BELIEVED = 20.0
-"""Geometric mean of the sides, px, below which points are not believed wholly: they are magnified
-twofold and more, as are their errors. Without it white_van is claimed in .67 of its hidden frames
-instead of .20; laws without a number lose more (laboratory/notes/fusion_tried.md)."""
 _LARGEST_PARTIAL = 1.5
 """Bound of the growth, and of the shrinking, of a partly hidden vehicle, since it became that or
 came back as that. It is a tenth on the real sequences; an error of the rate must not go on for as
@@ -237,25 +222,6 @@ def _sized(state: State, seen: Observation, step: Step) -> State:
         size = size * np.exp(stretch)
     size = searched_size(size, state.frames // 2, peaks, options)
     return state._replace(size=step.bounded(size))
-
-
-def believed_stretch(stretch: Array, share: float, size: Array, options: SizeParameters) -> Array:
-    """Change of log width and height (2,) by the stretch (2,) of the points on the vehicle.
-
-    An occluder draws points together along one axis. So the stretch that both axes have in common
-    is believed wholly if it widens the box, or narrows it faster than the response can follow. The
-    rest is believed in part, and only where the surface is wholly visible.
-    """
-    # The smaller one where both agree in sign, zero where they do not. `reach` is what one search
-    # can correct: narrowing within it is left to the response, as occluders narrow the spread, too.
-    common = max(stretch.min(), 0.0) + min(stretch.max(), 0.0)
-    reach = options.gain * np.log1p(options.step)
-    if -reach <= common <= 0 or size.prod() <= _LEAST_BELIEVED**2:
-        common = 0.0
-    if share > _WHOLE_SHARE:
-        # The common part twice at half weight, hence wholly; what is beyond it at half weight.
-        return np.asarray(_POINTS_GAIN * (stretch + common))
-    return np.full(2, common if share > _COMMON_SHARE else 0.0)
 
 
 def _follow_outline(state: State, outlines: Outlines, step: Step) -> State:

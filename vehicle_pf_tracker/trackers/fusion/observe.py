@@ -86,8 +86,7 @@ def _moved_with_camera(state: State, step: Step) -> State:
     camera = CameraMotion()
     if step.parameters.motion.camera:  # else it is taken to stand, and outlines are found
         camera = memory.camera.measure(small, state.box)
-    extent = np.array(frame_size(step.frame), float)
-    drift = state.drift.moved_on(camera, step.elapsed, extent)
+    drift = state.drift.moved_on(camera, step.elapsed, frame_size(step.frame))
     # A camera that has come to rest shows a new background, however far it came.
     stands = camera.still or drift.stands
     memory.foreground.keep(small, camera, stands=stands, elapsed=step.elapsed)
