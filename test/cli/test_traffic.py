@@ -446,7 +446,7 @@ def test_an_unexpected_error_costs_its_frame_alone(run, monkeypatch):
 
 def block(language):
     """The one block of code of this language on the page."""
-    page = Path(__file__).parents[2] / "docs" / "traffic.md"
+    page = Path(__file__).parents[2] / "docs" / "counting.md"
     (code,) = re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL)
     return code
 

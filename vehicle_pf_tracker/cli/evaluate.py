@@ -74,7 +74,7 @@ class Request(
     )  # fmt: skip
     traffic: bool = switch(
         help="compare `traffic` with SORT, ByteTrack, OC-SORT and C-BIoU instead; REC are folders "
-        "as MOTChallenge has them; see docs/traffic.md",
+        "as MOTChallenge has them; see docs/traffic_results.md",
     )  # fmt: skip
     detections: str | None = option(
         metavar="NAME,…",
