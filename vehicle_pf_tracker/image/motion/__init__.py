@@ -9,6 +9,6 @@
 - `camera_motion`: motion of the background, measured by `camera_flow` in a `small_grey` frame
 - `camera_drift`: whether a camera that moves only sways
 - `foreground`: pixels that differ from the background of a standing camera, a `median_image` of its
-  `kept_frames`
+  `kept_frames`, each a `carried_grey` frame that follows a camera that sways
 - `mask_parts`: connected parts of such a mask; `side_edges`: where it ends at the sides of a box
 """

@@ -18,7 +18,8 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
-from vehicle_pf_tracker.image.motion.kept_frames import KeptFrames, moved_along
+from vehicle_pf_tracker.image.motion.carried_grey import CarriedGrey
+from vehicle_pf_tracker.image.motion.kept_frames import KeptFrames
 from vehicle_pf_tracker.image.motion.mask_parts import connected_parts
 from vehicle_pf_tracker.image.motion.median_image import median
 from vehicle_pf_tracker.image.motion.side_edges import edges_beyond
@@ -114,9 +115,9 @@ class Foreground:
 
     def __init__(self) -> None:
         self._kept = KeptFrames()
-        self._whole: SmallGrey | None = None
-        self._whole_lasting: SmallGrey | None = None
-        self._learnt_at = -1
+        self._learnt: CarriedGrey | None = None
+        # Of the frame in which it was learnt.
+        self._lasting: npt.NDArray[np.uint8] | None = None
 
     def keep(
         self,
@@ -132,12 +133,11 @@ class Foreground:
         it stands and yet sways, by `camera` (px of the whole frame), they are carried along.
         """
         self._kept.keep(small, camera, elapsed, stands=stands)
+        self._lasting = None
         if not stands:
-            self._whole = None
-            self._whole_lasting = None
-        elif self._whole is not None and self._whole_lasting is not None and not camera.still:
-            self._whole = moved_along(self._whole, camera)
-            self._whole_lasting = moved_along(self._whole_lasting, camera)
+            self._learnt = None
+        elif self._learnt is not None and not camera.still:
+            self._learnt.carry(camera)
 
     @property
     def is_known(self) -> bool:
@@ -152,11 +152,9 @@ class Foreground:
 
     def learn_background(self) -> None:
         """Learn the whole background from the frames that are kept now."""
-        zoom = self._kept.present.zoom
-        self._whole = SmallGrey(median([each.small.image for each in self._kept.spread]), zoom)
-        lasting = median([each.small.image for each in self._kept.lasting])
-        self._whole_lasting = SmallGrey(lasting, zoom)
-        self._learnt_at = self._kept.number
+        background = median([each.grey.image for each in self._kept.spread])
+        self._learnt = CarriedGrey(SmallGrey(background, self._kept.present.zoom))
+        self._lasting = median([each.grey.image for each in self._kept.lasting])
 
     def history(self) -> Iterator[tuple[float, Array]]:
         """Give the ages in periods of kept frames, and the boxes of what moves in them.
@@ -164,7 +162,7 @@ class Foreground:
         The background has to be learnt.
         """
         kept = list(self._kept.spread)[::-1]
-        return ((self._kept.age(each), self._boxes(each.small)) for each in kept[::_LOOKED_AT])
+        return ((self._kept.age(each), self._boxes(each.grey.image)) for each in kept[::_LOOKED_AT])
 
     def periods_since(self, age: float) -> list[float] | None:
         """Periods between the latest frames; see `KeptFrames.periods_since`."""
@@ -178,7 +176,7 @@ class Foreground:
         (N, 2, 2) array
             Left and upper, right and lower side of each connected piece, px.
         """
-        return self._boxes(self._kept.present)
+        return self._boxes(self._kept.present.image)
 
     def boxes_near(self, centre: Array, size: Array) -> Array:
         """Find what moves now within three of its longer sides of a box (px), as `boxes`."""
@@ -187,16 +185,17 @@ class Foreground:
         piece = small.image[rows, columns]
         if min(piece.shape) < 3:
             return np.empty((0, 2, 2))
-        return (_pieces(_moving(piece, self._learnt[rows, columns])) + corner) / small.zoom
+        moving = _moving(piece, self._background.piece(rows, columns))
+        return (_pieces(moving) + corner) / small.zoom
 
     @property
-    def _learnt(self) -> npt.NDArray[np.uint8]:
+    def _background(self) -> CarriedGrey:
         """The background that was learnt."""
-        assert self._whole is not None, "learn the background first"
-        return self._whole.image
+        assert self._learnt is not None, "learn the background first"
+        return self._learnt
 
-    def _boxes(self, small: SmallGrey) -> Array:
-        return _pieces(_moving(small.image, self._learnt)) / small.zoom
+    def _boxes(self, image: npt.NDArray[np.uint8]) -> Array:
+        return _pieces(_moving(image, self._background.image)) / self._kept.present.zoom
 
     def changed(self, low: Array, high: Array, ago: int) -> float:
         """Share of a part of the frame that has changed since `ago` frames before.
@@ -213,9 +212,14 @@ class Foreground:
         small = self._kept.present
         left, top = np.floor(np.maximum(low * small.zoom, 0)).astype(int).tolist()
         right, bottom = np.ceil(np.maximum(high * small.zoom, 0)).astype(int).tolist()
-        now = small.image[top:bottom, left:right]
-        before = self._kept.latest[-1 - ago].small.image[top:bottom, left:right]
-        return float((cv2.absdiff(now, before) > _LEAST_CONTRAST).mean()) if now.size else 0.0
+        height, width = small.image.shape
+        rows = _within(top, bottom, height)
+        columns = _within(left, right, width)
+        now = small.image[rows, columns]
+        if not now.size:
+            return 0.0
+        before = self._kept.latest[-1 - ago].grey.piece(rows, columns)
+        return float((cv2.absdiff(now, before) > _LEAST_CONTRAST).mean())
 
     def outline(self, centre: Array, size: Array, ago: int = 0) -> Outline | None:
         """Outline of what moves in a box of this centre and size, px, some frames `ago`.
@@ -232,16 +236,16 @@ class Foreground:
         """
         if not self.is_known or ago >= len(self._kept.latest):
             return None
-        small = self._kept.latest[-1 - ago].small
+        small = self._kept.present
         rows, columns, corner = _neighbourhood(small, centre, size)
-        piece = small.image[rows, columns]
-        if min(piece.shape) < 3:
+        if min(rows.stop - rows.start, columns.stop - columns.start) < 3:
             return None
+        piece = self._kept.latest[-1 - ago].grey.piece(rows, columns)
         # The whole background is known for this frame; else that of the neighbourhood is enough.
-        if self._whole_lasting is not None and self._learnt_at == self._kept.number:
-            background = self._whole_lasting.image[rows, columns]
+        if self._lasting is not None:
+            background = self._lasting[rows, columns]
         else:
-            background = median([each.small.image[rows, columns] for each in self._kept.lasting])
+            background = median([each.grey.piece(rows, columns) for each in self._kept.lasting])
         return Around(_moving(piece, background), corner, small.zoom)
 
 

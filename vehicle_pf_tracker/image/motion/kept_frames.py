@@ -12,10 +12,8 @@ import itertools
 from collections import deque
 from typing import NamedTuple
 
-import cv2
-import numpy as np
-
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.motion.carried_grey import CarriedGrey
 from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 
 _KEPT_EVERY = 4
@@ -42,7 +40,7 @@ are compared with, and where a turn is slow the last clear sighting is 15 frames
 class Kept(NamedTuple):
     """A frame, and the frame periods from the first one to it."""
 
-    small: SmallGrey
+    grey: CarriedGrey
     time: float
 
 
@@ -80,26 +78,18 @@ class KeptFrames:
             self.number = 0
             self._spacing = _KEPT_EVERY
         elif not camera.still:
-            self._carry_along(camera)
+            # Most frames are kept in several places.
+            for grey in {each.grey for each in (*self.spread, *self.lasting, *self.latest)}:
+                grey.carry(camera)
+        kept = Kept(CarriedGrey(small), self._time)
         # Frames in a row show the same vehicles: those farther apart tell road from traffic.
         if self.number % _KEPT_EVERY == 0:
-            self.spread.append(Kept(small, self._time))
+            self.spread.append(kept)
         if self.number % self._spacing == 0:
-            self.lasting.append(Kept(small, self._time))
+            self.lasting.append(kept)
             self._spread_out()
-        self.latest.append(Kept(small, self._time))
+        self.latest.append(kept)
         self.number += 1
-
-    def _carry_along(self, camera: CameraMotion) -> None:
-        """Move all frames as the background has moved."""
-        moved: dict[int, SmallGrey] = {}
-        for frames in (self.spread, self.lasting, self.latest):
-            for place, each in enumerate(frames):
-                # Most frames are kept in several places.
-                key = id(each.small)
-                if key not in moved:
-                    moved[key] = moved_along(each.small, camera)
-                frames[place] = each._replace(small=moved[key])
 
     def _spread_out(self) -> None:
         """Once all places are taken, go on with every second frame, so that they last longer."""
@@ -115,7 +105,7 @@ class KeptFrames:
     @property
     def present(self) -> SmallGrey:
         """The latest frame."""
-        return self.latest[-1].small
+        return self.latest[-1].grey.small
 
     def age(self, kept: Kept) -> float:
         """Frame periods from a kept frame to the latest."""
@@ -133,11 +123,3 @@ class KeptFrames:
             return None
         first = min(range(len(times)), key=lambda number: abs(times[number] - wanted))
         return [after - before for before, after in itertools.pairwise(times[first:])]
-
-
-def moved_along(small: SmallGrey, camera: CameraMotion) -> SmallGrey:
-    """Move a reduced frame as the background has moved; its rim is repeated."""
-    matrix = np.column_stack([camera.turn, camera.shift * small.zoom])
-    height, width = small.image.shape
-    moved = cv2.warpAffine(small.image, matrix, (width, height), borderMode=cv2.BORDER_REPLICATE)
-    return SmallGrey(np.asarray(moved, np.uint8), small.zoom)
