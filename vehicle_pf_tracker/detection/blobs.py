@@ -53,14 +53,13 @@ _MEMBER = 0.5
 """Share of a predicted vehicle inside a blob's box above which the blob is of it: most of it."""
 _LEAST_PART = 0.15
 """Smallest share of a blob's area that may be a vehicle of its own, and least pixels, of the
-fullest row's, of a row that belongs to a vehicle. With other shares HOTA by motion behind a bridge
-is seven less (`python -m laboratory.traffic.score`)."""
+fullest row's, of a row that belongs to a vehicle. Chosen on *highway* and its bridge."""
 _LEAST_SHARE = 0.1
 """Area of a piece, of the largest one's, below which it is a speck that happens to be in the same
 prediction. A choice below `_LEAST_PART`, from which a piece may be a vehicle."""
 _PIECE = 0.8
-"""Share of a blob inside a prediction above which it is a piece of that vehicle. With other shares
-here and in `_LEAST_PART` HOTA by motion of the plain clip falls by 2, too."""
+"""Share of a blob inside a prediction above which it is a piece of that vehicle: nearly all of it.
+Chosen with `_LEAST_PART`."""
 _ASPECT_SIDE = 10
 """Least side in px of a blob whose aspect is learnt; one of less area has no shape."""
 _SPECK = math.log(0.4) / SPREAD

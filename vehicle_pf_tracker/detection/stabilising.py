@@ -18,8 +18,7 @@ from vehicle_pf_tracker.image.motion.shared_motion import shared_similarity
 Image: TypeAlias = npt.NDArray[np.uint8]
 
 _CORNERS = 120
-"""Most corners that are followed: of thirty that are hidden by vehicles, ninety are left. With 60 F
-falls from 34 to 32."""
+"""Most corners that are followed: of thirty that are hidden by vehicles, ninety are left."""
 _QUALITY = 0.01
 """Least strength of a corner, of the strongest one's. A choice: the number bounds them first."""
 _CORNER_DISTANCE = 10

@@ -19,8 +19,7 @@ vehicle that has driven through."""
 MEMORY = 0.998
 """Weight of the boxes before each, or of earlier images: some minutes."""
 WIDEST_MASK = 400
-"""Largest width of a mask in px: finer says nothing more about vehicles. At 640 HOTA / IDF1 are
-28.0 / 34.0, halving to at most 400 gives 27.5 / 34.5."""
+"""Largest width of a mask in px: finer says nothing more about vehicles."""
 _MOST_SIZE_COST = 4.0
 """Most cost of another size: a lorry is twice as large, and has to stay whole."""
 _SINGULAR = 1e-4

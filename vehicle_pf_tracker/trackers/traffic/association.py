@@ -35,13 +35,13 @@ GATE = 30.0
 """Largest cost of a pair: more than 23.5, the 0.9999 quantile of chi-squared with four degrees of
 freedom, since the noise of edges is an estimate."""
 _PARTIAL = 3.0
-"""Cost of taking a detection for a part of the vehicle. At 0, and 15 for what it lacks, IDF1 by
-motion behind the bridge falls by four: pieces of blobs are taken for the vehicle."""
+"""Cost of taking a detection for a part of the vehicle: if it were free, pieces of blobs would be
+taken for whole vehicles."""
 _MISSING = 12.0
-"""Cost of all of the vehicle that a part lacks; tried with the one above."""
+"""Cost of all of the vehicle that a part lacks: with `_PARTIAL` half of the gate."""
 _LEAST_PART = 0.15
-"""Smallest share of a vehicle that is seen as a part of it. At a tenth IDF1 of YOLOX behind the
-bridge falls by six."""
+"""Smallest share of a vehicle that is seen as a part of it: with a tenth vehicles behind a bridge
+exchange their numbers."""
 _OVERLAPPING = 0.5
 """Overlap with a likely vehicle above which a drive, however sure, may be wrong: no other is as
 near. A choice: at a half evaluations, too, take two boxes for one vehicle's."""

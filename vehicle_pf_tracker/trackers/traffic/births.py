@@ -23,17 +23,14 @@ from vehicle_pf_tracker.trackers.traffic.state import State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 
 _NEW_VEHICLES = 0.1
-"""Vehicles that come into view per image: one in a third of a second at 30 Hz. A choice, the prior
-of the test against clutter: ten times as many would add 2.3 to the log odds of each track. Per
-image, as false alarms are. By time IDF1 of every ninth image at dusk is 71.8 instead of 83.5."""
+"""Vehicles that come into view per image, as false alarms are: one in a third of a second at 30 Hz.
+A choice, the prior of the test against clutter."""
 _SIDES = [Edge.LEFT, Edge.RIGHT]
-"""Borders at which vehicles come in that drive across. With the upper and lower one *highway*
-behind a bridge has IDF1 73.2 instead of 74.8: chosen there."""
+"""Borders at which vehicles come in that drive across. Chosen on one clip, *highway* behind a
+bridge."""
 _GOES_ON = 0.5
 """Overlap with the prediction of a track that is not yet confirmed from which a shape may be the
-same vehicle: no other is as near. A choice, as in `association`. In all places instead of at the
-border IDF1 at dusk is 52.8 instead of 63.6; beside other shapes, that of a close scene 40.8 instead
-of 47.9."""
+same vehicle: no other is as near. A choice, as in `association`."""
 
 
 def begin_tracks(state: State, candidates: Candidates, columns: Integers, step: Step) -> State:

@@ -37,10 +37,8 @@ _KNOWN_FROM = 4
 """Detections of a vehicle from which its size is known, so that an edge can be said to lack: with a
 rate of `_FOLLOWED`, the latest four count for two thirds."""
 _COVERED_FOR = 30
-"""Detections in a row, one second of 30 Hz, after which a smaller box is all there is. A bridge
-covers a vehicle that is far away for as long: at 15, IDF1 of YOLOX behind the exam's bridge falls
-from 93.6 to 80.4; 60 are worth as much. By time four sparse clips gain 1.5 of IDF1 in the mean, but
-one of them loses .4, and one has a switch more."""
+"""Detections in a row, one second of 30 Hz, after which a smaller box is all there is: a bridge
+covers a vehicle that is far away for as long."""
 _FOLLOWED = 0.25
 """Rate per detection at which residuals are learnt, and at which boxes follow them: the latest four
 count for two thirds."""
@@ -241,8 +239,8 @@ def _widened(drives: Drives, compared: Comparison, residuals: Array, recede: Boo
     seen = ((residuals > 0) | away) & (outward > 0)
     expected = np.where(seen, compared.variances, 0.0).sum(axis=1)
     lacking = np.where(seen, residuals**2 - compared.spread**2, 0.0).sum(axis=1)
-    # 3. One for each edge. At 2.5 errors that detectors repeat are followed, too: HOTA of CenterNet
-    # on the exam's clip falls by one; at 9 more boxes stay behind vehicles that come near.
+    # 3. One for each edge: by less, errors that detectors repeat would be followed, too; by more,
+    # boxes would stay behind vehicles that come near.
     wrong = ((outward**2).sum(axis=1) > len(Edge)) & (lacking > expected)
     if wrong.any():
         # Among others a residual may be of a neighbour's box.

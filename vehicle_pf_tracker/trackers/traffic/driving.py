@@ -13,25 +13,20 @@ from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 
 _PART_OF_DRIVE = 0.5
 """Way of two edges, of that asked for, above which a shape may be a vehicle, by its scores or by
-its centre's way. Where none is asked for, a clock's digits and holes have numbers; where scores
-stand for nothing, HOTA / IDF1 of *highway* are 52.9 / 76.2 instead of 59.7 / 90.1; where the whole
-way is asked of two edges, `traffic-overtaking` has 35.5 / 44.2 instead of 29.7 / 33.2, but
-*highway* behind the bridge 51.9 / 69.4 instead of 54.6 / 72.4."""
+its centre's way: without one a clock's digits and holes have numbers, and with all of it vehicles
+behind a bridge are followed worse."""
 _SURELY_DRIVES = 50.0
 """Evidence for a drive above which scores may be ignored: false alarms side by side reach 35."""
 _OWN_WIDTH = 1.0
 """Way of such a drive, of its width, from which they are: what creeps by less is a light, or the
-box of what is far behind. Not chosen between values. YOLOX from .05 in the rest of a dusk: IDF1
-86.0 and 85.5 instead of 71.7 and 71.5."""
+box of what is far behind. Not chosen between values."""
 _STRAIGHT_ENOUGH = 7.0
 """Evidence for a drive, one in a thousand, above which it is one."""
 _STRAIGHT_SHAPE = 18.0
 """The same for shapes in dense images, which come by the dozen where leaves move: of 7 clips by
-motion, 50 vehicles and 4 others are as straight; at 7, 53 and 25, at 14, 50 and 9, at 22, 47 and
-4."""
+motion, 50 vehicles and 4 others are as straight."""
 _FURTHER_PER_LOG_ODD = 0.5
-"""Further way, of that asked for, per log odd of scores against it: a choice, whose bound is the
-loss without this doubt, HOTA / IDF1 3.5 / 5.6 (YOLOX from .05)."""
+"""Further way, of that asked for, per log odd of scores against it. A choice."""
 _MOVES = 3.0
 """Standard deviations of speed above which a vehicle drives: in 2-D 1 in 90 that stand is there."""
 
@@ -69,8 +64,8 @@ def have_driven(tracks: Tracks, step: Step, *, are_shapes: bool = False) -> Bool
         # The centre of what stands moves, too, as one edge of it does.
         moves = moved_as_a_whole(tracks, step)
         return np.asarray(moves & (lengths > displacement) & (evidence > straight))
-    # A stand whose boxes shook by too much to be told lies on no line with the drive. Shapes do not
-    # stand: by motion the bridge's HOTA would be 54.9 instead of 56.1.
+    # A stand whose boxes shook by too much to be told lies on no line with the drive; shapes, which
+    # are of what has changed, do not stand.
     evidence = np.maximum(evidence, paths.latest_evidence())
     # False alarms side by side look like a short drive.
     is_sure = (evidence >= _SURELY_DRIVES) & (lengths >= _OWN_WIDTH)

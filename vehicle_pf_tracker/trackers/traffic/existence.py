@@ -30,8 +30,7 @@ _MOST_PER_DETECTION = 3.0
 single one proves a vehicle."""
 _SAID_OF_NOTHING = 5.0
 """Log odds, one in 150, against a detection by score and place above which its fit counts for
-nothing. IDF1 of a dusk's last 860 images 72.8 to 78.5. At 3 they are 82.1, but a jam with poor
-boxes falls from 70.3 to 56.1: chosen there, and on the bridge."""
+nothing. Chosen on a jam with poor boxes and behind a bridge."""
 _SCORE_DOUBT = 0.5
 """Log odds that one score of dense images takes off at most, so that a detector which knows little
 about a vehicle does not hide it for ever; and that are taken off each, in confirming by scores
@@ -40,13 +39,11 @@ _PROOF_BY_SCORES = 4.0
 """Sum of the log odds of scores that stands for a drive: one in 55, two detections at least."""
 _PIECE_FOR = 0.5
 """Time in s before a shape is a vehicle that has a rest beside it, or no straight drive: the pieces
-of a blob are soon joined. 34 public clips of 24 to 30 Hz, before a lone one was excepted: IDF1
-42.4, 44.0 and 43.3 at 8, 15 and 22 images."""
+of a blob are soon joined."""
 _STANDS = 0.1
 """Way, of its width, below which a track has not moved: networks' boxes shake by half of it."""
 _KEPT_SAMPLES = 30
-"""Latest detections, one second of 30 Hz, not learnt from until it drives: it may be about to. By
-time three phases of every fifth image at dusk have IDF1 79.2, 70.5, 76.6 for 72.3, 82.6, 78.6."""
+"""Latest detections, one second of 30 Hz, not learnt from until it drives: it may be about to."""
 
 
 def position_evidence(

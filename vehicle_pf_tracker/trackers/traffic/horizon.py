@@ -19,13 +19,11 @@ from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Rows, columns
 
 _LEAST_BOXES = 20
-"""Boxes below which a vehicle does not tell how it grows. At 30, HOTA of `traffic-overtaking` falls
-by 13: the horizon has to be known soon."""
+"""Boxes below which a vehicle does not tell how it grows: few, as the horizon has to be known
+soon."""
 _LEAST_SPARSE = 6
 """Boxes below which a vehicle does not tell how it grows where images are sparse: a second of them
-has fewer boxes, whose errors are independent. The first value tried. At 20 no vehicle tells at 3
-images/s; IDF1 by motion of four samplings of a dusk is then 35.6 in the mean instead of 37.6, 29.8
-instead of 40.9 in the worst."""
+has fewer boxes, whose errors are independent. The first value tried."""
 _REMEMBERED = 50
 """Vehicles that are remembered. A choice: enough to average `_TURN` out, to a seventh, and few
 enough for a camera that is turned to forget."""

@@ -32,8 +32,7 @@ _MOST_GROWN = 2.0
 part, and a half is enough to be detected as a whole. A choice."""
 _FARTHER_IN = 30.0
 """Nominal periods, one second of 30 Hz, in which the distance at which a hidden vehicle may
-reappear grows by its width. A choice: at the usual 2 m/s² it is half a width off by then. By
-time the scores of four sparse clips (2.8 to 5/s) stay the same."""
+reappear grows by its width. A choice: at the usual 2 m/s² it is half a width off by then."""
 _NEAR_A_DOUBLE = 0.5
 """Share of that distance within which one that has a number already may be the same: beside a lorry
 that hides a car there often is another car."""

@@ -16,13 +16,11 @@ from vehicle_pf_tracker.trackers.traffic.tracks import IN_SIGHT, Absences
 
 _MISSED = 0.3
 """Log odds that a detection missed in plain sight takes off a vehicle: something unknown may hide
-it, so that only 25 take off all that it can have. At .15 ghosts stay twice as long: 1660 images at
-dusk have IDF1 81.2 instead of 84.6; cameras left out hardly tell both apart."""
+it, so that only 25 take off all that it can have."""
 _BLIND_FROM = 2
 """Vehicles in sight, all missed in one image, by which the detector failed: all do not vanish."""
 _BLIND_FOR = 150.0
-"""Nominal periods after which an undetected vehicle is doubted even so: 5 s at 30 Hz. A choice: by
-time the scores of four sparse clips (2.8 to 5/s) stay the same."""
+"""Nominal periods after which an undetected vehicle is doubted even so: 5 s at 30 Hz. A choice."""
 
 
 def count_misses(state: State, step: Step) -> State:

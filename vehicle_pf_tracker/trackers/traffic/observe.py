@@ -30,8 +30,7 @@ from vehicle_pf_tracker.trackers.traffic.state import State, Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 
 _LIKELY = 0.0
-"""Log odds above which a detection is rather a vehicle than not: even odds. Without this first pass
-HOTA / IDF1 of YOLOX from .1 fall by 1.3 / 2.5."""
+"""Log odds above which a detection is rather a vehicle than not: even odds."""
 
 
 class Assignment(NamedTuple):

@@ -23,8 +23,7 @@ from vehicle_pf_tracker.trackers.traffic.tracks import Drives, Tracks
 
 _INSIDE = 0.7
 """Share of a box inside another one above which it is a part of it: a bonnet, a second box. A
-choice: vehicles side by side share less, and edges err by a twentieth each. Without dropping such
-boxes HOTA / IDF1 with CenterNet fall by 7.0 / 9.9."""
+choice: vehicles side by side share less, and edges err by a twentieth each."""
 _TOUCHES = 0.1
 """Share of a box that overlaps another one below which they are beside each other: two edges at the
 usual noise of a twentieth."""
@@ -37,8 +36,7 @@ than known: two that drive side by side are one box for a while, too."""
 _REST_REACH = 0.5
 """Distance, of its size, within which the rest of a piece is."""
 _LEAST_REST = 0.25
-"""Least area of a rest, of the piece's own. With a reach of a quarter and half the area, or without
-both, 1 and 6 more pieces of a close scene are vehicles."""
+"""Least area of a rest, of the piece's own: less is a speck. Chosen on a close scene."""
 
 
 def have_rest(edges: Array, others: Array) -> Bools:

@@ -23,8 +23,7 @@ _STANDS_WITHIN = 0.1
 by half of it."""
 _STANDS_FROM = 15
 """Detections in a row within this distance, half a second of 30 Hz, by which a vehicle stands: one
-that is slower than a fifth of its width per second is taken for one that does. By time IDF1 of
-three phases of every fifth image at dusk is 79.9, 66.8 and 80.4 instead of 72.3, 82.6 and 78.6."""
+that is slower than a fifth of its width per second is taken for one that does."""
 _BLOCK = 15
 """Detections of a block: the latest one to two tell a drive apart from a stand before it that shook
 by more. A choice: as many as tell a stand."""

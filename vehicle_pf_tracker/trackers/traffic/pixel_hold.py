@@ -46,19 +46,18 @@ _SLIP = 0.02
 """Standard deviation, of its size, by which a box grows or slips on its vehicle in a frame. A
 choice, less than the .05 of a detector's edge: what a hold knows it has from the frame before."""
 _SLIP_PX = 0.3
-"""That deviation's part in px, less than a point's noise, as many are averaged. At half of slip and
-caution HOTA / IDF1 of `brief` fall by 1.6 / 4.2."""
+"""That deviation's part in px, less than a point's noise, as many are averaged."""
 _CAUTION = 1.5
 """Factor on these deviations: errors of successive frames go the same way and add up."""
 _HELD_SHARE = 0.3
-"""Least visible share of a vehicle, and share in the image, for pixels to hold it. At a half, and
-without the caution, IDF1 by motion falls by three."""
+"""Least visible share of a vehicle, and share in the image, for pixels to hold it. Chosen by
+motion, with the caution."""
 _HELD_FOR = 4.0
 """Nominal periods since a vehicle was seen from which its points lie on what hides it. A choice:
 each hold begins them anew, so that holding ends only where it failed all the time."""
 _HELD_FALL = 0.15
-"""Fall of the colours' similarity below its usual value above which pixels do not hold it. At .2,
-as for vehicles that come back, IDF1 by motion behind the bridge falls by five."""
+"""Fall of the colours' similarity below its usual value above which pixels do not hold it: less
+than for vehicles that come back, as the light is the same from frame to frame."""
 _PARTICLES_AT_ONCE = 1000
 """Particles of several vehicles that are weighed at once: with 25 points each they fill a cache of
 half a MB, and more would only need more memory."""

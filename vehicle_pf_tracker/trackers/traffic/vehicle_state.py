@@ -50,8 +50,8 @@ too. No image has a third of it (`image.formats.encodings.LARGEST_SIDE_PX`), so 
 has left."""
 _SIZE_WALK = 0.004
 """Change of a vehicle's shape as the camera sees it, of its size per nominal period: a vehicle that
-drives past is seen from behind and then from the side within some 5 s. It adds up to a twentieth in
-that time; without it IDF1 of YOLOX behind the bridge falls by 7."""
+drives past is seen from behind and then from the side within some 5 s, in which it adds up to a
+twentieth."""
 
 
 _UNCHANGED = np.eye(6)
