@@ -66,17 +66,26 @@ def together(*tracks):
 
 def changed(rows, **facts):
     """Set fields of rows, all alike, by their names wherever they are."""
-    values = {}
+    rows, unknown = _changed(rows, facts)
+    assert not unknown, f"no rows have {unknown}"
+    return rows
+
+
+def _changed(rows, facts):
+    """Rows with the facts that are fields of theirs, and the names of the other facts."""
+    values, unknown = {}, set(facts)
     for name in type(rows).__dataclass_fields__:
         value = getattr(rows, name)
         if isinstance(value, Rows):
-            values[name] = changed(value, **facts)
+            values[name], others = _changed(value, facts)
+            unknown &= others
         elif name in facts:
             values[name] = value.copy()
             values[name][:] = facts[name]
+            unknown.discard(name)
         else:
             values[name] = value
-    return type(rows)(**values)
+    return type(rows)(**values), unknown
 
 
 def step_of(size=(320, 240), *, elapsed=1.0, period=1 / 30, parameters=None):

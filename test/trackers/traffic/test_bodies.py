@@ -25,10 +25,10 @@ GROUND = np.random.default_rng(0).integers(90, 130, (240, 640, 3)).astype(np.uin
 LORRY, CAB = np.array([100.0, 60, 200, 140]), np.array([165.0, 75, 200, 140])
 
 
-def pair_of(small=CAB, large=LORRY, **facts):
+def pair_of(small=CAB, large=LORRY):
     """A confirmed vehicle in the small box, and a younger one in the large box."""
     return together(
-        changed(track(1, 100.0, confirmed=True, **facts), detection=small),
+        changed(track(1, 100.0, confirmed=True), detection=small),
         changed(track(2, 100.0, confirmed=True), detection=large),
     )
 
@@ -95,8 +95,9 @@ def test_the_elder_number_stays_with_the_box_of_all_of_it():
 
 
 def test_a_vehicle_given_by_hand_is_not_merged():
-    both = State(pair_of(given=True), Experience(), companions=together_for(14))
-    by_hand = both._replace(tracks=changed(both.tracks, given=True))
+    both = State(pair_of(), Experience(), companions=together_for(14))
+    assert len(unify(both).tracks) == 1
+    by_hand = both._replace(tracks=changed(both.tracks, by_hand=True))
     assert len(unify(by_hand).tracks) == 2
 
 

@@ -104,7 +104,7 @@ def add_evidence(
     # 2. All evidence makes it ripe, a drive or sure scores prove it.
     beliefs = tracks.beliefs
     is_ripe = tracks.confirmed | (beliefs.log_odds >= step.parameters.birth.evidence)
-    now_drives = is_ripe & ~(beliefs.has_driven | tracks.names.given)
+    now_drives = is_ripe & ~(beliefs.has_driven | tracks.names.by_hand)
     if now_drives.any():
         now_drives &= have_driven(tracks, step, are_shapes=candidates.are_shapes)
     proven = beliefs.strength > _PROOF_BY_SCORES
@@ -178,8 +178,8 @@ def _learn_outcomes(
     """Learn from the detections of what has driven, or stands for long."""
     beliefs = tracks.beliefs
     evidence = experience.detections
-    settled = beliefs.has_driven | tracks.names.given
-    moves = tracks.names.given | are_moving(tracks)
+    settled = beliefs.has_driven | tracks.names.by_hand
+    moves = tracks.names.by_hand | are_moving(tracks)
     # A vehicle far away may take clutter for itself, and would teach that this is a vehicle: by
     # what is likelier clutter than any fit can outweigh.
     moves &= ~_score_as_clutter(candidates, columns, _MOST_PER_DETECTION)

@@ -80,10 +80,10 @@ def number_by_hand(state: State) -> State:
     tracks = _numbered(state.tracks, row, identity)
     names = tracks.names
     log_odds = tracks.beliefs.log_odds.copy()
-    by_hand = names.given.copy()
+    by_hand = names.by_hand.copy()
     log_odds[row] = CERTAIN_LOG_ODDS
     by_hand[row] = True
-    names = replace(names, given=by_hand)
+    names = replace(names, by_hand=by_hand)
     tracks = replace(tracks, names=names, beliefs=replace(tracks.beliefs, log_odds=log_odds))
     return state._replace(tracks=tracks, last_identity=identity)
 
@@ -104,7 +104,7 @@ def merge_returned(state: State) -> State:
     if not missed.any():
         return state
     # A twin is younger than the absence that it ends; a cheap bound before the search.
-    young = tracks.confirmed & ~tracks.names.given & (age < undetected[missed].max())
+    young = tracks.confirmed & ~tracks.names.by_hand & (age < undetected[missed].max())
     kept = np.ones(len(tracks), np.bool_)
     for row in np.flatnonzero(young).tolist():
         twin = find_hidden(tracks, row, missed) if tracks.detected[row] else None
@@ -119,7 +119,7 @@ def unify(state: State) -> State:
     """Let vehicles that turned out to be one body have one number, that of the elder."""
     tracks = state.tracks
     kept = np.ones(len(tracks), np.bool_)
-    confirmed = tracks.confirmed & ~tracks.names.given
+    confirmed = tracks.confirmed & ~tracks.names.by_hand
     for row in np.flatnonzero(confirmed & tracks.detected).tolist():
         elder = body_of(state._replace(tracks=tracks), row, LONG_DRIVE)
         if elder is not None and kept[elder]:
@@ -239,7 +239,7 @@ def resume(tracks: Tracks, hidden: int, row: int) -> Tracks:
     at = np.array([hidden])
     new = tracks.take(np.array([row]))
     old = tracks.take(at)
-    # 1. Number, given or not, and growth are the old ones; classes are voted by both.
+    # 1. Number, whether given by hand, and growth are the old ones; classes are voted by both.
     votes = added_votes(old.names.votes[0], new.names.votes[0])
     names = replace(old.names, joined=new.names.serial, votes=objects([votes]))
     # 2. Place and speed are the new ones: the old prediction was wrong, or the detections would

@@ -45,11 +45,12 @@ def count_misses(state: State, step: Step) -> State:
     # 2. Confirmed: a fixed price, the unknown may hide it. Tentative: a sequential test.
     asked = tracks.beliefs.has_driven & in_sight & is_seen
     rates = state.experience.rate.learn(asked, detected)
-    missed = ~detected & in_sight & ~(tracks.names.given & is_seen)
+    missed = ~detected & in_sight & ~(tracks.names.by_hand & is_seen)
     loss = np.zeros(len(tracks))
     # Also of what pixels alone hold at the border, where most of it is outside: too little to ask
     # the detector for it, but road that stands would hold the box of one that has left for ever.
-    at_border = ~detected & is_seen & (tracks.visibility.uncovered > IN_SIGHT) & ~tracks.names.given
+    is_uncovered = tracks.visibility.uncovered > IN_SIGHT
+    at_border = ~detected & is_seen & is_uncovered & ~tracks.names.by_hand
     priced = (missed | at_border) & confirmed
     if priced.any():
         loss[priced] = np.maximum(elapsed * _MISSED, _sparse_price(absences, rates, step))[priced]

@@ -38,8 +38,8 @@ class Names(Rows):
         Number of the track.
     identity : (N,) array
         Number of the vehicle; 0 until it is confirmed.
-    given : (N,) array
-        True for those given by hand: that no detector finds one does not refute it.
+    by_hand : (N,) array
+        True for those that were given by hand: that no detector finds one does not refute it.
     joined : (N,) array
         Number of the track as which it was found again; 0 if of none.
     votes : (N,) array of mapping of str to int
@@ -48,7 +48,7 @@ class Names(Rows):
 
     serial: Integers
     identity: Integers
-    given: Bools
+    by_hand: Bools
     joined: Integers
     votes: Objects
 
