@@ -1,12 +1,18 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The row of the horizon, from how vehicles grow."""
+"""The row of the horizon: that of a calibrated road, else from how vehicles grow."""
 
 import numpy as np
 import pytest
+from road_samples import SIZE, road
 
-from vehicle_pf_tracker.trackers.traffic.horizon import Growths, Horizon, explaining_row
+from vehicle_pf_tracker.trackers.traffic.horizon import (
+    Growths,
+    Horizon,
+    calibrated_row,
+    explaining_row,
+)
 
 HEIGHT = 240
 ALL = np.array([True])
@@ -70,3 +76,14 @@ def test_of_sparse_images_fewer_boxes_tell():
     growth = grown(24, range(60, 160, 12))
     assert len(growth.regressions(HEIGHT)) == 0
     assert len(growth.regressions(HEIGHT, sparsity=8.0)) == 1
+
+
+def test_the_calibrated_horizon_is_where_the_camera_sees_it():
+    row = calibrated_row(road(), SIZE)
+    assert row * SIZE[1] == pytest.approx(240 - 800 * 8 / 60, abs=1e-6)
+    far = road().to_image(np.array([0.0, 1e7]))
+    assert row * SIZE[1] == pytest.approx(far[1], abs=0.01)
+
+
+def test_the_horizon_of_a_camera_that_looks_down_is_far_above():
+    assert calibrated_row(road(ahead=0.5), SIZE) == pytest.approx(-1 / 0.3)

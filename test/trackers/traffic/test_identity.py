@@ -1,16 +1,17 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Re-identification of vehicles that reappear away from their prediction."""
+"""One number for one vehicle: those that reappear keep theirs, doubles have none."""
 
 import numpy as np
 import pytest
 from traffic_samples import changed, together, track
 
 from vehicle_pf_tracker.image.windows.box_colours import COLOUR_BINS
-from vehicle_pf_tracker.trackers.traffic.identity import find_hidden, resume
+from vehicle_pf_tracker.trackers.traffic.identity import find_hidden, is_double, resume
 from vehicle_pf_tracker.trackers.traffic.report import estimates_of
 
+BOX = np.array([100.0, 100, 140, 130])
 RED, BLUE = np.eye(COLOUR_BINS)[:2]
 
 
@@ -78,3 +79,25 @@ def test_a_new_one_that_was_detected_beside_the_hidden_vehicle_is_another_one(ag
 def test_of_two_hidden_vehicles_the_nearer_one_has_come_back():
     far, near = (confirmed(1, left, undetected=20.0) for left in (80.0, 120.0))
     assert found_again(far, near, confirmed(3, 130.0)) == 1
+
+
+@pytest.mark.parametrize(
+    ("left", "facts", "double", "double_shape"),
+    [
+        (119, {}, True, True),
+        (121, {}, False, False),
+        (119, {"undetected": 1.0, "searched": 3}, True, False),
+        (119, {"undetected": 4.0, "searched": 4}, False, False),
+    ],
+    ids=["most in common", "less in common", "missed for three images", "missed for four"],
+)
+def test_what_shares_most_of_its_box_with_a_recent_vehicle_is_its_double(
+    left, facts, double, double_shape
+):
+    box = BOX + np.array([left - 100, 0] * 2)
+    new = track(3, 100, detection=BOX)
+    both = together(track(1, left, confirmed=True, detection=box, **facts), new)
+    assert is_double(both, 1) is double
+    assert is_double(both, 1, are_shapes=True) is double_shape
+    unknown = together(track(2, left, detection=box, **facts), new)
+    assert not is_double(unknown, 1)

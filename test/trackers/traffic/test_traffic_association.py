@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Costs of pairs, their assignment, and overlaps, with hand numbers."""
+"""Costs of pairs and their assignment, with hand numbers."""
 
 from dataclasses import replace
 
@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from traffic_samples import candidates_of, changed, step_of, together, track
 
-from vehicle_pf_tracker.core.box import intersections
-from vehicle_pf_tracker.core.overlaps import are_alone, areas, clipped, inside_image, overlaps
+from vehicle_pf_tracker.core.overlaps import clipped
 from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.association import (
     GATE,
@@ -26,7 +25,6 @@ from vehicle_pf_tracker.trackers.traffic.detection_evidence import (
     Sample,
     places_of,
 )
-from vehicle_pf_tracker.trackers.traffic.identity import is_double
 from vehicle_pf_tracker.trackers.traffic.prediction import driven
 from vehicle_pf_tracker.trackers.traffic.state import Experience
 
@@ -65,28 +63,6 @@ def pairs(costs):
     rows, columns, fits = assigned(np.array([7, 8]), np.array([5, 6]), costs, -costs)
     assert len(fits) == len(rows)
     return list(zip(rows.tolist(), columns.tolist(), strict=True))
-
-
-def test_overlaps():
-    others = np.array([[30.0, 10, 70, 40], [60, 60, 70, 70]])
-    assert intersections(BOX, others).tolist() == [600, 0]
-    assert overlaps(BOX, others)[0] == pytest.approx(600 / 1800)
-    assert areas(BOX) == 1200
-    assert are_alone(np.vstack([BOX, others])).tolist() == [False, False, True]
-    assert inside_image(BOX, (30, 240)) == 0.5
-    assert clipped(np.array([[-5.0, 5, 20, 300]]), (100, 240)).tolist() == [[0, 5, 20, 240]]
-    assert clipped(np.array([[200.0, 5, 220, 30]]), (100, 240)).tolist() == [[99, 5, 100, 30]]
-
-
-@pytest.mark.parametrize(
-    ("left", "facts", "double"),
-    [(119, {}, True), (121, {}, False), (119, {"undetected": 1.0}, False)],
-)
-def test_what_shares_most_of_its_box_with_a_detected_vehicle_is_its_double(left, facts, double):
-    new, box = track(3, 100, detection=BOX), BOX + np.array([left - 100, 0] * 2)
-    other = track(1, left, confirmed=True, detection=box, **facts)
-    assert is_double(together(other, new), 1) is double
-    assert not is_double(together(track(2, left, detection=box), new), 1)  # new as well
 
 
 @pytest.mark.parametrize("log_odds", [1.0, -1.0])

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.detection.detections import MOST_DETECTIONS, Detections
+from vehicle_pf_tracker.detection.detections import Detections
 from vehicle_pf_tracker.trackers.traffic.estimate import BORDER_OCCLUDER, SCENE_OCCLUDER, TrackMode
 from vehicle_pf_tracker.trackers.traffic.parameters import TrafficParameters
 from vehicle_pf_tracker.trackers.traffic.tracker import MultiVehicleTracker
@@ -235,17 +235,6 @@ def test_no_detection_breaks_it(rows):
         for one in tracker.step(GROUND, Detections.make(array[:, :4], array[:, 4])):
             box = one.box
             assert np.isfinite([box.x, box.y, box.width, box.height, *one.velocity]).all()
-
-
-def test_usable_detections_are_few_finite_distinct_and_in_the_image():
-    rng = np.random.default_rng(0)
-    flood = np.hstack([rng.uniform(0, 200, (10_000, 2)), rng.uniform(5, 30, (10_000, 2))])
-    kept = Detections.make(flood, rng.uniform(size=10_000)).usable(320, 240)
-    assert len(kept) == MOST_DETECTIONS
-    bad = [(np.nan, 0, 5, 5), (0, 0, -3, 5), (900, 0, 5, 5), (0, 0, 1e5, 5), (1, 1, 5, 5)]
-    assert len(Detections.make([*bad, bad[-1]]).usable(320, 240)) == 1
-    with pytest.raises(ValueError, match="as many"):
-        Detections.make([(1, 1, 5, 5)], [1.0, 2.0])
 
 
 def test_a_vehicle_given_by_hand_is_not_refuted_by_a_detector_that_does_not_see_it():
