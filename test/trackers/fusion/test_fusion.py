@@ -60,6 +60,24 @@ def test_hidden_on_a_street_it_is_occluded_and_recovered_after():
     assert recovered >= 2
 
 
+@pytest.mark.parametrize("elapsed", [[0.0] + 33 * [1.0], 17 * [0.0, 2.0], 17 * [0.05, 1.95]])
+def test_stamps_that_repeat_or_jitter_lose_no_vehicle(elapsed):
+    """Stamps stand still, are those of two images each, or jitter; the images come evenly."""
+    street, tracker = Street(speed=4.0), fusion()
+    tracker.start(street.frame(0), street.box(0))
+    for time, periods in enumerate(elapsed, 1):
+        estimate = tracker.step(street.frame(time), periods)
+        assert estimate.mode is Mode.TRACKING
+        assert error(estimate, street, time) < 3
+
+
+def test_a_first_motion_over_a_dropped_frame_is_that_of_two_periods():
+    street = Street(speed=4.0)
+    times = [0, 2, 3, 4, 5]
+    estimates = follow(fusion(), street, times)
+    assert max(error(e, street, t) for e, t in zip(estimates, times, strict=True)) < 3
+
+
 def painted(tint):
     """A car of one pattern, tinted in RGB."""
     pattern = texture(2, 48, 28, blur=1.5)

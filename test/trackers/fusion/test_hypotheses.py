@@ -8,7 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.trackers.fusion.hypotheses import FASTEST_GROWTH, Hypotheses
+from vehicle_pf_tracker.trackers.fusion.hypotheses import (
+    FASTEST_GROWTH,
+    Hypotheses,
+    corrected_velocities,
+)
 
 
 def hypotheses(visible, weights, positions=None):
@@ -100,6 +104,26 @@ def test_hidden_hypotheses_climb_around_their_mean(visible, share):
     after = before.climbed(better, np.zeros(2), keeps_mean=True)
     assert after.mean == pytest.approx(before.mean + share * np.array([2.0, 1.0]))
     assert before.climbed(better, np.zeros(2), keeps_mean=False).positions == pytest.approx(better)
+
+
+@pytest.mark.parametrize(
+    ("moved", "elapsed", "after"),
+    # From (4, 0) by a gain of a half: 8 px a period; 16 px in two; 3 px in half a period, in which
+    # 2 were predicted; and 4 px in no time, in which none were.
+    [(8.0, 1.0, 6.0), (16.0, 2.0, 6.0), (3.0, 0.5, 4.5), (4.0, 0.0, 6.0)],
+)
+def test_a_velocity_takes_on_a_displacement_by_hand(moved, elapsed, after):
+    velocities = np.array([[4.0, 0.0]])
+    corrected = corrected_velocities(velocities, np.array([moved, 0.0]), elapsed, 0.5)
+    assert corrected == pytest.approx(np.array([[after, 0.0]]))
+
+
+def test_two_images_of_one_stamp_keep_about_the_velocity():
+    """Of 6 px a period, 3 an image: v + 0.9 = w, and 0.7 w + 0.9 = v, so that v is 5.1 and w 6."""
+    velocity = np.array([4.0, 0.0])
+    for elapsed in 40 * [0.0, 1.0]:
+        velocity = corrected_velocities(velocity, np.array([3.0, 0.0]), elapsed, 0.3)
+    assert velocity == pytest.approx([5.1, 0.0], abs=1e-4)
 
 
 def test_resampling_waits_until_few_carry_the_weight():

@@ -14,7 +14,11 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
 from vehicle_pf_tracker.trackers.fusion.appearance import View
-from vehicle_pf_tracker.trackers.fusion.hypotheses import PRIOR_DOUBT, hidden_hypotheses
+from vehicle_pf_tracker.trackers.fusion.hypotheses import (
+    PRIOR_DOUBT,
+    corrected_velocities,
+    hidden_hypotheses,
+)
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
 from vehicle_pf_tracker.trackers.fusion.parameters import SIZE_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
@@ -197,10 +201,10 @@ def _centred(state: State, seen: Observation, step: Step) -> State:
         visible = particles.probability_visible
         particles = gathered(state, step, position, particles.mean_velocity, visible)
     else:
-        moved = (position - state.position) / max(step.elapsed, 1e-3)
-        # The first displacement is all that is known of a velocity. 1e-3: stamps may repeat.
+        # The first displacement is all that is known of a velocity.
         gain = 1.0 if state.frames == 1 else step.parameters.motion.gain
-        velocities = particles.velocities + gain * (moved - particles.velocities)
+        moved = position - state.position
+        velocities = corrected_velocities(particles.velocities, moved, step.elapsed, gain)
         # Moved as one, they keep their spread: it is what the next climb starts from.
         centred = step.inside(particles.positions + (position - particles.mean))
         particles = particles._replace(positions=centred, velocities=velocities)

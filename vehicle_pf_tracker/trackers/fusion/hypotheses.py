@@ -240,6 +240,25 @@ def along_heading(noise: Array, heading: Array, across: float) -> Array:
     return np.asarray(along + across * (noise - along))
 
 
+def corrected_velocities(velocities: Array, moved: Array, elapsed: float, gain: float) -> Array:
+    """Let velocities (..., 2), px per frame, take on a displacement (2,), px, by a gain.
+
+    Within less than a period they take on what was not predicted, and no speed is divided by a time
+    that may be none: stamps repeat, and jitter.
+
+    Parameters
+    ----------
+    elapsed : float
+        Periods that the displacement took.
+    gain : float
+        Share of the error that is taken on within a period or more.
+    """
+    # Two images of one stamp, of a camera that moves on: at the second the velocity takes on the
+    # displacement, and at the next one gives back what it has moved too little.
+    error = moved / max(elapsed, 1.0) - velocities * min(elapsed, 1.0)
+    return np.asarray(velocities + gain * error)
+
+
 def hidden_hypotheses(
     rng: np.random.Generator,
     motion: PerspectiveMotion,

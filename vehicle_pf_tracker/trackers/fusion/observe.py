@@ -126,7 +126,7 @@ def _set_off(state: State, step: Step) -> State | None:
     share = _MEASURED_SPREAD
     # Shrunk around the first box, from where the measured motion takes them in `_predicted`.
     positions = state.position + share * (particles.positions - state.position)
-    velocities = move + share * particles.velocities
+    velocities = move / step.elapsed + share * particles.velocities
     particles = particles._replace(positions=positions, velocities=velocities)
     return state._replace(particles=particles)
 

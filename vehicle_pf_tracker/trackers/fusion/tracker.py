@@ -137,6 +137,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         # the response found, the verdict both pieces of evidence; and nothing is learnt before the
         # verdict, as an occluder that was learnt once would answer from then on.
         elapsed = min(elapsed, _LONGEST_STEP)
+        if state.frames == 0:  # the first displacement is a velocity: stamps that repeat tell none
+            elapsed = max(elapsed, 1.0)
         step = Step(
             frame, elapsed, self.parameters, self._rng, memory, self._tasks, self.frame_period
         )

@@ -25,6 +25,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.motion.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
+from vehicle_pf_tracker.trackers.fusion.hypotheses import corrected_velocities
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import (
     CLEAR_RESPONSE,
@@ -140,10 +141,8 @@ class Branch(NamedTuple):
         after = foreground.outline(before.centre + velocity * elapsed, before.size, ago)
         if after is None or np.abs(np.log(after.size / before.size)).max() > _LARGEST_LOG_CHANGE:
             return None
-        # Where stamps repeat there is a displacement without a time.
-        if elapsed:
-            moved = (after.centre - before.centre) / elapsed
-            velocity = velocity + _VELOCITY_GAIN * (moved - velocity)
+        moved = after.centre - before.centre
+        velocity = corrected_velocities(velocity, moved, elapsed, _VELOCITY_GAIN)
         new = self._replace(outline=after, velocity=velocity, age=self.age + elapsed)
         # In a row: one frame on the path begins the proof anew. Once proven, it stays so.
         aside = self.aside + 1 if _leaves(new, *new.box) else 0
