@@ -5,6 +5,8 @@
 
 import ast
 import re
+from collections import Counter
+from pathlib import Path
 
 import pytest
 from source_modules import SOURCE, Module, made_up, own_modules
@@ -217,6 +219,15 @@ def test_what_breaks_a_rule_is_found():
     assert skips_outside_tables("POINTS = [\n    (1, 2),\n]  # fmt: skip\n") == [3]
     assert skips_outside_tables("def f():\n    a = (\n    Row(1),\n    )  # fmt: skip\n") == [4]
     assert skips_outside_tables("def f(\n    a,\n):  # fmt: skip\n    pass\n") == [3]
+
+
+def test_no_two_modules_of_tests_have_one_name():
+    """They stand in no packages: of two, pytest refuses one, and of two samples one is imported."""
+    root = Path(__file__).parents[1]
+    folders = [root / "test", *root.glob("*/test")]
+    counts = Counter(path.name for folder in folders for path in folder.rglob("*.py"))
+    del counts["conftest.py"]
+    assert [name for name, count in counts.items() if count > 1] == []
 
 
 def test_files_and_functions_stay_short():

@@ -5,7 +5,7 @@
 
 import numpy as np
 import pytest
-from road_samples import SIZE, road
+from seen_roads import SIZE, road
 
 from vehicle_pf_tracker.trackers.traffic.horizon import (
     Growths,

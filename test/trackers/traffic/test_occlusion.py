@@ -4,7 +4,7 @@
 """Vehicles that hide one another: who is nearer, and what is left in sight."""
 
 import numpy as np
-from road_samples import road
+from seen_roads import road
 from traffic_samples import step_of, together, track
 
 from vehicle_pf_tracker.trackers.traffic.occlusion import find_occlusions, nearest_first

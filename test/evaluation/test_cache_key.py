@@ -1,6 +1,8 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
+"""Digest of the code that a run needs, by which kept runs are run again."""
+
 import pytest
 
 from vehicle_pf_tracker.evaluation.cache_key import source_digest
