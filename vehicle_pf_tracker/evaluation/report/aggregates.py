@@ -16,6 +16,8 @@ from vehicle_pf_tracker.evaluation.statistics import Summary, summarise
 
 Summaries = Mapping[str, Summary | None]
 """Summaries by the key of a column."""
+_RANKED_BY = COMPARED_METRICS[0].key
+"""Key of the metric that orders the systems."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,61 +48,75 @@ class Aggregates:
     recoveries: Mapping[str, tuple[int, int]]
 
 
+Values = Mapping[str, Mapping[str, Sequence[float]]]
+"""Values of the runs of one system, by the key of a column and by recording."""
+Means = Mapping[str, Mapping[str, float]]
+"""Their means over the seeds, likewise."""
+
+
 def aggregate(evaluation: ScoredEvaluation) -> Aggregates:
     """Summarise all runs."""
-    # 1. Values by system, metric and recording, and their means over the seeds.
     labels = [system.label for system in evaluation.folder.systems]
     runs = {label: some for label in labels if (some := evaluation.of(system=label))}
     values = {
         label: {column.key: _values(some, column) for column in METRIC_COLUMNS}
         for label, some in runs.items()
     }
-    means = {
-        label: {
-            key: {recording: statistics.fmean(some) for recording, some in found.items()}
-            for key, found in columns.items()
-        }
-        for label, columns in values.items()
-    }
-    main = COMPARED_METRICS[0].key
-
-    def mean(label: str) -> float:
-        # A system without a score goes last.
-        return statistics.fmean(means[label][main].values()) if means[label][main] else -math.inf
-
-    # 2. The best first: it is what the others are compared with.
-    order = tuple(sorted(runs, key=mean, reverse=True))
+    means = {label: _means(columns) for label, columns in values.items()}
+    # The best first: it is what the others are compared with.
+    order = _ranked(means)
     return Aggregates(
         order=order,
         recordings={
             entry.name: {
-                label: {key: summarise(some.get(entry.name, [])) for key, some in columns.items()}
-                for label, columns in values.items()
+                label: _over_seeds(values[label], entry.name)
+                for label in runs
                 if evaluation.of(entry.name, label)
             }
             for entry in evaluation.folder.recordings
         },
-        overall={
-            label: {key: summarise(list(found.values())) for key, found in means[label].items()}
-            for label in order
-        },
-        behind={
-            label: {
-                column.key: _differences(means[label][column.key], means[order[0]][column.key])
-                for column in COMPARED_METRICS
-            }
-            for label in order[1:]
-        },
-        pairs={
-            label: {
-                other: _differences(means[label][main], means[other][main])
-                for other in order
-                if other != label
-            }
-            for label in order
-        },
+        overall={label: _over_recordings(means[label]) for label in order},
+        behind={label: _behind(means[label], means[order[0]]) for label in order[1:]},
+        pairs={label: _against_others(label, order, means) for label in order},
         recoveries={label: _recoveries(runs[label]) for label in order},
     )
+
+
+def _means(columns: Values) -> Means:
+    return {
+        key: {recording: statistics.fmean(some) for recording, some in found.items()}
+        for key, found in columns.items()
+    }
+
+
+def _ranked(means: Mapping[str, Means]) -> tuple[str, ...]:
+    """Order the systems by their mean over the recordings in the first of the compared metrics."""
+
+    def mean(label: str) -> float:
+        found = means[label][_RANKED_BY]
+        # A system without a score goes last.
+        return statistics.fmean(found.values()) if found else -math.inf
+
+    return tuple(sorted(means, key=mean, reverse=True))
+
+
+def _over_seeds(columns: Values, recording: str) -> Summaries:
+    return {key: summarise(some.get(recording, [])) for key, some in columns.items()}
+
+
+def _over_recordings(means: Means) -> Summaries:
+    return {key: summarise(list(found.values())) for key, found in means.items()}
+
+
+def _behind(means: Means, best: Means) -> Summaries:
+    return {
+        column.key: _differences(means[column.key], best[column.key]) for column in COMPARED_METRICS
+    }
+
+
+def _against_others(label: str, order: Sequence[str], means: Mapping[str, Means]) -> Summaries:
+    own = means[label][_RANKED_BY]
+    return {other: _differences(own, means[other][_RANKED_BY]) for other in order if other != label}
 
 
 def _values(runs: Sequence[ScoredRun], column: Column) -> dict[str, list[float]]:
