@@ -34,6 +34,9 @@ from vehicle_pf_tracker.ros.node.image_path import Feed, ImagePath
 from vehicle_pf_tracker.ros.node.parameters import ParameterTable, take_overrides, unknown_overrides
 from vehicle_pf_tracker.ros.serialized_image import ImageMessage
 
+_REQUEST_DEPTH = 10
+"""Requests for a change that may wait: ROS's usual depth, more than people send at once."""
+
 
 class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
     """Managed node that takes images; active at once unless `autostart` is false.
@@ -144,7 +147,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
                 # A wrong request of another node must not end this one.
                 self.path.journal.refuse(what, str(error))
 
-        self.inputs.append(self.create_subscription(kind, topic, take, 10))
+        self.inputs.append(self.create_subscription(kind, topic, take, _REQUEST_DEPTH))
 
     def serve(self, name: str, act: Callable[[], str]) -> None:
         """Offer a service until clean-up; `act` returns words for people, or raises InputError."""

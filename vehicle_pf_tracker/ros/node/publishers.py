@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 RELIABLE_QOS = QoSProfile(depth=10)
 """For results: a third of a second of images may wait for a slow subscriber; ROS's usual depth."""
-BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+BEST_EFFORT_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 """For what people look at: a late picture is worth nothing, and must not hold up the node."""
 
 Topics = Mapping[str, tuple[Any, QoSProfile]]
@@ -42,7 +42,7 @@ _COMMON: Topics = MappingProxyType(
         "position": (PointStamped, RELIABLE_QOS),
         "box": (PolygonStamped, RELIABLE_QOS),
         "velocity": (Vector3Stamped, RELIABLE_QOS),
-        "overlay": (Image, BEST_EFFORT),
+        "overlay": (Image, BEST_EFFORT_QOS),
         # Last, here and for every image: it tells a lock-step replay that the image is done with.
         "mode": (DiagnosticArray, RELIABLE_QOS),
     }

@@ -18,7 +18,7 @@ from vehicle_pf_tracker.ros import messages
 from vehicle_pf_tracker.ros.node.answer import Answer, TrackerAnswer
 from vehicle_pf_tracker.ros.node.journal import Journal
 from vehicle_pf_tracker.ros.node.publishers import (
-    BEST_EFFORT,
+    BEST_EFFORT_QOS,
     RELIABLE_QOS,
     Publishers,
     in_frame,
@@ -52,7 +52,7 @@ class TrackerOutputs:
         journal: Journal,
     ) -> None:
         more = {
-            "particles": (PointCloud2, BEST_EFFORT),
+            "particles": (PointCloud2, BEST_EFFORT_QOS),
             "pose_with_covariance": (PoseWithCovarianceStamped, RELIABLE_QOS),
             "road_position": (PointStamped, RELIABLE_QOS),
             "road_velocity": (Vector3Stamped, RELIABLE_QOS),

@@ -142,9 +142,8 @@ class TrafficFeed:
         self._detection_count = len(detections or ())
         self._warn_of_unusable(detections, frame)
         step_ms = (time.perf_counter() - began) * 1e3
-        while self.vehicles.given:
-            given = self.vehicles.given.pop()
-            events += [f"the target is doubtful: {why}" for why in doubts(frame, given)]
+        for box in self.vehicles.take_begun():
+            events += [f"the target is doubtful: {why}" for why in doubts(frame, box)]
         for event in events:
             self._journal.warnings.say(" ".join(event.split()[:3]), event)  # without numbers
         mode, values = self._of_selected()

@@ -9,6 +9,7 @@ from typing import Any
 
 from geometry_msgs.msg import PointStamped
 from rclpy.qos import QoSProfile
+from rclpy.subscription import Subscription
 from sensor_msgs.msg import RegionOfInterest
 from std_msgs.msg import Int64
 
@@ -32,12 +33,12 @@ from vehicle_pf_tracker.ros.traffic.vehicles import Vehicles
 from vehicle_pf_tracker.ros.traffic.waiting_images import MOST_WAITING
 from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT
 
-_LOOK_EVERY = 0.02
-"""Interval in s in which images that wait for detections are looked at: the least `max_wait` that
-is of use is a period of the images, 33 ms at 30 Hz."""
-_FREE_AFTER = 5.0
-"""Time in s after a flood of detections until its memory is freed, as a detector that floods once
-floods again: the new subscription misses what comes until it is matched."""
+_WAITING_PERIOD = 0.02
+"""Interval in s at which images that have waited for detections for long enough are passed on: the
+least `max_wait` that is of use is a period of the images, 33 ms at 30 Hz."""
+_RENEWED_AFTER = 5.0
+"""Time in s after a flood of detections until the subscription to them is made anew, as a detector
+that floods once floods again: the new one misses what comes until it is matched."""
 
 
 class TrafficNode(ImageNode):
@@ -64,6 +65,7 @@ class TrafficNode(ImageNode):
     def __init__(self, **options: Any) -> None:
         super().__init__(TRAFFIC_VARIANT.executable, **options)
         self._queue: DetectionQueue | None = None
+        self._detections: Subscription | None = None
         self.begin(Configuration.of(TRAFFIC_VARIANT))
 
     def prepare(self) -> None:
@@ -91,9 +93,9 @@ class TrafficNode(ImageNode):
                 journal.warnings,
             )
             self.accept = self._await_detections
-        self._look_timer = self.poll(_LOOK_EVERY, self._look)
-        self._free_timer = self.poll(_FREE_AFTER, self._free)
-        for timer in (self._look_timer, self._free_timer):
+        self._waiting_timer = self.poll(_WAITING_PERIOD, self._pass_on_waiting)
+        self._renewal_timer = self.poll(_RENEWED_AFTER, self._renew_detections)
+        for timer in (self._waiting_timer, self._renewal_timer):
             timer.cancel()
         self.serve("~/remove_selected", self._remove)
 
@@ -128,7 +130,7 @@ class TrafficNode(ImageNode):
         """Close the inputs."""
         super().deactivate()
         if self.feed is not None:
-            self._look_timer.cancel()
+            self._waiting_timer.cancel()
         if self.feed is not None and self._queue is not None:
             self._queue.clear()
 
@@ -136,33 +138,35 @@ class TrafficNode(ImageNode):
         """Let an image wait for its detections."""
         assert self._queue is not None
         self._queue.add_image(image)
-        # Without an image that waits, 50 looks a second would take a fortieth of a processor.
-        if self._look_timer.is_canceled():
-            self._look_timer.reset()
+        # Without an image that waits, a timer of 50 Hz would take a fortieth of a processor.
+        if self._waiting_timer.is_canceled():
+            self._waiting_timer.reset()
 
-    def _look(self) -> None:
+    def _pass_on_waiting(self) -> None:
         if self.feed is None or self._queue is None or not self._queue.go_on():
-            self._look_timer.cancel()
+            self._waiting_timer.cancel()
 
     def _listen_to_detections(self) -> None:
         # As many as images may wait: a detector may answer several at once.
         qos = QoSProfile(depth=MOST_WAITING)
         topic = self.resolve_topic_name("detections")
         take = self._on_detections
-        self.inputs.append(subscribe(self, detections_type(), topic, take, qos, raw=True))
+        self._detections = subscribe(self, detections_type(), topic, take, qos, raw=True)
+        self.inputs.append(self._detections)
 
     def _on_detections(self, message: bytes) -> None:
         if self.feed is None or self._queue is None:
             return
-        if len(message) > LONGEST_MESSAGE and self._free_timer.is_canceled():
-            self._free_timer.reset()
+        if len(message) > LONGEST_MESSAGE and self._renewal_timer.is_canceled():
+            self._renewal_timer.reset()
         self._queue.add_detections(message)
 
-    def _free(self) -> None:
+    def _renew_detections(self) -> None:
         """Free what a flood took: Fast DDS keeps each of a reader's buffers at its longest."""
-        self._free_timer.cancel()
-        if self.inputs:  # that to detections is the last
-            self.destroy_subscription(self.inputs.pop())
+        self._renewal_timer.cancel()
+        if self._detections in self.inputs:  # still active
+            self.inputs.remove(self._detections)
+            self.destroy_subscription(self._detections)
             self._listen_to_detections()
         return_memory()
 

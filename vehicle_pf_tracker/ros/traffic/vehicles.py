@@ -113,8 +113,6 @@ class Vehicles:
         Last crossing of each place.
     waiting : list of Box
         Targets that the first image will start.
-    given : list of Box
-        Targets followed since whoever looks at them emptied it.
     selection : Selection
         The vehicle that is reported like that of a single tracker.
     begins : bool
@@ -138,7 +136,7 @@ class Vehicles:
         self._is_shown = False
         self._added = 0
         self.waiting: list[Box] = []
-        self.given: list[Box] = []
+        self._begun: list[Box] = []
         self._configured: Box | None = configuration.session.target.box
 
     @property
@@ -201,11 +199,17 @@ class Vehicles:
         if self._is_shown:
             identity = self.session.add(box)
             self._added += 1
-            self.given.append(box)
+            self._begun.append(box)
             return identity
         check_target(box, LARGEST_SIDE_PX, LARGEST_SIDE_PX)
         self.waiting.append(box)
         return None
+
+    def take_begun(self) -> list[Box]:
+        """Return the boxes of targets that were begun since the last call."""
+        begun = self._begun
+        self._begun = []
+        return begun
 
     def select_first(self, box: Box) -> None:
         """Follow the vehicle in `box` of the next image, and select it."""
@@ -282,5 +286,5 @@ class Vehicles:
         except InputError as error:
             problems.append(f"target refused: {error}")
             return NO_VEHICLE
-        self.given.append(box)
+        self._begun.append(box)
         return identity
