@@ -10,6 +10,10 @@ are per nominal frame period, so that all of them scale with the elapsed time.
 
 `occlusion.rule: fixed` is the paper's step 4. `relative` is an extension of ours, with a level
 test, an alpha and a delay of its own; parameters that only it has name it as their source.
+
+Symbols of the paper: the particles s and weights pi are a `Cloud`, the estimate S is `position`,
+and V the mean velocity. Of the histograms Phi*_t is `histogram`, Phi_t `blended`, Phi_(t-1)
+`reference`, and Phi_0 `first_histogram`; d_B is the Hellinger distance.
 """
 
 from __future__ import annotations

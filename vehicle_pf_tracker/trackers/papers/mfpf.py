@@ -12,6 +12,10 @@ Steps 1 to 5 are those of the list in section IV, in its order: initialization, 
 prediction, updating, resampling. Only the particles' own move of step 3 (eq. 5) opens the next
 frame instead, because how long it takes is not known before that frame arrives. Speeds and radii
 are per nominal frame period, so that all of them scale with the elapsed time.
+
+Symbols of the paper: BD are Hellinger distances; AS, LC and WF the averages, confidences and
+factors of a `FeatureWeighting`, and I_Focc its `full_occlusion`; DR is `dispersion.radius`, and
+alpha of equation 9 `reference_weight`.
 """
 
 from __future__ import annotations

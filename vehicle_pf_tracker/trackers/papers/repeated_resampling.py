@@ -10,6 +10,10 @@ but the best one, by copies around it. Step numbers are those of the tables. Equ
 particle's previous weight as a factor, the tables have not (interpretation 28). As in the tables,
 the next frame starts without it also where no pass has run: what was measured in such a frame
 counts for its own estimate alone (interpretation 40).
+
+Symbols of the paper: N_s is `num_particles` and N_eff the effective sample size; b_dist is the
+Hellinger distance, phi_c the likelihood and w the weights of a `Cloud`; T_thres is
+`occlusion.n_eff`, and the N_s of step 13 `criterion` times the number of particles.
 """
 
 from __future__ import annotations
