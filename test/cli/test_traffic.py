@@ -12,13 +12,13 @@ import signal
 import socket
 import sys
 import threading
-import time
 from pathlib import Path
 from urllib.request import ProxyHandler, build_opener
 
 import cv2
 import numpy as np
 import pytest
+from page_visitors import when_one_waits
 from small_recordings import write_video
 
 from vehicle_pf_tracker import read_zones
@@ -359,7 +359,7 @@ def test_without_scipy_the_extra_is_named(run, monkeypatch, capsys):
 
 
 def test_a_page_shows_picture_and_counts_meanwhile(run, monkeypatch, tmp_path, capsys):
-    answers = []
+    answers, waits = [], when_one_waits(monkeypatch)
 
     class Watched(Follower):
         """Has somebody ask for the picture while the third image is followed."""
@@ -372,9 +372,9 @@ def test_a_page_shows_picture_and_counts_meanwhile(run, monkeypatch, tmp_path, c
                 (url,) = re.findall(
                     r"open (http://127\.0\.0\.1:\d+/\S+/) in", capsys.readouterr().out
                 )
-                self.asking = threading.Thread(target=self.ask, args=[url])
-                self.asking.start()
-                time.sleep(0.5)
+                Watched.asking = threading.Thread(target=self.ask, args=[url])
+                Watched.asking.start()
+                assert waits.wait(30)
             return super().step(frame, detections, elapsed)
 
         def ask(self, url):
@@ -383,9 +383,7 @@ def test_a_page_shows_picture_and_counts_meanwhile(run, monkeypatch, tmp_path, c
 
     monkeypatch.setattr(counted_vehicles, "MultiVehicleTracker", Watched)
     run("--serve", "--lines", tmp_path / "lines.yaml")
-    wait_until = time.monotonic() + 30
-    while len(answers) < 2 and time.monotonic() < wait_until:
-        time.sleep(0.05)
+    Watched.asking.join(30)
     picture, facts = answers
     assert picture.startswith(b"\xff\xd8")
     assert json.loads(facts) == {

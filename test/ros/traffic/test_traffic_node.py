@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from importlib.util import find_spec
 from urllib.error import URLError
 from urllib.request import ProxyHandler, build_opener
@@ -20,6 +19,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PointStamped, PolygonStamped, Vector3Stamped
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState
+from page_visitors import when_one_waits
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image, RegionOfInterest
 from std_msgs.msg import Int64
@@ -337,13 +337,14 @@ def test_a_page_shows_picture_and_counts_until_the_node_is_cleaned_up(
     monkeypatch.setenv("ROS_HOME", str(tmp_path))
     rig, answers = TrafficRig(bench, overrides(page_port=0)), []
     url, get = rig.node.outputs.page.url, build_opener(ProxyHandler({})).open
+    waits = when_one_waits(monkeypatch)
 
     def ask():
         answers.append(get(f"{url}picture.jpg").read())
 
     asking = threading.Thread(target=ask)
     asking.start()
-    time.sleep(0.2)
+    assert waits.wait(30)
     rig.play(lanes(3))
     asking.join()
     assert answers[0].startswith(b"\xff\xd8")
