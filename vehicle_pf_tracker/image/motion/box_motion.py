@@ -104,15 +104,16 @@ def shared_stretch(before: Array, after: Array, size: Array) -> Array:
     for axis in (0, 1):
         # Each of the lower half with one of the upper half: far apart for most, and no N² pairs.
         # Stable, so that points in one place pair alike on every machine.
-        order = before[:, axis].argsort(kind="stable")
-        sorted_before = before[order, axis]
-        sorted_after = after[order, axis]
+        places = before[:, axis]
+        order = places.argsort(kind="stable")
+        sorted_before = places.take(order)
+        sorted_after = after[:, axis].take(order)
         old = sorted_before[-half:] - sorted_before[:half]
         new = sorted_after[-half:] - sorted_after[:half]
         # Of points that are close an error of half a px is a change of size of a tenth.
         far = old > POINTS_APART * size[axis]
         if np.count_nonzero(far) >= FEWEST_POINTS // 2:
-            ratio = np.maximum(new[far] / old[far], LEAST_RATIO)
+            ratio = np.maximum(new.compress(far) / old.compress(far), LEAST_RATIO)
             change[axis] = median(np.log(ratio))
     # Per frame no vehicle changes by more: what is beyond is an error, of which the sign is kept.
     return np.minimum(np.maximum(change, -LARGEST_STRETCH), LARGEST_STRETCH)
@@ -156,8 +157,8 @@ def carried_share(
     near = np.hypot(off[:, 0], off[:, 1]) < FIT_REACH * limits
     if np.count_nonzero(near) >= FEWEST_CARRIED:
         # The turn is fitted to the residual, so that only what all share is taken off.
-        held = place[near]
-        off = off - place @ solved(held.T @ held + _KEPT, held.T @ off[near])
+        held = place.compress(near, axis=0)
+        off = off - place @ solved(held.T @ held + _KEPT, held.T @ off.compress(near, axis=0))
     return float(np.count_nonzero(np.hypot(off[:, 0], off[:, 1]) < limits) / len(points))
 
 

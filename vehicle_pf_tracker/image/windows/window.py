@@ -122,6 +122,10 @@ def bounds_of_one(
 
 def keep_inside(frame: Frame, positions: Positions) -> Positions:
     """Clip positions so that each lies on a pixel of `frame`, shape (..., 2)."""
+    # One in scalars, which are quicker than arrays of two.
+    if positions.ndim == 1:
+        (x, y), (width, height) = positions.tolist(), frame_size(frame)
+        return np.array([min(max(x, 0.5), width - 0.5), min(max(y, 0.5), height - 0.5)])
     # np.clip does the same, slower.
     return np.minimum(np.maximum(positions, 0.5), _last_middle(*frame_size(frame)))
 

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -64,8 +65,8 @@ _HUE_GAIN = 4.0
 to the filter of a beige one of the same shape (scenes `bus` and `braking`, seeds 100 to 104)."""
 _COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32) / 100
 """Factors of L, a and b, which span 100 units."""
-_MIDDLE_LIGHTNESS = np.float32(0.5)
-"""Subtracted from L: middle grey is 0, as what a patch fades to at its rim."""
+_MIDDLE_COLOUR = np.array([0.5, 0, 0], np.float32)
+"""Subtracted from L, a and b then: middle grey is 0, as what a patch fades to at its rim."""
 _RIM_REACH = 4
 """Places beyond an outline within which the filter has to answer: a tenth of the target's side, as
 outlines are good to that."""
@@ -303,15 +304,21 @@ class Appearance:
         # floats from 0 to 1 become Lab without rounding.
         small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
         lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
+        # Lightness is 0 to 100, a and b about as much to either side: all within about one. Row by
+        # row: by pixels, most of the loops would be of three steps.
+        gains, middles = _colour_rows(cells[0])
+        colours = lab.reshape(-1, len(gains)) * gains
+        colours -= middles
+        channels = colours.reshape(images, -1, *lab.shape[1:]).transpose(0, 3, 1, 2)
         described = []
-        for part, colours in zip(
-            grey.reshape(images, -1, width), lab.reshape(images, -1, *lab.shape[1:]), strict=True
-        ):
+        for part, own in zip(grey.reshape(images, -1, width), channels, strict=True):
             features = self._kernels.gradient_cells(part, _COLOURS)
-            # Lightness is 0 to 100, a and b about as much to either side: all within about one.
-            # Channel by channel: as one array by pixels, most of its loops would be of three steps.
-            for channel, gain in enumerate(_COLOUR_GAINS):
-                np.multiply(colours[..., channel], gain, out=features[GRADIENT_CHANNELS + channel])
-            features[GRADIENT_CHANNELS] -= _MIDDLE_LIGHTNESS
+            features[GRADIENT_CHANNELS:] = own
             described.append(features)
         return described
+
+
+@functools.cache
+def _colour_rows(cells: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
+    """Factors of a row of colours, and what is subtracted then, (3 * cells,)."""
+    return np.tile(_COLOUR_GAINS, cells), np.tile(_MIDDLE_COLOUR, cells)

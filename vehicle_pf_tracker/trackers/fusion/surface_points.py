@@ -177,4 +177,6 @@ def _flow(
 ) -> tuple[Points, PointMask]:
     """Track points (N, 2) forth and back; also tell which came back to where they started."""
     end, found, error = flow.follow_and_return(before.grey, after.grey, start, guess)
-    return end, found & (np.square(error).sum(axis=1) < _ROUND_TRIP_PX**2)
+    # Added by hand: numpy takes twice as long to sum rows of two.
+    x, y = np.square(error).T
+    return end, found & (x + y < _ROUND_TRIP_PX**2)
