@@ -23,7 +23,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.outputs import Products, claimed, output_errors
 from vehicle_pf_tracker.parameters.configuration import Configuration
 from vehicle_pf_tracker.results.output_files import make_folder, write_csv
-from vehicle_pf_tracker.results.source_table import SourceTable, read_table
+from vehicle_pf_tracker.results.source_table import Cell, SourceTable, read_table
 from vehicle_pf_tracker.trackers.registry import Variant
 from vehicle_pf_tracker.workers.cluster import run_on_cluster
 from vehicle_pf_tracker.workers.processes import run_in_processes
@@ -106,10 +106,15 @@ def _complete(jobs: Sequence[Job], request: SeveralSources, folder: Path) -> int
 
 
 def _print(table: SourceTable) -> None:
-    rows = [["" if cell is None else str(cell) for cell in row] for row in table.rows]
+    rows = [list(map(_shown, row)) for row in table.rows]
     if len(rows) > _MOST_PRINTED:
         console.tell_notice(f"the first {_MOST_PRINTED} of {len(rows)} sources, and all together")
-    console.print_rows(table.header, [*rows[:_MOST_PRINTED], list(map(str, table.totals))])
+    console.print_rows(table.header, [*rows[:_MOST_PRINTED], list(map(_shown, table.totals))])
+
+
+def _shown(cell: Cell) -> str:
+    """Return a cell for people; the file has all digits."""
+    return "" if cell is None else f"{cell:.4g}" if isinstance(cell, float) else str(cell)
 
 
 def _run(jobs: Sequence[Job], request: SeveralSources) -> Iterator[tuple[Job, Outcome]]:

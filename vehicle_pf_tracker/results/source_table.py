@@ -26,7 +26,9 @@ _FOLLOWED = ("frames", "tracked", "occluded", "lost")
 _SCORES = ("on_target", "median_px", "success_auc")
 """Metrics that are shown where there is truth; `metrics.json` has the others."""
 _LARGEST = "most_at_once"
-"""Column whose largest value stands for all sources; others are summed, and scores left out."""
+"""Column whose largest value stands for all sources; others are summed."""
+_NO_TOTAL = (*_SCORES, "least_size_px")
+"""Columns that nothing stands for: medians and shares of one source each."""
 
 Cell: TypeAlias = "str | int | float | None"
 """Cell of the table; None where there is no value."""
@@ -117,7 +119,7 @@ def _of_traffic(summary: Mapping[str, Any]) -> dict[str, Cell]:
 
 def _total(name: str, cells: Sequence[Cell]) -> Cell:
     numbers = [cell for cell in cells if isinstance(cell, int | float)]
-    if name in _SCORES or not numbers:
+    if name in _NO_TOTAL or not numbers:
         return ""
     return max(numbers) if name == _LARGEST else sum(numbers)
 
