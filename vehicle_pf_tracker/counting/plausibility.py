@@ -70,7 +70,7 @@ class Life:
 
     @property
     def is_vague(self) -> bool:
-        """True where it was predicted or held by its pixels for most of its way."""
+        """True where it was predicted or held by its pixels in most of its images."""
         return self.detected < self.images / 2
 
     def precedes(self, other: Life) -> bool:

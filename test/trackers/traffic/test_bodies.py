@@ -49,7 +49,7 @@ def test_a_part_that_keeps_its_place_on_a_drive_of_the_whole_is_one_body():
     assert together_for(6)[1, 2].is_one(SHORT_DRIVE)
     assert not together_for(12)[1, 2].is_one(LONG_DRIVE)
     assert together_for(13)[1, 2].is_one(LONG_DRIVE)
-    assert together_for(13)[1, 2].way == pytest.approx(12 * 8 / np.sqrt(100 * 80))
+    assert together_for(13)[1, 2].driven == pytest.approx(12 * 8 / np.sqrt(100 * 80))
 
 
 def test_what_stands_in_the_other_box_may_be_a_second_vehicle():

@@ -57,7 +57,7 @@ def begin_tracks(state: State, candidates: Candidates, columns: Integers, step: 
     )
     # No prediction to fit yet: births against clutter, both per image, are its prior odds.
     fits = math.log(_NEW_VEHICLES) - candidates.clutter[columns]
-    # 2. Those that go on have the name, the way and the evidence of before, and no prediction.
+    # 2. Those that go on have the name, the path and the evidence of before, and no prediction.
     if len(former):
         old = state.tracks.take(former)
         names = tracks.names.put(new, old.names)

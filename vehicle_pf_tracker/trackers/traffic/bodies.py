@@ -31,16 +31,16 @@ MISSED_FOR = 4
 """Images with both boxes by which two may be one, and without that of the elder by which the other
 is now all of it: fewer may be wrong."""
 _SPREAD = 0.07
-"""Standard deviation of the part's place in the whole, of its side, over the way of both, of the
-whole's size, up to which they are one body: .06 of a real lorry and its cab. Another vehicle that
-drives through the box at constant speed spreads over 1 / sqrt(12) of its way in it, so that this
-one has the same speed up to a quarter."""
+"""Standard deviation of the part's place in the whole, as a share of the whole's sides, per size of
+the whole that both have driven, up to which they are one body: .06 of a real lorry and its cab.
+Another vehicle that drives through the box at constant speed spreads over 1 / sqrt(12) of its
+displacement in it, so that this one has the same speed up to a quarter."""
 SHORT_DRIVE = 0.4
-"""Way, of the whole's size, that shows a track without a number to be part of a vehicle: that of a
-drive (`birth.displacement`)."""
+"""Distance driven, in sizes of the whole, that shows a track without a number to be part of a
+vehicle: that of a drive (`birth.displacement`)."""
 LONG_DRIVE = 1.0
-"""Way, of the whole's size, after which two numbers become one: a choice, longer than the other as
-it takes a number away."""
+"""Distance driven, in sizes of the whole, after which two numbers become one: a choice, longer than
+the other as it takes a number away."""
 
 
 class Together(NamedTuple):
@@ -48,30 +48,30 @@ class Together(NamedTuple):
 
     Attributes
     ----------
-    looks : int
+    images : int
         Number of these images.
     first : (float, float, float)
         Centre of the larger box in the first one, and its size, the root of its area, px.
-    way : float
-        Way from there to the latest one: distance of the centres, of the size, and logarithm of the
-        growth.
+    driven : float
+        Distance driven from there to the latest one, in sizes: that of the centres, and the
+        logarithm of the growth.
     sums : (float, float, float, float)
         Sums of the smaller box's place in the larger one, across and down, of its sides, of the
         square of both, and of its share in it.
     """
 
-    looks: int
+    images: int
     first: tuple[float, float, float]
-    way: float
+    driven: float
     sums: tuple[float, float, float, float]
 
-    def is_one(self, least_way: float) -> bool:
+    def is_one(self, least_drive: float) -> bool:
         """Test whether the smaller box has kept its place in the larger one on such a drive."""
-        across, down, squares, inside = (each / self.looks for each in self.sums)
+        across, down, squares, inside = (each / self.images for each in self.sums)
         # Of both axes, hence the two.
         spread = math.sqrt(max(squares - across**2 - down**2, 0.0) / 2)
-        is_part = inside > _INSIDE and spread <= _SPREAD * self.way
-        return is_part and self.looks >= MISSED_FOR and self.way >= least_way
+        is_part = inside > _INSIDE and spread <= _SPREAD * self.driven
+        return is_part and self.images >= MISSED_FOR and self.driven >= least_drive
 
 
 Companions: TypeAlias = Mapping[tuple[int, int], Together]
@@ -130,9 +130,9 @@ def _added(
     across = ((small[0] + small[2]) / 2 - centre[0]) / width
     down = ((small[1] + small[3]) / 2 - centre[1]) / height
     size = math.sqrt(width * height)
-    looks, first, _, sums = before or Together(0, (*centre, size), 0.0, (0.0, 0.0, 0.0, 0.0))
+    images, first, _, sums = before or Together(0, (*centre, size), 0.0, (0.0, 0.0, 0.0, 0.0))
     # One that comes straight on hardly moves, and grows.
-    way = math.hypot(math.dist(first[:2], centre) / size, math.log(size / first[2]))
+    driven = math.hypot(math.dist(first[:2], centre) / size, math.log(size / first[2]))
     terms = across, down, across**2 + down**2, share
     sums = (sums[0] + terms[0], sums[1] + terms[1], sums[2] + terms[2], sums[3] + terms[3])
-    return Together(looks + 1, first, way, sums)
+    return Together(images + 1, first, driven, sums)

@@ -12,21 +12,22 @@ from vehicle_pf_tracker.trackers.traffic.state import Step
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks
 
 _PART_OF_DRIVE = 0.5
-"""Way of two edges, of that asked for, above which a shape may be a vehicle, by its scores or by
-its centre's way: without one a clock's digits and holes have numbers, and with all of it vehicles
-behind a bridge are followed worse."""
+"""Displacement of two edges, in shares of `birth.displacement`, above which a shape may be a
+vehicle, by its scores or by its centre's displacement: without this a clock's digits and holes have
+numbers, and with all of it vehicles behind a bridge are followed worse."""
 _SURELY_DRIVES = 50.0
 """Evidence for a drive above which scores may be ignored: false alarms side by side reach 35."""
 _OWN_WIDTH = 1.0
-"""Way of such a drive, of its width, from which they are: what creeps by less is a light, or the
-box of what is far behind. Not chosen between values."""
+"""Displacement on such a drive, in widths, from which they are: what creeps by less is a light, or
+the box of what is far behind. Not chosen between values."""
 _STRAIGHT_ENOUGH = 7.0
 """Evidence for a drive, one in a thousand, above which it is one."""
 _STRAIGHT_SHAPE = 18.0
 """The same for shapes in dense images, which come by the dozen where leaves move: of 7 clips by
 motion, 50 vehicles and 4 others are as straight."""
 _FURTHER_PER_LOG_ODD = 0.5
-"""Further way, of that asked for, per log odd of scores against it. A choice."""
+"""Further displacement, in shares of `birth.displacement`, per log odd of scores against it. A
+choice."""
 _MOVES = 3.0
 """Standard deviations of speed above which a vehicle drives: in 2-D 1 in 90 that stand is there."""
 

@@ -41,7 +41,8 @@ _PIECE_FOR = 0.5
 """Time in s before a shape is a vehicle that has a rest beside it, or no straight drive: the pieces
 of a blob are soon joined."""
 _STANDS = 0.1
-"""Way, of its width, below which a track has not moved: networks' boxes shake by half of it."""
+"""Displacement, in widths, below which a track has not moved: networks' boxes shake by half of
+it."""
 _KEPT_SAMPLES = 30
 """Latest detections, one second of 30 Hz, not learnt from until it drives: it may be about to."""
 

@@ -128,12 +128,12 @@ def unify(state: State) -> State:
     return state if kept.all() else state._replace(tracks=tracks.take(kept))
 
 
-def body_of(state: State, row: int, least_way: float = SHORT_DRIVE) -> int | None:
+def body_of(state: State, row: int, least_drive: float = SHORT_DRIVE) -> int | None:
     """Find the elder vehicle that is one body with the track at `row`, if there is one."""
     names = state.tracks.names
     own = int(names.serial[row])
     for pair, together in state.companions.items():
-        if own in pair and together.is_one(least_way):
+        if own in pair and together.is_one(least_drive):
             (other,) = np.flatnonzero(names.serial == sum(pair) - own).tolist() or (None,)
             # Numbers tell who is the elder: a track that began first may be confirmed last.
             if other is not None and 0 < names.identity[other] < (names.identity[row] or np.inf):

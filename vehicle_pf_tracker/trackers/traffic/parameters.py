@@ -56,7 +56,7 @@ class BirthParameters:
         bounds=(0.0, 8.0), unit="log odds", tuned=(1.0, 6.0),
     )  # fmt: skip
     displacement: float = parameter(
-        0.4, "Larger: unless its scores speak for it, a vehicle is reported after a longer way.",
+        0.4, "Larger: unless its scores speak for it, a vehicle is reported after a longer drive.",
         bounds=(0.0, 10.0), unit="of the width", tuned=(0.1, 1.0),
     )  # fmt: skip
     standing: str = parameter(

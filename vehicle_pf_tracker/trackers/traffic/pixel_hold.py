@@ -40,8 +40,8 @@ _MOST_ALIVE = 0.5
 _MOST_AGREE = 0.5
 """Least share of these that agree with a box: most of them."""
 _STANDS = 0.5
-"""Share of the predicted way below which a point does not drive: nearer to standing than to
-driving."""
+"""Share of the predicted displacement below which a point does not drive: nearer to standing than
+to driving."""
 _SLIP = 0.02
 """Standard deviation, of its size, by which a box grows or slips on its vehicle in a frame. A
 choice, less than the .05 of a detector's edge: what a hold knows it has from the frame before."""
@@ -233,8 +233,8 @@ def _standing(old: Array, new: Array, before: Array, predicted: Array) -> Bools:
     """Points (K, N) that stand while the vehicle drives: they lie on what hides it."""
     drive = (predicted[:, :2] + predicted[:, 2:] - before[:, :2] - before[:, 2:]) / 2
     length = np.hypot(*drive.T)[:, np.newaxis]
-    way = new - old
-    stands = np.hypot(way[..., 0], way[..., 1]) < _STANDS * length
+    moves = new - old
+    stands = np.hypot(moves[..., 0], moves[..., 1]) < _STANDS * length
     # Else standing and driving are not to be told apart yet.
     return np.asarray(stands & (length >= PIXEL_NOISE))
 

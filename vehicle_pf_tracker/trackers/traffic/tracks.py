@@ -132,7 +132,7 @@ class Beliefs(Rows):
     doubt : (N,) array
         Log odds against a vehicle by these scores; never below zero.
     has_driven : (N,) array
-        True once its way has shown that it is no part of the scene.
+        True once its path has shown that it is no part of the scene.
     paths : Paths
         Paths through the image: how far, how straight, and for how long each has stood.
     samples : (N,) array of tuple of Sample
