@@ -88,7 +88,7 @@ class TrafficSession:
         self.detector = make_detector() if make_detector else None
         self._make_detector = make_detector
         self._regions = tuple(regions)
-        self._given: dict[int, tuple[Box, str]] = {}
+        self._by_hand: dict[int, tuple[Box, str]] = {}
         self._detections: Detections | None = None
 
     @property
@@ -114,12 +114,12 @@ class TrafficSession:
     def add(self, box: Box, label: str = "") -> int:
         """Follow the vehicle in `box` of the last image; see `MultiVehicleTracker.add`."""
         identity = self.tracker.add(box, label)
-        self._given[identity] = box, label
+        self._by_hand[identity] = box, label
         return identity
 
     def remove(self, identity: int) -> bool:
         """Discard a vehicle; False if there is none of this identity."""
-        self._given.pop(identity, None)
+        self._by_hand.pop(identity, None)
         return self.tracker.remove(identity)
 
     def reset(self) -> None:
@@ -156,11 +156,11 @@ class TrafficSession:
         """
         # One image that was rejected before may be admitted together with this one: `turns` are
         # then two, and each needs its own detections.
-        given = self._detections, detections  # of the image before, which may be admitted only now
+        latest = self._detections, detections  # of the image before, which may be admitted only now
         self._detections = detections
         self._attempts.begin_image()
         turns = self._stream.admit(image, stamp_ns)
-        for turn, found in zip(turns, given[-len(turns) :], strict=True):
+        for turn, found in zip(turns, latest[-len(turns) :], strict=True):
             self._take(turn, found)
         return self.estimates
 
@@ -190,11 +190,13 @@ class TrafficSession:
             detections = inside
         # 3. None, unlike no detections, says that nobody has looked: nothing is missed.
         self.estimates = self.tracker.step(turn.frame, detections, turn.elapsed)
-        # 4. Keep where given vehicles are now: a restart begins them there, as no detector may find
-        # them.
-        if self._given:
+        # 4. Keep where those given by hand are now: a restart begins them there, as no detector may
+        # find them.
+        if self._by_hand:
             followed = {one.identity: (one.box, one.label) for one in self.estimates}
-            self._given = {number: followed[number] for number in self._given if number in followed}
+            self._by_hand = {
+                number: followed[number] for number in self._by_hand if number in followed
+            }
 
     def _detected(self, detector: Detector, turn: Turn) -> Detections | None:
         """Return the detections; None where it did not look, so that no vehicle is missed."""
@@ -209,7 +211,7 @@ class TrafficSession:
         self.tracker.reset()
         self.estimates = ()
         self.successors = {}
-        self._given = {}
+        self._by_hand = {}
         self.restarts += 1
         # A new detector: the background of the old one is of another stream.
         if self._make_detector is not None:
@@ -218,10 +220,10 @@ class TrafficSession:
     def _start_anew(self) -> None:
         """Start anew with the vehicles given by hand, where each was in the last estimates."""
         # Kept before the restart, which empties it.
-        given = self._given
+        by_hand = self._by_hand
         successors = {}
         self._restart()
-        for identity, (box, label) in given.items():
+        for identity, (box, label) in by_hand.items():
             with suppress(InputError):  # of a box that has left the image
                 successors[identity] = self.add(box, label)
         self.successors = successors
