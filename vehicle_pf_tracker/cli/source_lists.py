@@ -48,10 +48,10 @@ class SeveralSources(TrackingRequest, SchedulerOption):
     """Request to track in one source, or in each of several."""
 
     more: Sequence[str] = positional(
-        metavar="SOURCE", nargs="*",
-        help="more sources, patterns as 'cams/*.mp4', or lists of sources, FILE.txt with one a "
-        "line and its own options: -o then has a folder for each and sources.csv over all, and "
-        "the same command continues; docs/scale.md",
+        metavar="MORE", nargs="*",
+        help="more sources; they and SOURCE may be patterns as 'cams/*.mp4', and lists, FILE.txt "
+        "with a source a line and its own options: -o then has a folder for each and sources.csv "
+        "over all, and the same command continues; docs/scale.md",
     )  # fmt: skip
     output: Path | None = option("-o", metavar="DIR", help="folder of the results")
 
