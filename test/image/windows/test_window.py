@@ -65,6 +65,13 @@ def test_positions_kept_inside_lie_on_a_pixel(x, y):
     assert not is_outside(FRAME, *inside[0])
 
 
+@given(x=st.floats(), y=st.floats())
+def test_one_position_is_kept_inside_like_a_row_of_several(x, y):
+    """In scalars and in arrays: the same bits, also where a number is infinite or none."""
+    alone = keep_inside(FRAME, np.array([x, y]))
+    assert np.array_equal(alone, keep_inside(FRAME, np.array([[x, y]]))[0], equal_nan=True)
+
+
 def test_outside_is_beyond_the_border():
     positions = (0.0, 0.0), (64.0, 48.0), (-0.1, 5.0), (5.0, 48.1)
     outside = [is_outside(FRAME, *position) for position in positions]
