@@ -173,6 +173,18 @@ def test_sightings_move_with_the_camera_and_age():
     assert last.size == pytest.approx([8, 6])
 
 
+def test_sightings_are_of_a_box_that_is_larger_at_one_end():
+    """A third wider to the right: the centre by a sixth of the width that each had."""
+    sightings = Sightings()
+    for width in (30.0, 60.0):
+        size = np.array([width, 20.0])
+        sightings = sightings.moved_on(1.0, CameraMotion()).added(np.array([9.0, 5]), size, 1.0)
+    wider = sightings.rescaled(np.array([1 / 6, 0]), np.array([4 / 3, 1]))
+    expected = np.array([[1, 14, 5, 40, 20, 1], [0, 19, 5, 80, 20, 1]])
+    assert wider.rows == pytest.approx(expected)
+    assert sightings.rows[0, 1] == 9
+
+
 def returned_for(frames, response=1.0):
     """Sightings of a vehicle at 3 px per frame, hidden from frame 20 to 79, then seen elsewhere."""
     sightings = Sightings()

@@ -11,7 +11,7 @@
   memory that all share
 - measured: `appearance` (filter) and `paint`; `surface_flow`, `surface_points`; `size_search`
 - hidden: `perspective` predicts, by sightings that `standing_occluder` restores
-- reported: `sides` of the box before a standing camera
+- reported: `sides` of the box before a standing camera, to which `anchoring` moves it
 - where a hidden vehicle cannot be: `exclusion`, `behind`
 - before a standing camera outlines (`outline_boxes`) show what turns (`turning`, `unfolding`) or
   comes out (`emergence`, `reappearance`)

@@ -13,6 +13,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
+from vehicle_pf_tracker.trackers.fusion.anchoring import anchored
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     PRIOR_DOUBT,
@@ -96,12 +97,12 @@ def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> Sta
 
 def _sides(state: State, verdict: Verdict, seen: Observation, step: Step) -> Sides:
     """Follow the sides of a vehicle in full view, where its surroundings were looked at."""
-    sides = state.sides.passed(step.elapsed * step.period)
+    sides = state.sides.passed(step.elapsed * step.period, state.size)
     match verdict:
         case Visible(unfolding=unfolding):
             return sides.looked(unfolding.around, seen.position, state.size)
         case Turning():  # its box is the outline
-            return Sides()
+            return Sides.of_outline()
     return sides.doubted()
 
 
@@ -249,6 +250,9 @@ def learn(state: State, seen: Observation, step: Step) -> State:
         case Visible() | PartlyHidden():
             _learn_appearance(state, seen, step)
             state = _learn_usual(state, seen, step)
+            unfolded = state.sides.unfolded(state.size)
+            if unfolded is not None and _is_sure(state):
+                return anchored(state, unfolded, step)
     if state.is_visible and seen.was_hidden:  # what was kept shows an occluder
         state = state._replace(surface=state.surface.restarted())
     # Kept in every frame: `was_hidden` keeps the next step from comparing with a hidden one.

@@ -145,6 +145,13 @@ class Sightings(NamedTuple):
         """Leave out all: from now on another part of the vehicle is sighted."""
         return Sightings(camera_stood=self.camera_stood)
 
+    def rescaled(self, shift: Array, scale: Array) -> Sightings:
+        """Move all by a fraction `shift` (2,) of their size, and scale that by `scale` (2,)."""
+        rows = self.rows.copy()
+        rows[:, 1:3] += shift * rows[:, 3:5]
+        rows[:, 3:5] *= scale
+        return self._replace(rows=rows)
+
     def proven(self) -> Sightings:
         """Leave out those since a return that was short: it may have been to another vehicle."""
         # The usual case first, which needs no look at the rows.

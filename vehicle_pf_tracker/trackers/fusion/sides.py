@@ -10,11 +10,14 @@ box. So what they tell is how far a side has moved since the first box: of each 
 believes in a distance that was zero then and wanders, and in a bias that stays.
 
 Only the box that is reported is corrected. What the filter follows stays as it is: moved, its peak
-would draw it back.
+would draw it back. But where a flank comes into view the drift is faster than that belief, and goes
+on: there the box that is followed is moved to the edges, and the filter is trained anew on it
+(`anchoring.py`).
 """
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -35,6 +38,21 @@ errors of looks in a row are alike. With .14 and .28 the gain is .022 and .021."
 _DELAY = 0.3
 """Age of a look at which it is believed, s: what an occluder cuts is seen in looks just before the
 doubt, and a doubt discards them. With 0 one that is cut loses .02, with 1 all gain .020."""
+_AFTER_OUTLINE = 0.15
+"""Standard deviation of a side's distance, fraction of the size, where the box was an outline, with
+shadows in it. With 0, .05 and .1 turning_car has .724, .730 and .739, not .740."""
+_OFF = 0.12
+"""Least distance of an edge beyond the left or right side of a flank that comes into view, fraction
+of the width, a choice: three deviations of one look."""
+_LEAST_BEYOND = -0.2
+"""Least distance at the other end: further inside, an occluder covers it. A choice, that of
+`unfolding.py`."""
+_TURNS = 0.15
+"""Least change of the logarithm of width over height of a box whose vehicle shows a flank, per
+second. With .1 a car of 27 px on a straight road has one, too (silver_estate, by its size's noise);
+with .05 also a car behind a pole, which loses .25 of IoU (laboratory/notes/fusion_tried.md)."""
+_SETTLED = 0.5
+"""Time over which that change is measured, s, a choice: of turns that take one to three."""
 
 _Look = tuple[float, Array]
 """Age of a look, s, and the distances that it found."""
@@ -55,6 +73,9 @@ class Sides(NamedTuple):
         Time that `beyond` has wandered since the last look that is believed, s.
     looks : tuple of (float, (2, 2) array)
         Looks that are not believed yet, oldest first.
+    shape : float or None
+        Logarithm of the width over the height of the followed box, an exponential mean; None where
+        none is known.
     """
 
     beyond: Array = np.zeros((2, 2))
@@ -66,11 +87,21 @@ class Sides(NamedTuple):
     )
     since: float = 0.0
     looks: tuple[_Look, ...] = ()
+    shape: float | None = None
 
-    def passed(self, seconds: float) -> Sides:
-        """Let time pass, and believe the looks that are old enough by then."""
+    @classmethod
+    def of_outline(cls) -> Sides:
+        """Sides of a box that was an outline: they may be anywhere near its own."""
+        wandered, shared, constant = cls().variances
+        return cls(variances=(wandered + _AFTER_OUTLINE**2, shared, constant))
+
+    def passed(self, seconds: float, size: Array) -> Sides:
+        """Let time pass in which the followed box has a size, px; believe looks old enough then."""
         looks = tuple((age + seconds, found) for age, found in self.looks)
-        sides = self._replace(since=self.since + seconds, looks=looks)
+        shape = _shape(size)
+        if self.shape is not None:
+            shape = self.shape + (shape - self.shape) * min(seconds / _SETTLED, 1.0)
+        sides = self._replace(since=self.since + seconds, looks=looks, shape=shape)
         while sides.looks and sides.looks[0][0] >= _DELAY:
             sides = sides._believed(sides.looks[0][1])._replace(looks=sides.looks[1:])
         return sides
@@ -82,7 +113,28 @@ class Sides(NamedTuple):
 
     def doubted(self) -> Sides:
         """Discard the looks of just before a doubt: an occluder may have cut the vehicle."""
-        return self._replace(looks=())
+        return self._replace(looks=(), shape=None)
+
+    def unfolded(self, size: Array) -> Sides | None:
+        """Sides as the last look found them left and right, if a flank comes into view.
+
+        `size` (2,) is that of the followed box, px; None where none does.
+        """
+        # The mean lags behind a steady change by what changes in its time.
+        if self.shape is None or abs(_shape(size) - self.shape) < _TURNS * _SETTLED:
+            return None
+        # All that are not believed yet: a single one may be of something else.
+        if len(self.looks) < 2:
+            return None
+        across = np.array([found[:, 0] for _, found in self.looks])
+        # At the other end the box is on the vehicle, or beyond it: a mask that is too large is so
+        # at both ends. A side that was not seen compares as false.
+        is_flank = (across > _OFF).all(axis=0) & ~(across[:, ::-1] > 0).any(axis=0)
+        if not is_flank.any() or (across < _LEAST_BEYOND).any():
+            return None
+        beyond = self.beyond.copy()
+        beyond[:, 0] = np.where(np.isfinite(across[-1]), across[-1], beyond[:, 0])
+        return self._replace(beyond=beyond)
 
     def box(self, position: Array, size: Array) -> tuple[Array, Array]:
         """Centre and size, px, of the vehicle whose followed box has these."""
@@ -105,4 +157,10 @@ class Sides(NamedTuple):
             constant - to_bias * (shared + constant),
         )
         beyond = self.beyond + to_beyond * error
-        return Sides(beyond, self.bias + to_bias * error, variances, 0.0, self.looks)
+        return Sides(beyond, self.bias + to_bias * error, variances, 0.0, self.looks, self.shape)
+
+
+def _shape(size: Array) -> float:
+    """Logarithm of the width over the height."""
+    width, height = size.tolist()
+    return math.log(width / height)
