@@ -140,6 +140,11 @@ class Foreground:
             self._learnt.carry(camera)
 
     @property
+    def present(self) -> SmallGrey:
+        """The latest frame."""
+        return self._kept.present
+
+    @property
     def is_known(self) -> bool:
         """True once the background has been seen for long enough, by a camera that stands."""
         return self._kept.are_enough

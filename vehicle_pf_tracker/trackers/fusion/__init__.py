@@ -10,6 +10,7 @@
 - belief: `state` has the `hypotheses`, and the `verdict` on the frame; `step` the frame, and the
   memory that all share
 - measured: `appearance` (filter) and `paint`; `surface_flow`, `surface_points`; `size_search`
+- cut by the image's border at first: `entering`
 - hidden: `perspective` predicts, by sightings that `standing_occluder` restores
 - reported: `sides` of the box before a standing camera, to which `anchoring` moves it
 - where a hidden vehicle cannot be: `exclusion`, `behind`

@@ -26,7 +26,7 @@ from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 from vehicle_pf_tracker.trackers.fusion.sides import Sides
 from vehicle_pf_tracker.trackers.fusion.size_search import believed_stretch, searched_size
-from vehicle_pf_tracker.trackers.fusion.state import State, Wholeness
+from vehicle_pf_tracker.trackers.fusion.state import State
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Step
 from vehicle_pf_tracker.trackers.fusion.surface_flow import USUAL_RATE
 from vehicle_pf_tracker.trackers.fusion.surface_points import SurfacePoints
@@ -125,7 +125,8 @@ def _with_whole(state: State, whole: float, seen: Observation, step: Step) -> St
         measured = state.size
     grown = state.size * math.exp(growth * step.elapsed)
     grown = np.clip(grown, measured / _LARGEST_PARTIAL, measured * _LARGEST_PARTIAL)
-    return state._replace(whole=Wholeness(whole, measured, growth), size=step.bounded(grown))
+    whole_now = before._replace(probability=whole, measured=measured, growth=growth)
+    return state._replace(whole=whole_now, size=step.bounded(grown))
 
 
 def _enter_occlusion(state: State, step: Step) -> State:

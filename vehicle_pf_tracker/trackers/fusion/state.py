@@ -11,7 +11,9 @@ from typing import NamedTuple
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.image.motion.camera_drift import CameraDrift
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.departure import Strangers
+from vehicle_pf_tracker.trackers.fusion.entering import Entry
 from vehicle_pf_tracker.trackers.fusion.hypotheses import Hypotheses
 from vehicle_pf_tracker.trackers.fusion.perspective import Sightings
 from vehicle_pf_tracker.trackers.fusion.sides import Sides
@@ -37,11 +39,14 @@ class Wholeness(NamedTuple):
         Size when it was measured last, before the vehicle was partly or wholly hidden, px.
     growth : float
         Rate at which a partly hidden vehicle grows, per frame.
+    entry : Entry or None
+        What has come in of a vehicle whose first box the image's border cuts.
     """
 
     probability: float
     measured: Array
     growth: float = 0.0
+    entry: Entry | None = None
 
     @property
     def is_likely(self) -> bool:
@@ -52,6 +57,10 @@ class Wholeness(NamedTuple):
     def at_start(cls, size: Array) -> Wholeness:
         """Begin with the box that was given."""
         return cls(WHOLE_AT_FIRST, size)
+
+    def moved(self, camera: CameraMotion) -> Wholeness:
+        """Note that the camera has moved."""
+        return self._replace(entry=self.entry.moved(camera)) if self.entry else self
 
 
 class State(NamedTuple):

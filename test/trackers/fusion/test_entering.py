@@ -1,0 +1,143 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""A vehicle that drives into the image behind a first box which the border cuts."""
+
+import numpy as np
+import pytest
+from fusion_samples import contrasted, grey_road
+
+from vehicle_pf_tracker.core.box import Box
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
+from vehicle_pf_tracker.trackers.fusion.entering import Entry
+from vehicle_pf_tracker.trackers.fusion.tracker import FusionTracker
+from vehicle_pf_tracker.trackers.registry import make_tracker
+
+WIDTH, HEIGHT = 200, 90
+TOP, TALL = 30, 24
+FIRST = 20
+"""Width of the part that is in view in the first image, px."""
+SPEED = 3
+ROAD = grey_road(WIDTH, HEIGHT)
+BODY = 255 - contrasted(np.random.default_rng(2).integers(0, 256, (TALL, 60)).astype(np.uint8), 1.5)
+
+
+def picture(time, length, pan=0):
+    """Road with the first `length` px of a body whose front is at `FIRST` + `SPEED` * `time`.
+
+    A camera that has panned by `pan` px sees both farther to the left.
+    """
+    image = np.roll(ROAD, -pan, axis=1)
+    front = FIRST + SPEED * time
+    tail = max(front - length, 0)
+    image[TOP : TOP + TALL, tail:front] = BODY[:, : front - tail][:, ::-1]
+    return image
+
+
+def entered(length, frames, pans=0):
+    """Follow the first 20 px of a vehicle of this length; give what is known after some frames.
+
+    The box is that of the 20 px at the front. The background moves by `pans` px to the left each
+    frame.
+    """
+    size = np.array([FIRST, TALL], float)
+    entry = Entry.of_box(np.array([FIRST / 2, TOP + TALL / 2]), size, np.array([WIDTH, HEIGHT]))
+    for time in range(frames):
+        position = np.array([FIRST / 2 + SPEED * time, TOP + TALL / 2])
+        entry = entry.moved(
+            CameraMotion(shift=np.array([-float(pans), 0.0])) if pans else CameraMotion()
+        )
+        entry = entry.looked(SmallGrey(picture(time, length, pans * time), 1.0), position, size)
+    return entry, position, size
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "cut"),
+    [
+        (10, 40, [[True, False], [False, False]]),
+        (190, 40, [[False, False], [True, False]]),
+        (100, 12, [[False, True], [False, False]]),
+        (188, 77, [[False, False], [True, True]]),
+    ],
+)
+def test_sides_near_the_border_may_be_cut(x, y, cut):
+    # A tenth of the longer side, 2.4 px: a side at 2 px counts, one at 3 does not.
+    entry = Entry.of_box(np.array([x, y], float), np.array([20.0, 24.0]), np.array([200.0, 90.0]))
+    assert entry.is_cut.tolist() == cut
+
+
+def test_a_box_away_from_the_border_is_whole():
+    size = np.array([20.0, 24.0])
+    assert Entry.of_box(np.array([13.0, 45.0]), size, np.array([200.0, 90.0])) is None
+
+
+@pytest.mark.parametrize("pans", [0, 2])
+@pytest.mark.parametrize("length", [30, 40, 50])
+def test_a_vehicle_is_as_long_as_what_moves_with_it(length, pans):
+    entry, position, size = entered(length, 40, pans)
+    centre, whole = entry.grown(position, size)
+    # A shadow of .15 of the box, 3 px, is taken off; a cell has 1.25 px.
+    assert whole == pytest.approx([length - 3, TALL], abs=2)
+    assert centre[0] + whole[0] / 2 == pytest.approx(position[0] + size[0] / 2)
+    assert entry.remaining(size) is None
+
+
+def test_what_is_whole_is_left_as_it_is():
+    entry, position, size = entered(FIRST, 40)
+    assert entry.grown(position, size) is None
+    assert entry.remaining(size) is None
+
+
+def test_a_vehicle_behind_it_is_another():
+    """A gap of 10 px is more than four tenths of the longer side, 24 px."""
+    size = np.array([FIRST, TALL], float)
+    entry = Entry.of_box(np.array([FIRST / 2, TOP + TALL / 2]), size, np.array([WIDTH, HEIGHT]))
+    for time in range(40):
+        image = picture(time, 30)
+        tail = FIRST + SPEED * time - 40
+        if tail > 0:
+            image[TOP : TOP + TALL, max(tail - 30, 0) : tail] = BODY[:, : min(tail, 30)][:, ::-1]
+        position = np.array([FIRST / 2 + SPEED * time, TOP + TALL / 2])
+        entry = entry.looked(SmallGrey(image, 1.0), position, size)
+    assert entry.grown(position, size)[1][0] == pytest.approx(27, abs=2)
+
+
+def test_the_reported_box_reaches_to_the_border_while_more_comes_in():
+    entry, position, size = entered(60, 8)
+    # The front is at 41 px: all of it is vehicle.
+    centre, seen = entry.box(position, size)
+    assert centre[0] - seen[0] / 2 == pytest.approx(0, abs=0.5)
+    assert seen[0] == pytest.approx(41, abs=0.5)
+    assert entry.remaining(size) is not None
+
+
+def test_a_vehicle_that_waits_is_not_looked_at():
+    size = np.array([FIRST, TALL], float)
+    position = np.array([FIRST / 2, TOP + TALL / 2])
+    entry = Entry.of_box(position, size, np.array([WIDTH, HEIGHT]))
+    for _ in range(10):
+        entry = entry.looked(SmallGrey(picture(0, 60), 1.0), position, size)
+    assert len(entry.moments) == 1
+    assert entry.box(position, size)[1] == pytest.approx(size)
+
+
+def test_images_before_a_doubt_are_not_compared_with_those_after_it():
+    entry, position, size = entered(40, 20)
+    lost = entry.lost()
+    assert lost.moments == ()
+    assert lost.box(position, size)[1] == pytest.approx(entry.box(position, size)[1])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_fusion_begins_anew_with_the_whole_vehicle(seed):
+    tracker = make_tracker("fusion", seed=seed)
+    assert isinstance(tracker, FusionTracker)
+    rgb = [np.repeat(picture(time, 50)[..., None], 3, axis=2) for time in range(45)]
+    tracker.start(rgb[0], Box(0, TOP, FIRST, TALL))
+    widths = [tracker.step(frame).box.width for frame in rgb[1:]]
+    # Less a shadow of .15 of the boxes that it grew by.
+    assert widths[-1] == pytest.approx(47, abs=3)
+    assert tracker.state.whole.entry is None
+    # The target too: new parameters must not bring the part back.
+    assert tracker.target.box.width == pytest.approx(47, abs=3)

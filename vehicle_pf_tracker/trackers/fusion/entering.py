@@ -1,0 +1,292 @@
+# Copyright 2026 vehicle_pf_tracker maintainers
+# SPDX-License-Identifier: Apache-2.0
+
+"""A first box that the image's border cuts: how much of the vehicle comes in behind it.
+
+Detectors find a vehicle while it drives into the image. The filter answers to the part that was
+given for as long as that is in view, and the box stays on it. What comes in behind it moves with
+it, and not with the road: an image between an earlier and a later one is compared with both, once
+moved with the box and once with the background. The earlier one alone would take the road that the
+vehicle has just left for a part of it, as a smooth road fits anything.
+
+The tracker begins anew with what has come in, each time that this is half as much again, and once
+road is seen behind the vehicle.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
+
+_NEAR_BORDER = 0.1
+"""Distance from the image's border, fraction of the box's longer side, up to which it may have cut
+a side, a choice: detectors are good to about that."""
+_WAY = 0.12
+"""Least way of the box from one compared image to the next, fraction of its size: what moves and
+what stands are then two cells apart. A choice."""
+_CELLS = 16
+"""Cells per side of the box along which it is searched, and across: of a box of 30 px they are two
+px of the frame. A choice."""
+_INSIDE = _CELLS // 2
+"""Cells inside the box, from its middle on, that others are measured by."""
+_FARTHEST = 3
+"""How far beyond the cut side the vehicle is searched, sides of the box, a choice: the box grows
+while more comes in."""
+_MIDDLE = 0.7
+"""Part of the box across that is compared, fraction of it, a choice: beside corners is road."""
+_LARGEST = 30.0
+"""Largest evidence of a cell, grey levels, a choice: one reflection must not outweigh a side."""
+_CLEAR = 1.0
+"""Least evidence that tells anything, grey levels: the noise of an image."""
+_LEVEL = 0.5
+"""Evidence of the vehicle's last cell, fraction of the mean up to it: half. A shadow has less."""
+_SHADOW = 0.15
+"""Length beyond the vehicle that moves with it, fraction of the box: shadow, and half a cell. The
+mean error of seven vehicles of two clips (laboratory/notes/fusion_tried.md)."""
+_ROAD = 0.4
+"""Length of road that ends a vehicle, fraction of the box's longer side, a choice: a plain
+bonnet is shorter."""
+_STANDS = 3.0
+"""Evidence against the vehicle, grey levels, from which a cell counts twice, a choice: a plain
+flank tells nothing, road with a kerb stands."""
+_LOOKS = 2
+"""Times that a cell has to be compared for a new beginning, a choice: once for the reported box."""
+_COME_IN = 0.5
+"""Part that has come in from which it is followed too, fraction of the box, a choice: each new
+beginning costs a filter."""
+_LEAST_CUT = 0.1
+"""The same once all of it has come in, a choice: less is within the error of a first box."""
+
+_Mask = npt.NDArray[np.bool_]
+
+
+class Moment(NamedTuple):
+    """An image in which the box was followed.
+
+    Attributes
+    ----------
+    small : SmallGrey
+        The image.
+    position, size : (2,) arrays
+        Centre, and width and height of the box there, px.
+    camera : CameraMotion
+        Motion of the camera since then.
+    """
+
+    small: SmallGrey
+    position: Array
+    size: Array
+    camera: CameraMotion = CameraMotion()
+
+
+class Entry(NamedTuple):
+    """What has been seen of a vehicle beyond the sides at which the border cuts the first box.
+
+    Attributes
+    ----------
+    is_cut : (2, 2) array of bool
+        Sides that the border may have cut, by [low or high, axis].
+    image_size : (2,) array
+        Width and height of the images, px.
+    moments : tuple of Moment
+        Last images that were compared, oldest first.
+    evidence, looks : (2, 2, cells) arrays
+        By side and cell, from the middle of the box outwards: summed excess of the difference that
+        standing leaves over that which moving leaves, grey levels; and the number of comparisons.
+    """
+
+    is_cut: _Mask
+    image_size: Array
+    moments: tuple[Moment, ...] = ()
+    evidence: Array = np.zeros((2, 2, _INSIDE + _FARTHEST * _CELLS))
+    looks: Array = np.zeros((2, 2, _INSIDE + _FARTHEST * _CELLS))
+
+    @classmethod
+    def of_box(cls, position: Array, size: Array, image_size: Array) -> Entry | None:
+        """Begin with a first box; None where the border cuts none of its sides. All px."""
+        low = position - size / 2
+        high = position + size / 2
+        is_cut = np.array([low, image_size - high]) < _NEAR_BORDER * size.max()
+        return cls(is_cut, image_size) if is_cut.any() else None
+
+    def moved(self, camera: CameraMotion) -> Entry:
+        """Note that the camera has moved."""
+        if camera.still:
+            return self
+        moments = (each._replace(camera=camera.after(each.camera)) for each in self.moments)
+        return self._replace(moments=tuple(moments))
+
+    def lost(self) -> Entry:
+        """Discard the images: the next one will not follow on them."""
+        return self._replace(moments=())
+
+    def looked(self, small: SmallGrey, position: Array, size: Array) -> Entry:
+        """Look at a frame in which the box has this centre and size, px."""
+        moment = Moment(small, position, size)
+        if not self.moments:
+            return self._replace(moments=(moment,))
+        last = self.moments[-1]
+        way = np.abs(position - last.camera.apply(last.position)) / size
+        if way.max() < _WAY:
+            return self
+        moments = (*self.moments, moment)[-3:]
+        if len(moments) < 3:
+            return self._replace(moments=moments)
+        evidence = self.evidence.copy()
+        looks = self.looks.copy()
+        for end, axis in np.argwhere(self.is_cut).tolist():
+            found, seen = _compared(moments, end, axis)
+            evidence[end, axis] += found
+            looks[end, axis] += seen
+        return self._replace(moments=moments, evidence=evidence, looks=looks)
+
+    def box(self, position: Array, size: Array) -> tuple[Array, Array]:
+        """Centre and size, px, of what is in view of the vehicle whose box has these.
+
+        It reaches to the border until road is seen behind it.
+        """
+        beyond = np.zeros((2, 2))
+        to_border = np.array([position, self.image_size - position]) / size - 0.5
+        for end, axis in np.argwhere(self.is_cut).tolist():
+            length, road = self._end(end, axis, size, looks=1)
+            reaches = length > 0 and road < 0.5
+            beyond[end, axis] = max(to_border[end, axis], 0.0) if reaches else length
+        return _extended(position, size, beyond)
+
+    def grown(self, position: Array, size: Array) -> tuple[Array, Array] | None:
+        """Centre and size, px, to begin anew with; None while too little has come in."""
+        beyond, is_whole = self._beyond(size)
+        if beyond.max() < (_LEAST_CUT if is_whole else _COME_IN):
+            return None
+        return _extended(position, size, beyond)
+
+    def remaining(self, size: Array) -> Entry | None:
+        """Go on looking with a new box; None once the end of the vehicle is seen."""
+        _, is_whole = self._beyond(size)
+        return None if is_whole else Entry(self.is_cut, self.image_size)
+
+    def _beyond(self, size: Array) -> tuple[Array, bool]:
+        """How far the vehicle reaches beyond the sides of the box, fractions of its size.
+
+        By [low or high, axis], as far as it has come in; and whether all of it has.
+        """
+        beyond = np.zeros((2, 2))
+        is_whole = True
+        for end, axis in np.argwhere(self.is_cut).tolist():
+            beyond[end, axis], road = self._end(end, axis, size, looks=_LOOKS)
+            is_whole &= road >= 1
+        return beyond, is_whole
+
+    def _end(self, end: int, axis: int, size: Array, looks: int) -> tuple[float, float]:
+        """Where the vehicle ends beyond a side of a box of this size; see `_end_of`.
+
+        By the cells that were compared so many times.
+        """
+        counts = self.looks[end, axis]
+        known = counts >= looks
+        first = len(known) if known.all() else int(known.argmin())
+        if first < _INSIDE:
+            return 0.0, 0.0
+        road = _ROAD * float(size.max() / size[axis]) * _CELLS
+        return _end_of((self.evidence[end, axis, :first] / counts[:first]).tolist(), road)
+
+
+def _extended(position: Array, size: Array, beyond: Array) -> tuple[Array, Array]:
+    """Centre and size of a box whose sides are moved outwards by fractions of its size."""
+    low, high = beyond * size
+    return position + (high - low) / 2, size + low + high
+
+
+def _compared(moments: tuple[Moment, ...], end: int, axis: int) -> tuple[Array, Array]:
+    """Evidence for the cells beyond a side, and which of them are in view, by three images."""
+    earlier, middle, later = moments
+    present, in_view = _cells(middle.small, middle.position, middle.size, end, axis)
+    moved = np.zeros(present.shape, np.float32)
+    stood = np.full(present.shape, np.inf, np.float32)
+    compared = np.zeros(len(present), bool)
+    for other in (earlier, later):
+        cells, seen = _cells(other.small, other.position, other.size, end, axis)
+        # What drives in is not yet in view in the earlier image, and what drives out no more in the
+        # later one.
+        difference = np.where(seen[:, None], np.abs(present - cells), 0)
+        moved = np.maximum(moved, difference)
+        compared |= seen
+        # Where the middle's background was, or will be, in the other image.
+        there = _background(middle.camera, other.camera)
+        centre = there.apply(middle.position)
+        cells, _ = _cells(other.small, centre, middle.size, end, axis)
+        stood = np.minimum(stood, np.abs(present - cells))
+    seen = in_view & compared
+    evidence = np.clip(stood - moved, -_LARGEST, _LARGEST).mean(axis=1)
+    return np.where(seen, evidence, 0.0), seen.astype(float)
+
+
+def _background(one: CameraMotion, other: CameraMotion) -> CameraMotion:
+    """Motion of the background from one image to another, by the motions since both."""
+    back = np.linalg.inv(other.turn)
+    return CameraMotion(back @ one.turn, back @ (one.shift - other.shift))
+
+
+def _cells(
+    small: SmallGrey, position: Array, size: Array, end: int, axis: int
+) -> tuple[npt.NDArray[np.float32], _Mask]:
+    """Grey levels of the cells from the middle of a box outwards, and which rows are in view."""
+    outwards = (2 * end - 1) * size[axis] / _CELLS
+    across = _MIDDLE * size[1 - axis] / _CELLS
+    count = _INSIDE + _FARTHEST * _CELLS
+    along = position[axis] + outwards * (np.arange(count) + 0.5)
+    first = np.empty(2)
+    first[axis] = along[0]
+    first[1 - axis] = position[1 - axis] - across * (_CELLS - 1) / 2
+    # From cell (across, along) to the centre of a px of the reduced frame.
+    matrix = np.zeros((2, 3))
+    matrix[1 - axis, 0] = across * small.zoom
+    matrix[axis, 1] = outwards * small.zoom
+    matrix[:, 2] = first * small.zoom - 0.5
+    cells = cv2.warpAffine(
+        small.image,
+        matrix,
+        (_CELLS, count),
+        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+        borderMode=cv2.BORDER_REPLICATE,
+    )
+    length = small.image.shape[1 - axis] / small.zoom
+    margin = 1 / small.zoom  # the outermost px is often black
+    in_view = (along > margin) & (along < length - margin)
+    return np.asarray(cells, np.float32), in_view
+
+
+def _end_of(evidence: list[float], road: float) -> tuple[float, float]:
+    """Where the vehicle ends, fractions of the box beyond its side, and the road that is seen.
+
+    That is the share of the length that ends the vehicle: from 1 on its end is seen.
+
+    Parameters
+    ----------
+    evidence : list of float
+        Mean evidence of the cells that are known, from the middle of the box outwards.
+    road : float
+        Cells of road that end it.
+    """
+    total = sum(evidence[:_INSIDE])
+    if total < _CLEAR * _INSIDE:
+        return 0.0, 0.0
+    last = _INSIDE - 1
+    plain = 0
+    for cell in range(_INSIDE, len(evidence)):
+        each = evidence[cell]
+        total += each
+        plain = 0 if each >= _CLEAR else plain + (1 if each > -_STANDS else 2)
+        if plain >= road:
+            break
+        if each >= _LEVEL * total / (cell + 1):
+            last = cell
+    length = max((last + 1 - _INSIDE) / _CELLS - _SHADOW, 0.0)
+    return length, plain / road
