@@ -37,6 +37,11 @@ def followed():
     return tracker
 
 
+def moved(state):
+    """The box of all of the car."""
+    return Sides(BEYOND).box(state.position, state.size)
+
+
 def step_of(tracker):
     rng = np.random.default_rng(0)
     return Step(frame(LAST), 1.0, tracker.parameters, rng, tracker.memory, Tasks(), 1 / 30)
@@ -45,7 +50,7 @@ def step_of(tracker):
 def test_all_that_was_measured_in_the_box_moves_with_it():
     tracker = followed()
     before = tracker.state
-    after = anchored(before, Sides(BEYOND), step_of(tracker))
+    after = anchored(before, moved(before), step_of(tracker))
     shift = np.array([before.size[0] / 6, 0])
     assert after.position == pytest.approx(before.position + shift)
     assert after.size == pytest.approx(before.size * [4 / 3, 1])
@@ -60,7 +65,7 @@ def test_all_that_was_measured_in_the_box_moves_with_it():
 
 def test_the_filter_keeps_the_box_where_it_was_moved_to():
     tracker = followed()
-    tracker.state = anchored(tracker.state, Sides(BEYOND), step_of(tracker))
+    tracker.state = anchored(tracker.state, moved(tracker.state), step_of(tracker))
     for time in range(LAST + 1, LAST + 9):
         estimate = tracker.step(frame(time), 1.0)
     # Its middle is 32 px from its left side, at 60 + 2 * 18; without, it would be 24 px.

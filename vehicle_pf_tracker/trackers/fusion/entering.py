@@ -9,8 +9,8 @@ it, and not with the road: an image between an earlier and a later one is compar
 moved with the box and once with the background. The earlier one alone would take the road that the
 vehicle has just left for a part of it, as a smooth road fits anything.
 
-The tracker begins anew with what has come in, each time that this is half as much again, and once
-road is seen behind the vehicle.
+The box is moved to what has come in, and the filter trained anew, each time that this is half as
+much again, and once road is seen behind the vehicle.
 """
 
 from __future__ import annotations
@@ -57,10 +57,10 @@ _STANDS = 3.0
 """Evidence against the vehicle, grey levels, from which a cell counts twice, a choice: a plain
 flank tells nothing, road with a kerb stands."""
 _LOOKS = 2
-"""Times that a cell has to be compared for a new beginning, a choice: once for the reported box."""
+"""Times that a cell has to be compared for the box to move, a choice: once for the reported one."""
 _COME_IN = 0.5
-"""Part that has come in from which it is followed too, fraction of the box, a choice: each new
-beginning costs a filter."""
+"""Part that has come in from which it is followed too, fraction of the box, a choice: the
+filter is trained anew each time."""
 _LEAST_CUT = 0.1
 """The same once all of it has come in, a choice: less is within the error of a first box."""
 
@@ -161,7 +161,7 @@ class Entry(NamedTuple):
         return _extended(position, size, beyond)
 
     def grown(self, position: Array, size: Array) -> tuple[Array, Array] | None:
-        """Centre and size, px, to begin anew with; None while too little has come in."""
+        """Centre and size, px, to move the box to; None while too little has come in."""
         beyond, is_whole = self._beyond(size)
         if beyond.max() < (_LEAST_CUT if is_whole else _COME_IN):
             return None

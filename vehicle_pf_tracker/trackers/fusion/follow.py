@@ -253,7 +253,7 @@ def learn(state: State, seen: Observation, step: Step) -> State:
             state = _learn_usual(state, seen, step)
             unfolded = state.sides.unfolded(state.size)
             if unfolded is not None and _is_sure(state):
-                return anchored(state, unfolded, step)
+                return anchored(state, unfolded.box(state.position, state.size), step)
     if state.is_visible and seen.was_hidden:  # what was kept shows an occluder
         state = state._replace(surface=state.surface.restarted())
     # Kept in every frame: `was_hidden` keeps the next step from comparing with a hidden one.

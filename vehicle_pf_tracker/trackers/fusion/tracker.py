@@ -29,8 +29,9 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.motion.small_grey import small_grey
-from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker, Target
+from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
 from vehicle_pf_tracker.trackers.estimate import Estimate
+from vehicle_pf_tracker.trackers.fusion.anchoring import anchored
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion.entering import Entry
 from vehicle_pf_tracker.trackers.fusion.flow_evidence import weigh_by_flow
@@ -72,10 +73,16 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         """Learn the target; see `BaseTracker.start`."""
         estimate = super().start(frame, box)
         state, memory = self._track
+        # The second frame is compared with this one: its corners, its patch and its flow begin
+        # here.
         memory.camera.measure(small_grey(frame), box)
+        patch = memory.appearance.patch(frame, state.position, state.size)
         entry = Entry.of_box(state.position, state.size, np.array(frame_size(frame)))
-        state = state._replace(whole=state.whole._replace(entry=entry))
-        self.state = _compared_from(state, memory, frame)
+        self.state = state._replace(
+            whole=state.whole._replace(entry=entry),
+            points=state.points.kept(patch, state.position),
+            surface=state.surface.kept(patch, state.position, state.size),
+        )
         return estimate
 
     @property
@@ -127,32 +134,6 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             particles = state.particles.resampled(self._rng, parameters.num_particles)
             self.state = state._replace(particles=particles)
 
-    def _entered(self, state: State, frame: Frame) -> State:
-        """Begin anew with the whole vehicle, once it has come in behind a box that was cut."""
-        entry = state.whole.entry
-        if entry is None:
-            return state
-        _, memory = self._track
-        small = memory.foreground.present
-        seen = entry.looked(small, state.position, state.size) if state.is_visible else entry.lost()
-        grown = seen.grown(state.position, state.size)
-        remaining = seen.remaining(state.size)
-        if grown is None:
-            whole = state.whole._replace(entry=remaining and seen)
-            return state._replace(whole=whole)
-        centre, size = grown
-        x, y = centre.tolist()
-        self._target = Target(frame, Box.around((x, y), *size.tolist()))
-        self._window = self._target.window(self.parameters.window)
-        self._learn()
-        # It drives on as before: the velocities are those of the part that was followed.
-        particles = state.particles
-        particles = particles._replace(positions=particles.positions + centre - state.position)
-        whole = Wholeness.at_start(size)._replace(entry=remaining)
-        sightings = state.sightings.begun_anew()
-        begun = State(particles, centre, size, whole, sightings=sightings, drift=state.drift)
-        return _compared_from(begun, self._track[1], frame)
-
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         """Take one frame: predict, observe, weigh by flow, judge, follow, learn, resample."""
         state, memory = self._track
@@ -172,7 +153,7 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         state = follow(state, verdict, seen, step)
         state = learn(state, seen, step)
         state, self._search = recovered(state, self._search, step)
-        state = self._entered(state, frame)
+        state = _come_in(state, step)
         # Last, so that the estimate and the next prediction have the same set of hypotheses.
         particles = state.particles.resampled(self._rng, self.parameters.num_particles)
         self.state = state._replace(particles=particles)
@@ -182,13 +163,19 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         return _outcome(state, seen.response, step, has_left=has_left)
 
 
-def _compared_from(state: State, memory: Memory, frame: Frame) -> State:
-    """Keep a first frame: its patch and its flow are what the second one is compared with."""
-    patch = memory.appearance.patch(frame, state.position, state.size)
-    return state._replace(
-        points=state.points.kept(patch, state.position),
-        surface=state.surface.kept(patch, state.position, state.size),
-    )
+def _come_in(state: State, step: Step) -> State:
+    """Move a first box that was cut to what has come in behind it."""
+    entry = state.whole.entry
+    if entry is None:
+        return state
+    small = step.memory.foreground.present
+    seen = entry.looked(small, state.position, state.size) if state.is_visible else entry.lost()
+    grown = seen.grown(state.position, state.size)
+    remaining = seen.remaining(state.size)
+    if grown is None:
+        return state._replace(whole=state.whole._replace(entry=remaining and seen))
+    state = anchored(state, grown, step)
+    return state._replace(whole=state.whole._replace(measured=state.size, entry=remaining))
 
 
 def _outcome(state: State, response: float, step: Step, *, has_left: bool) -> Outcome:
