@@ -36,7 +36,7 @@ _CELLS = 16
 px of the frame. A choice."""
 _INSIDE = _CELLS // 2
 """Cells inside the box, from its middle on, that others are measured by."""
-_FARTHEST = 3
+_SEARCHED = 3
 """How far beyond the cut side the vehicle is searched, sides of the box, a choice: the box grows
 while more comes in."""
 _MIDDLE = 0.7
@@ -105,8 +105,8 @@ class Entry(NamedTuple):
     is_cut: _Mask
     image_size: Array
     moments: tuple[Moment, ...] = ()
-    evidence: Array = np.zeros((2, 2, _INSIDE + _FARTHEST * _CELLS))
-    looks: Array = np.zeros((2, 2, _INSIDE + _FARTHEST * _CELLS))
+    evidence: Array = np.zeros((2, 2, _INSIDE + _SEARCHED * _CELLS))
+    looks: Array = np.zeros((2, 2, _INSIDE + _SEARCHED * _CELLS))
 
     @classmethod
     def of_box(cls, position: Array, size: Array, image_size: Array) -> Entry | None:
@@ -240,7 +240,7 @@ def _cells(
     """Grey levels of the cells from the middle of a box outwards, and which rows are in view."""
     outwards = (2 * end - 1) * size[axis] / _CELLS
     across = _MIDDLE * size[1 - axis] / _CELLS
-    count = _INSIDE + _FARTHEST * _CELLS
+    count = _INSIDE + _SEARCHED * _CELLS
     along = position[axis] + outwards * (np.arange(count) + 0.5)
     first = np.empty(2)
     first[axis] = along[0]
