@@ -5,14 +5,14 @@
 
 import numpy as np
 import pytest
-from fusion_samples import contrasted, grey_road
+from fusion_samples import contrasted, fusion, grey_road
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
+from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
 from vehicle_pf_tracker.trackers.fusion.entering import Entry
-from vehicle_pf_tracker.trackers.fusion.tracker import FusionTracker
-from vehicle_pf_tracker.trackers.registry import make_tracker
+from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
 
 WIDTH, HEIGHT = 200, 90
 TOP, TALL = 30, 24
@@ -129,13 +129,32 @@ def test_images_before_a_doubt_are_not_compared_with_those_after_it():
     assert lost.box(position, size)[1] == pytest.approx(entry.box(position, size)[1])
 
 
+def driven_in(seed):
+    """A tracker that has followed a vehicle of 50 px from its first 20 px on."""
+    tracker = fusion(seed=seed)
+    frames = (np.repeat(picture(time, 50)[..., None], 3, axis=2) for time in range(45))
+    tracker.start(next(frames), Box(0, TOP, FIRST, TALL))
+    for frame in frames:
+        estimate = tracker.step(frame)
+    return tracker, estimate
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_fusion_follows_the_whole_vehicle(seed):
-    tracker = make_tracker("fusion", seed=seed)
-    assert isinstance(tracker, FusionTracker)
-    rgb = [np.repeat(picture(time, 50)[..., None], 3, axis=2) for time in range(45)]
-    tracker.start(rgb[0], Box(0, TOP, FIRST, TALL))
-    widths = [tracker.step(frame).box.width for frame in rgb[1:]]
+    tracker, estimate = driven_in(seed)
     # Less shadows of .15 of the two boxes that it grew from, 20 and 30 px.
-    assert widths[-1] == pytest.approx(42.5, abs=5)
+    assert estimate.box.width == pytest.approx(42.5, abs=5)
     assert tracker.state.whole.entry is None
+
+
+def test_a_filter_that_new_parameters_learn_anew_knows_the_whole_vehicle():
+    tracker, before = driven_in(0)
+    doubled = {"filter.penalty": 2 * tracker.parameters.filter.penalty}
+    tracker.reconfigure(
+        from_mapping(FusionParameters, {**to_mapping(tracker.parameters), **doubled})
+    )
+    for time in range(45, 50):
+        estimate = tracker.step(np.repeat(picture(time, 50)[..., None], 3, axis=2))
+    moved = 5 * SPEED
+    assert estimate.position[0] - before.position[0] == pytest.approx(moved, abs=2)
+    assert estimate.box.width == pytest.approx(before.box.width, abs=4)

@@ -29,7 +29,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.box import Box, Position
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.motion.small_grey import small_grey
-from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker
+from vehicle_pf_tracker.trackers.base import Cloud, Outcome, ParticleTracker, Target
 from vehicle_pf_tracker.trackers.estimate import Estimate
 from vehicle_pf_tracker.trackers.fusion.anchoring import anchored
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
@@ -153,7 +153,10 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         state = follow(state, verdict, seen, step)
         state = learn(state, seen, step)
         state, self._search = recovered(state, self._search, step)
-        state = _come_in(state, step)
+        entered = _come_in(state, step)
+        if entered.size is not state.size:  # what new parameters learn anew has to be all of it
+            self._target = Target(frame, entered.box)
+        state = entered
         # Last, so that the estimate and the next prediction have the same set of hypotheses.
         particles = state.particles.resampled(self._rng, self.parameters.num_particles)
         self.state = state._replace(particles=particles)
