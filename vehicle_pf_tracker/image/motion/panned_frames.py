@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""What moves before a camera that moves: all that the frames of the last second do not explain.
+"""Moving pixels before a camera that moves: those that no frame of the last second explains.
 
 They are carried along with the background. Where a vehicle has driven off, none of them shows what
 the present frame shows, while road is shown by most of them: no background has to be learnt.
