@@ -3,7 +3,7 @@
 
 import pytest
 
-from vehicle_pf_tracker.core.clock import StampClock, StampEvent
+from vehicle_pf_tracker.core.clock import StampClock, StampEvent, Tick
 
 MS = 1_000_000
 
@@ -35,9 +35,16 @@ def test_the_learned_rate_does_not_creep():
 
 def test_time_that_goes_back_is_told():
     clock = StampClock(10.0)
-    ticks(clock, [1000, 1100])
-    assert clock.tick(500 * MS).event is StampEvent.JUMP_BACK
-    assert clock.tick(600 * MS).elapsed == pytest.approx(1.0)
+    ticks(clock, [2000, 2100])
+    assert clock.tick(1100 * MS).event is StampEvent.JUMP_BACK
+    assert clock.tick(1200 * MS).elapsed == pytest.approx(1.0)
+
+
+def test_less_than_a_second_back_a_clock_was_set():
+    clock = StampClock(10.0)
+    ticks(clock, [2000, 2100])
+    assert clock.tick(1101 * MS) == Tick(1.0, StampEvent.SET_BACK)
+    assert clock.tick(1201 * MS) == Tick(pytest.approx(1.0))
 
 
 def test_a_frame_delivered_twice_takes_no_time_but_a_camera_without_a_clock_runs_on():

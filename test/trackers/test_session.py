@@ -55,6 +55,20 @@ def test_the_jump_back_is_told_and_can_be_ridden_over():
     assert error(estimate, street, 6) < 10
 
 
+def test_a_clock_that_is_set_back_by_less_than_a_second_loses_no_target():
+    street = Street()
+    waits_for_target = session(None)
+    waits_for_target.set_target(street.box(0))
+    feed(waits_for_target, street, range(10))
+    with pytest.raises(StrayImageError):
+        waits_for_target.feed(street.frame(10), 9 * PERIOD_NS - 1)
+    estimate = waits_for_target.feed(street.frame(11), 10 * PERIOD_NS - 1)
+    assert waits_for_target.events == [
+        "time went back by less than a second, as if the clock was set"
+    ]
+    assert error(estimate, street, 11) < 10
+
+
 # Strays: the same estimates as if they had never been there.
 
 DAY_NS = 86_400_000_000_000

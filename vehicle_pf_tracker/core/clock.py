@@ -22,6 +22,9 @@ and at 10 frames/s the period is known after a second."""
 _LONGEST_GAP = 5.0
 """Gap in s that counts in full. A longer one counts as this long: within it a vehicle has usually
 crossed the view, so that extrapolating further would predict nothing."""
+_SHORTEST_LOOP = 1.0
+"""Time in s back from which a recording may begin again. By less a clock was corrected, or two
+cameras publish in turns: neither is a reason to lose a target. No recording is this short."""
 
 
 class StampEvent(str, Enum):
@@ -30,6 +33,7 @@ class StampEvent(str, Enum):
     REPEATED = "repeated stamp"
     GAP = "gap in time"
     JUMP_BACK = "time jumped back"
+    SET_BACK = "time went back by less than a second, as if the clock was set"
     UNUSABLE = "unusable stamps, so each image counts as one period"
 
 
@@ -78,7 +82,8 @@ class StampClock:
         if seconds < 0:
             # The frame after a jump is a new one: what repeats it is delivered twice again.
             self._repeats = 0
-            return Tick(1.0, StampEvent.JUMP_BACK)
+            loops = seconds <= -_SHORTEST_LOOP
+            return Tick(1.0, StampEvent.JUMP_BACK if loops else StampEvent.SET_BACK)
         if seconds == 0:
             # One repeat is a frame delivered twice; a run of them is a camera without a clock, and
             # freezing the target for that would be worse than taking the nominal rate.

@@ -106,8 +106,8 @@ class SessionParameters:
 
     target: TargetParameters = group(TargetParameters)
     reset_on_time_jump: bool = parameter(
-        True, "Start again on the configured target when stamps go back and stay back (a "
-        "recording that loops).",
+        True, "Start again on the configured target when stamps go back by a second or more "
+        "and stay back (a recording that loops).",
     )  # fmt: skip
     road: RoadParameters = group(RoadParameters)
 

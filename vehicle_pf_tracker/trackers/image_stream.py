@@ -75,7 +75,7 @@ class ImageStream:
     frame_rate : float
         Nominal rate in 1/s; 0 takes the median of the first ten intervals.
     reset_on_time_jump : bool
-        Begin anew when stamps go back and stay back.
+        Begin anew when stamps go back by a second or more, and stay back.
     """
 
     def __init__(self, frame_rate: float, reset_on_time_jump: bool) -> None:

@@ -128,6 +128,9 @@ def test_a_target_that_cannot_be_is_refused_and_the_track_kept(tracking, message
     answer = rig.show_frame(road(4)[3], 3)
     assert rig.node.diagnostics.health.refusals.count == refused + 1
     assert words in targets.last_refusal
+    assert "target refused: " in values_of(answer)["event"]
+    assert words in values_of(answer)["event"]
+    assert "event" not in values_of(rig.show_frame(road(5)[4], 4))  # once
     assert values_of(answer)["regime"] != "start"
     assert answer.status[0].message == "TRACKING"
 

@@ -145,7 +145,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
                 change(message, self.path)
             except InputError as error:
                 # A wrong request of another node must not end this one.
-                self.path.journal.refuse(what, str(error))
+                self.path.refuse(what, str(error))
 
         self.inputs.append(self.create_subscription(kind, topic, take, _REQUEST_DEPTH))
 

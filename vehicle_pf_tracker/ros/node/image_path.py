@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Protocol
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -112,6 +113,7 @@ class ImagePath:
         self._outputs = outputs
         self.journal = journal
         self._frame_id: str | None = None
+        self._refusal = ""
         own = configuration.node
         memory = own.incident_memory * 10**6
         name = str(node.get_fully_qualified_name())
@@ -144,8 +146,18 @@ class ImagePath:
             self._send(answer)
             self._keep_target()
 
+    def refuse(self, what: str, reason: str) -> None:
+        """Report a request that cannot be met: in the log, and in the answer to the next image."""
+        self.journal.refuse(what, reason)
+        self._refusal = f"{what} refused: {reason}"
+
     def _send(self, answer: Answer) -> None:
         """Publish and count an answer; what led to a new start of the tracker is written first."""
+        if self._refusal:
+            events = [event for event in (answer.values.get("event"), self._refusal) if event]
+            values = {**answer.values, "event": "; ".join(map(str, events))}
+            answer = replace(answer, values=values)
+            self._refusal = ""
         if answer.is_restart:
             # Before the new answer is kept, so that the recording ends with what went wrong.
             self._note_restart()
