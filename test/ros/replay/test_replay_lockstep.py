@@ -122,6 +122,13 @@ def test_a_node_on_another_topic_is_told_with_that_topic(bench, tmp_path):
         replay(record(tmp_path / "bag"), lockstep(timeout=5.0))
 
 
+def test_a_node_of_the_other_transport_is_told_which_one_to_take(bench, tmp_path):
+    StubTracker(bench)
+    message = f"takes images from {IMAGE_TOPIC}; start it .* image_transport:=compressed"
+    with spinning(bench), pytest.raises(InputError, match=message):
+        replay(record(tmp_path / "bag", compressed=True), lockstep(timeout=5.0))
+
+
 def test_lockstep_without_nodes_is_refused(ros_domain, tmp_path):
     with pytest.raises(InputError, match=f"no tracker node subscribes to {IMAGE_TOPIC}"):
         replay(record(tmp_path / "bag"), ReplayOptions(lockstep=True, timeout=0.5))

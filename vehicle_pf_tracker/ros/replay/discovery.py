@@ -14,7 +14,11 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.recordings.bags.messages import DIAGNOSTIC_ARRAY, IMAGE_TYPES
+from vehicle_pf_tracker.recordings.bags.messages import (
+    COMPRESSED_IMAGE,
+    DIAGNOSTIC_ARRAY,
+    IMAGE_TYPES,
+)
 
 _SLICE = 0.05
 """Longest uninterrupted wait in s: changes of the graph and signals wake no executor."""
@@ -162,14 +166,20 @@ class Lookout:
         return set(map(_owner, self._node.get_subscriptions_info_by_topic(topic)))
 
     def _inputs(self, name: str) -> str:
-        inputs = [
-            topic
-            for topic, types in self._node.get_topic_names_and_types()
+        kinds = dict(self._node.get_topic_names_and_types())
+        inputs = {
+            topic: types
+            for topic, types in kinds.items()
             if not set(types).isdisjoint(IMAGE_TYPES) and name in self._subscribers(topic)
-        ]
+        }
         if not inputs:
             return f"{name} takes no images; is it running and active?"
-        return f"{name} takes images from {', '.join(inputs)}; use --remap"
+        remedy = "use --remap"
+        published = kinds.get(self._topic, [])
+        if published and not any(set(published) & set(types) for types in inputs.values()):
+            transport = "compressed" if COMPRESSED_IMAGE in published else "raw"
+            remedy = f"start it with the parameter image_transport:={transport}"
+        return f"{name} takes images from {', '.join(inputs)}; {remedy}"
 
 
 def _owner(endpoint: Any) -> str:
