@@ -70,7 +70,7 @@ MECHANISMS: Mapping[str, tuple[Replacement, ...]] = {
     "returns in another paint": (Replacement(exclusion, "LEAST_PAINT", -1.0),),
     "hypotheses drawn to what stands": (Replacement(observe, "is_covered", _always(False)),),
     "turns in another paint": (Replacement(turning, "_OTHER_PAINT", np.inf),),
-    "turns behind the path": (Replacement(turning, "_BEHIND_PATH", np.inf),),
+    "turns behind the path": (Replacement(turning, "BEHIND", np.inf),),
     "no outline in a turn": (Replacement(Branch, "begun", classmethod(_always(None))),),
     "nothing comes out beside the path": (Replacement(Emergence, "was_alone", _always(False)),),
     "no side unfolds": (Replacement(visibility, "_judged_unfolding", _never_unfolding),),

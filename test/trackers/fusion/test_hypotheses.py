@@ -8,11 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle_pf_tracker.trackers.fusion.hypotheses import (
-    FASTEST_GROWTH,
-    Hypotheses,
-    corrected_velocities,
-)
+from vehicle_pf_tracker.trackers.fusion.hypotheses import Hypotheses, corrected_velocities
+from vehicle_pf_tracker.trackers.fusion.perspective import FASTEST_GROWTH
 
 
 def hypotheses(visible, weights, positions=None):

@@ -11,9 +11,10 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion, Sighting
 
-_BEHIND = 0.5
-"""Distance in sizes against the heading, from the last clear sighting, beyond which nothing is the
-vehicle: it does not reverse on a road, and what comes up from behind is another one."""
+BEHIND = 0.5
+"""Distance in sizes against the heading beyond which nothing is the vehicle: it does not reverse on
+a road, and what comes up from behind is another one. The half is a choice: three such were .44 to
+.54 behind the predicted path, outlines of scene `turn` .2 (laboratory/notes/fusion_tried.md)."""
 _MOVED = 0.75
 """Distance in sizes by which that bound moves on while the vehicle is predicted to move by its
 size: an occluder that stands hides a vehicle only until it has moved by about its own length."""
@@ -41,5 +42,5 @@ def is_behind(
     reach = float(np.sqrt(last.size.prod())) * speed
     # The bound stops at a size: one that brakes falls behind its prediction more and more.
     predicted = float((motion.position_at(age) - last.position) @ velocity)
-    bound = _MOVED * min(max(predicted, 0.0), reach) - _BEHIND * reach
+    bound = _MOVED * min(max(predicted, 0.0), reach) - BEHIND * reach
     return np.asarray((positions - last.position) @ velocity < bound)

@@ -15,16 +15,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.fusion.behind import is_behind
+from vehicle_pf_tracker.trackers.fusion.behind import BEHIND, is_behind
 from vehicle_pf_tracker.trackers.fusion.reappearance import LEAST_PAINT, Reappearance
 from vehicle_pf_tracker.trackers.fusion.state import State
 from vehicle_pf_tracker.trackers.fusion.step import Step
 from vehicle_pf_tracker.trackers.fusion.verdict import Hidden
-
-_LEAST_WAY = 0.5
-"""Predicted way since the last clear sighting, in sizes, from which its heading tells what is
-behind, before a moving camera: as far as what is behind has to be (`behind`). Of .34, a vehicle of
-13 px came back .58 behind (S0601)."""
 
 Exclusion = Callable[[Array], npt.NDArray[np.bool_]]
 """Function of positions (..., 2), px: at which of them no hypothesis is the vehicle."""
@@ -44,9 +39,10 @@ def exclusion_of(state: State, step: Step) -> Exclusion | None:
     if fitted is None:
         return None
     motion, last = fitted
-    # What is carried along is off by the camera's error: a short way tells no heading.
+    # What is carried along is off by the camera's error: a way that is shorter than what is behind
+    # has to be far tells no heading. Of .34 sizes, one of 13 px came back .58 behind (S0601).
     moved = float(np.hypot(*(motion.position_at(last.age) - last.position)))
-    if moved < _LEAST_WAY * float(np.sqrt(last.size.prod())):
+    if moved < BEHIND * float(np.sqrt(last.size.prod())):
         return None
     return partial(is_behind, motion=motion, last=last, age=last.age)
 

@@ -21,7 +21,7 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     hidden_hypotheses,
 )
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
-from vehicle_pf_tracker.trackers.fusion.parameters import SIZE_RESPONSE
+from vehicle_pf_tracker.trackers.fusion.parameters import EVEN_RESPONSE, SIZE_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 from vehicle_pf_tracker.trackers.fusion.sides import Sides
@@ -64,9 +64,6 @@ _TURNING_RESPONSE = 0.7
 _LEAST_STIFFNESS = 0.2
 """Least stiffness in such a turn, fraction of the usual one, however low the response. A choice:
 twice that of a turn that an outline proves (a tenth), since flow alone proves less."""
-_LEARNT_RESPONSE = 0.5
-"""Response relative to the usual one above which the filter learns: without it walls are learnt,
-and white_van is claimed in half of its hidden frames (laboratory/notes/fusion_tried.md)."""
 
 
 def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> State:
@@ -312,7 +309,7 @@ def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
     appearance = memory.appearance
     turns = surface.is_reliable and surface.share > _TURNING_SHARE and response < _TURNING_RESPONSE
     turns &= not memory.foreground.is_known  # outlines tell more of a turn, size included
-    if not turns and (response <= _LEARNT_RESPONSE or not state.whole.is_likely):
+    if not turns and (response <= EVEN_RESPONSE or not state.whole.is_likely):
         return
     visible = state.particles.probability_visible
     # First the mean of all frames, then an exponential one; less where the frame may be an

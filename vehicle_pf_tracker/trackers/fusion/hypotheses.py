@@ -19,10 +19,8 @@ from vehicle_pf_tracker.filtering.motion import sample_normal
 from vehicle_pf_tracker.filtering.resampling import systematic
 from vehicle_pf_tracker.filtering.weights import effective_sample_size, normalise
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
-from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion
+from vehicle_pf_tracker.trackers.fusion.perspective import FASTEST_GROWTH, PerspectiveMotion
 
-FASTEST_GROWTH = 0.04
-"""Bound of the growth rate per frame: a vehicle that doubles within 17 frames passes the camera."""
 LARGEST_GROWTH = 3.0
 """Bound of the growth in one occlusion: the vehicles of real sequences that drive towards a fixed
 camera grow fivefold from where they are first seen to where they leave the image."""

@@ -17,6 +17,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
+from vehicle_pf_tracker.trackers.fusion.schedule import UNDISTURBED
 from vehicle_pf_tracker.trackers.fusion.standing_occluder import restored_sightings
 
 KEPT_FRAMES = 60.0
@@ -25,12 +26,12 @@ KEPT_FRAMES = 60.0
 CLEAR_RESPONSE = 0.75
 """Least response relative to the usual one of a sighting that the fit believes. While an occluder
 moves in it drags positions along and shrinks the box; 5 % of visible frames have less than 0.8."""
-_SIZE_RESPONSE = 0.9
-"""Least such response of a sighting whose size the fit believes: an occluder shrinks the box first.
-Levels of .85 to .95 predict sizes as well (laboratory/notes/fusion_tried.md)."""
-_RATES = np.linspace(-0.04, 0.04, 33)
-"""Rates of approach per frame that are tried; to 0.15, as many walls are recovered from (83 of 126,
-and 37 of 105 before moving cameras: laboratory/notes/fusion_tried.md)."""
+FASTEST_GROWTH = 0.04
+"""Bound of the growth rate per frame: a vehicle that doubles within 17 frames passes the camera.
+With rates of approach to 0.15, as many walls are recovered from (83 of 126, and 37 of 105 before
+moving cameras: laboratory/notes/fusion_tried.md)."""
+_RATES = np.linspace(-FASTEST_GROWTH, FASTEST_GROWTH, 33)
+"""Rates of approach per frame that are tried."""
 _MEMORY = 10.0
 """Frames after which an older position counts for 1 / e: a vehicle changes its speed. All sizes
 that are kept count alike, as the road stays what it is."""
@@ -206,7 +207,7 @@ class Sightings(NamedTuple):
         last = Sighting(float(ages[-1]), positions[-1], sizes[-1], whole is not None)
         times = last.age - ages
         # Too few believed sizes tell no rate; then all clear ones count.
-        believed = responses[clear] >= _SIZE_RESPONSE
+        believed = responses[clear] >= UNDISTURBED
         if believed.sum() < PROOF_FRAMES:
             believed[:] = True
         path = fit_motion(times, positions, np.sqrt(sizes.prod(axis=1)), believed.astype(float))

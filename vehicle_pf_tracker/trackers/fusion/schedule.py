@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-_UNDISTURBED = 0.9
+UNDISTURBED = 0.9
 """Response, and share of the surface, above which a frame is undisturbed: the size is followed in
 one, flow judged and appearance learnt in the next. That saves a quarter of the time and costs
-nothing over 633 runs; from .8 up it costs .01 on target (laboratory/notes/fusion_tried.md)."""
+nothing over 633 runs; from .8 up it costs .01 on target. Only then is a size believed, too, as an
+occluder shrinks the box first: .85 to .95 predict sizes as well (laboratory/notes/fusion_tried.md).
+"""
 _SETTLED = 10
 """Frames before which none is undisturbed: the usual response follows the first ones as their mean,
 and is not known yet. Ten is a choice: by then a frame weighs a tenth in that mean."""
@@ -44,7 +46,7 @@ class Tasks(NamedTuple):
         """
         # The frame after a disturbance has both tasks: an occlusion or a turn must not find the
         # filter, or the size, a frame older than need be.
-        alternates = was_visible and frames > _SETTLED and level > _UNDISTURBED
+        alternates = was_visible and frames > _SETTLED and level > UNDISTURBED
         # The other one of the last: after a frame with both, the size is followed first.
         trains = not alternates or not self.trains_filter
         return Tasks(follows_size=not alternates or not trains, trains_filter=trains)

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.fusion.parameters import SizeParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import EVEN_SHARE, SizeParameters
 
 _DIRECTIONS = ((1.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
 """Axes that are stretched, one pair of sizes per search in turns: vehicles mostly keep their
@@ -25,10 +25,6 @@ has .96 of a vehicle wholly visible, and .72 with a tenth to a third of it cover
 _POINTS_GAIN = 0.5
 """Weight of a stretch along one axis, as an occluder makes it too. A fitted weight was set to one
 half together with others, at no cost (laboratory/notes/fusion.md, twelve tuned numbers)."""
-_COMMON_SHARE = 0.5
-"""Share of the surface above which a stretch that both axes have in common is believed: from .8 on
-only, .926 instead of .964 of the frames are on vehicles that shrink fast
-(laboratory/notes/fusion_tried.md)."""
 _LEAST_BELIEVED = 20.0
 """Geometric mean of the sides, px, below which points are not believed wholly: they are magnified
 twofold and more, as are their errors. Without it white_van is claimed in .67 of its hidden frames
@@ -51,7 +47,7 @@ def believed_stretch(stretch: Array, share: float, size: Array, options: SizePar
     if share > _WHOLE_SHARE:
         # The common part twice at half weight, hence wholly; what is beyond it at half weight.
         return np.asarray(_POINTS_GAIN * (stretch + common))
-    return np.full(2, common if share > _COMMON_SHARE else 0.0)
+    return np.full(2, common if share > EVEN_SHARE else 0.0)
 
 
 def searched_size(

@@ -30,9 +30,9 @@ _GRID_REACH = 0.4
 box: half of one is a tenth of the canonical size, and the background is beyond."""
 _RENEWED_AFTER = 5
 """Age in frames of points that are replaced: they drift off their spots as they age. A choice."""
-_OLDEST = 10
-"""Age in frames of points that are replaced where a part of the vehicle is hidden: new ones may lie
-on the occluder. A choice."""
+_OLDEST = 2 * _RENEWED_AFTER
+"""The same where a part of the vehicle is hidden, half as often: new ones may lie on the occluder.
+"""
 _STRAYED = 0.2
 """A point farther than this (fraction of the box size) from its predicted position in the box has
 left the vehicle; the prediction turns with the other points. That is 8 canonical px, a choice far

@@ -24,6 +24,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.motion.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.appearance import View
+from vehicle_pf_tracker.trackers.fusion.behind import BEHIND
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
 from vehicle_pf_tracker.trackers.fusion.hypotheses import corrected_velocities
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
@@ -42,11 +43,6 @@ _ACROSS = 0.25
 of an outline may lie aside, but it does not move there."""
 _CONFIRMED = 2
 """Frames in a row that prove it: single outlines jump with the noise at their rim."""
-_BEHIND_PATH = 0.5
-"""Distance behind the predicted position, in sizes, from which an outline is no turn but the next
-vehicle: what a wall has left of an outline runs into the one that follows. The half is a choice:
-three such were .44 to .54 behind, outlines of scene `turn` .2 (laboratory/notes/fusion_tried.md).
-"""
 _OTHER_PAINT = 1.0
 """Difference of paint above which it is another vehicle's, the limit of `Paint.difference`."""
 _LARGEST_LOG_CHANGE = np.log(1.3)
@@ -307,7 +303,8 @@ def _leaves(branch: Branch, position: Array, size: Array) -> bool:
     predicted = branch.size * branch.motion.scale_at(branch.age)
     extent = float(np.sqrt(predicted.prod()))
     away = position - branch.motion.position_at(branch.age)
-    if float(away @ velocity) < -_BEHIND_PATH * extent * speed:
+    # What a wall has left of an outline runs into the vehicle that follows.
+    if float(away @ velocity) < -BEHIND * extent * speed:
         return False
     off = float(away @ normal)
     # Both sides of the box have to be off: a cut moves only one of them.
