@@ -39,7 +39,7 @@ from vehicle_pf_tracker.recordings.opened_footage import open_footage
 from vehicle_pf_tracker.results.estimates import EstimateRow
 from vehicle_pf_tracker.results.output_files import write_text
 from vehicle_pf_tracker.results.traffic_results import TRACKS_FILE
-from vehicle_pf_tracker.scenes.lane_traffic import CAR_PAINTS, Lane, convoy
+from vehicle_pf_tracker.scenes.lane_traffic import CAR_PAINTS, Lane, Stage, convoy
 from vehicle_pf_tracker.scenes.vehicles import saloon
 from vehicle_pf_tracker.trackers.estimate import Estimate, Mode
 
@@ -148,7 +148,7 @@ def look_alikes(frames: int = 600) -> Clip:
         Lane(175.0, PX_PER_METRE, rightward=False),
     ):
         actors += convoy(
-            lane, 4.0, frames, WIDTH, rng, (60, 160), (lambda _: saloon(CAR_PAINTS[4]),)
+            lane, 4.0, Stage(frames, WIDTH), rng, (60, 160), (lambda _: saloon(CAR_PAINTS[4]),)
         )
     # The camera and the road of any scene will do: its vehicles are replaced.
     scene = make_traffic_scene("traffic-pair", settings={"frames": frames})

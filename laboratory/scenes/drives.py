@@ -52,7 +52,7 @@ def near_traffic(drive: Drive) -> list[Actor]:
     speed = drive.parameters.speed * rng.uniform(1.5, 1.7)
     lane = drive.road.lane(TARGET_LANE + 1)
     # Vans: from the nearer lane a car is too low to cover much of the target.
-    others = convoy(lane, speed, drive.frame_count, drive.width, rng, (40, 130), (van,))
+    others = convoy(lane, speed, drive.stage, rng, (40, 130), (van,))
     return _clear_at_first(drive, others)
 
 
@@ -75,10 +75,9 @@ def dense(parameters: DriveParameters, seed: int) -> Scene:
     rng = stream(seed, "dense")
     slow = parameters.speed * rng.uniform(0.7, 0.8)
     fast = parameters.speed * rng.uniform(1.3, 1.5)
-    stage = (drive.frame_count, drive.width)
     gaps = (14, 60)
-    far = convoy(drive.road.lane(TARGET_LANE - 1), slow, *stage, rng, gaps)
-    near = convoy(drive.road.lane(TARGET_LANE + 1), fast, *stage, rng, gaps, (van, suv))
+    far = convoy(drive.road.lane(TARGET_LANE - 1), slow, drive.stage, rng, gaps)
+    near = convoy(drive.road.lane(TARGET_LANE + 1), fast, drive.stage, rng, gaps, (van, suv))
     ahead = _own_lane(drive, rng)
     return drive.scene(
         [*_clear_at_first(drive, near), *drive.opposite_traffic()], behind=[*far, *ahead]

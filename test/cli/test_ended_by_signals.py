@@ -165,6 +165,7 @@ def test_who_ignores_a_signal_goes_on_doing_so():
     try:
         with raising_terminated():
             os.kill(os.getpid(), signal.SIGHUP)
+        assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     finally:
         signal.signal(signal.SIGHUP, before)
 

@@ -121,6 +121,21 @@ def test_the_truth_of_a_folder_is_known_before_it_is_read(tmp_path):
     assert (truth.stamp_ns - START, truth.box.x) == (100_000_000, 1.0)
 
 
+def test_the_truth_beside_a_folder_is_left_out_where_that_is_asked_for(tmp_path):
+    folder = write_images(tmp_path / "MOT" / "img1", ["000001.png", "000002.png"])
+    truth = folder.with_name("gt") / "gt.txt"
+    truth.parent.mkdir()
+    truth.write_text("1,1,2,3,9,8,1,1,1\n1,2,12,3,9,8,1,1,1\n")
+    with pytest.raises(InputError, match="the truth of 2 vehicles"):
+        open_source(folder)
+    assert "the truth of 2 vehicles" in str(open_source(folder, beside="noted").notices)
+    ignored = open_source(folder, beside="ignored")
+    assert len(list(ignored.frames())) == 2
+    assert not ignored.truths
+    with pytest.raises(InputError, match="one of needed, noted, ignored, not False"):
+        open_source(folder, beside=False)
+
+
 def test_a_video_of_an_even_rate_keeps_to_it_to_the_nanosecond(tmp_path):
     source = open_source(video_of(tmp_path / "v.avi", fps=30))
     assert stamps(source) == [round(n * 1e9 / 30) for n in range(6)]

@@ -95,11 +95,18 @@ def test_numbers_stand_above_the_box():
 
 
 @pytest.mark.parametrize(
-    "box", [(-500.0, -500.0, 20.0, 20.0), (1e9, 1e9, 1e9, 1e9), (-1e12, 5.0, 2e12, 9.0)]
+    ("box", "rows"),
+    [
+        ((-500.0, -500.0, 20.0, 20.0), []),
+        ((1e9, 1e9, 1e9, 1e9), []),
+        ((-1e12, 5.0, 2e12, 9.0), [5, 14]),
+    ],
 )
 @pytest.mark.parametrize("dashed", [True, False])
-def test_boxes_far_outside_are_no_trouble(box, dashed):
-    draw_box(BLACK.copy(), Box(*box), (255, 255, 255), 1, dashed=dashed)
+def test_of_boxes_far_outside_what_is_in_the_image_is_drawn(box, rows, dashed):
+    picture = BLACK.copy()
+    draw_box(picture, Box(*box), (255, 255, 255), 1, dashed=dashed)
+    assert np.flatnonzero(picture.any(axis=(1, 2))).tolist() == rows
 
 
 def test_colours_of_neighbouring_numbers_differ():

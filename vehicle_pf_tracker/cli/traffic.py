@@ -114,14 +114,13 @@ def run_one(request: Request) -> int:
     stop = Stop()
     source = request.open_source()
     folder = request.output or Path("results", f"{short_name(request.source) or 'run'}_traffic")
-    pictures = Pictures(request.video)
-    overview = TrafficPictures(pictures.side)
+    pictures = TrafficPictures(Pictures(request.video))
     outputs = (Products(folder, PRODUCTS), request.video)
     inputs = (*request.inputs, request.detections, request.model, request.lines)
     with claimed(outputs, inputs, overwrite=request.overwrite):
         tracking = _tracking(request, configuration, stop)
-        ended = _follow(request, tracking, source, make_folder(folder), stop, pictures, overview)
-        has_paths = overview.write(folder, tracking.counter)
+        ended = _follow(request, tracking, source, make_folder(folder), stop, pictures)
+        has_paths = pictures.write(folder, tracking.counter)
         notices = [*source.notices, *tracking.notices, *pictures.side.notices, *ended]
         tell_notices(notices)
         document = _document(request, configuration, tracking, source.image_topic, notices)
@@ -135,7 +134,7 @@ def run_one(request: Request) -> int:
     # Without vehicles the picture has the scene, and no path.
     has_paths = has_paths and bool(tracking.summary.vehicles)
     print(f"results are in {folder}{f'; {PATHS_FILE} shows all paths' if has_paths else ''}")
-    if pictures.has_video:
+    if pictures.of_frames.has_video:
         print(f"the video is {request.video}")
     return stop.ended(stop.status if ended else int(bool(pictures.side.notices)))
 
@@ -164,8 +163,7 @@ def _follow(
     source: ImageSource,
     folder: Path,
     stop: Stop,
-    pictures: Pictures,
-    overview: TrafficPictures,
+    pictures: TrafficPictures,
 ) -> list[str]:
     """Follow all vehicles to the end or to a signal; return what cut it short."""
     plan = tracking.counter.plan
@@ -180,7 +178,7 @@ def _follow(
         first, frames = numbered_part(source, request.start, request.end, stop, progress)
         targets = by_name(request.given_targets(), first[0])
         with suppress(StillAtWork):
-            tracking.follow_all(frames, files, pictures, overview, page, targets)
+            tracking.follow_all(frames, files, pictures, page, targets)
         files.write_zones(tracking.summary.zones.rest())
     return cut_short(stop, source, tracking.summary.frames)
 

@@ -87,8 +87,7 @@ class TrafficRun(CountedVehicles):
         self,
         frames: Numbered,
         files: TrackFiles,
-        pictures: Pictures | None = None,
-        overview: TrafficPictures | None = None,
+        pictures: TrafficPictures | None = None,
         page: LivePage | None = None,
         targets: Mapping[str, Mapping[int, Box]] = MappingProxyType({}),
     ) -> None:
@@ -100,10 +99,8 @@ class TrafficRun(CountedVehicles):
             Frames with their numbers in the source.
         files : TrackFiles
             Files of the results.
-        pictures : Pictures or None
-            Pictures to make meanwhile.
-        overview : TrafficPictures or None
-            Pictures of the whole run.
+        pictures : TrafficPictures or None
+            Pictures of the frames and of the whole run.
         page : LivePage or None
             Page to show them on.
         targets : mapping of str to mapping of int to Box
@@ -114,10 +111,10 @@ class TrafficRun(CountedVehicles):
         InputError
             If a target is invalid in its frame, or something cannot be written.
         """
-        pictures = pictures or Pictures()
+        pictures = pictures or TrafficPictures(Pictures())
         self._targets = {name: dict(boxes) for name, boxes in targets.items()}
         start_ns: int | None = None
-        with pictures.drawing(frames) as (take, all_frames):
+        with pictures.of_frames.drawing(frames) as (take, all_frames):
             for number, stamped in all_frames:
                 start_ns = start_of_clock(start_ns, stamped.stamp_ns)
                 crossings = self._step(number, stamped)
@@ -133,14 +130,13 @@ class TrafficRun(CountedVehicles):
                 files.write(number, stamped.stamp_ns, estimates, crossings, undecided, withdrawn)
                 self.summary.add(estimates)
                 files.write_zones(self.summary.zones.add(stamped.stamp_ns, self.counter.occupancy))
-                if overview is not None:
-                    period = self.session.tracker.frame_period
-                    overview.add(stamped.frame, estimates, stamped.stamp_ns, period)
+                period = self.session.tracker.frame_period
+                pictures.add(stamped.frame, estimates, stamped.stamp_ns, period)
                 elapsed = clock_words(stamped.stamp_ns - start_ns)
                 draw = partial(self.drawn, stamped.frame, f"{elapsed}  frame {number}  ")
                 take((), draw, stamped.frame, stamped.stamp_ns)
                 facts = partial(self.page_facts, f"{elapsed}, frame {number}")
-                pictures.show(page, partial(self.shown, stamped.frame), facts)
+                pictures.of_frames.show(page, partial(self.shown, stamped.frame), facts)
 
     def sentences(self, detector: str) -> list[str]:
         """Return the summary, a line for each fact, or why there is no vehicle.

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
-from vehicle_pf_tracker.core.errors import InputError
+from vehicle_pf_tracker.core.errors import InputError, brief
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.recordings.bags.reader import Recording
 from vehicle_pf_tracker.recordings.footage import Footage
@@ -28,7 +28,7 @@ def open_source(
     fps: float | None = None,
     truth: Path | None = None,
     identity: int | None = None,
-    beside: Beside = Beside.NEEDED,
+    beside: Beside | Literal["needed", "noted", "ignored"] = Beside.NEEDED,
 ) -> ImageSource:
     """Open a recording, a video file, a folder of images, a camera or a stream.
 
@@ -44,9 +44,9 @@ def open_source(
         File of the truth of a folder or a video; None takes what lies beside a folder's images.
     identity : int or None
         Number of the target, where the truth has several.
-    beside : Beside
-        Use of the truth beside a folder's images: whether its faults are errors, or notices, or it
-        is not read.
+    beside : Beside or str
+        Use of the truth beside a folder's images: its faults are errors where it is ``"needed"``,
+        and notices where it is ``"noted"``; ``"ignored"``, it is not read.
 
     Raises
     ------
@@ -61,7 +61,12 @@ def open_source(
         if truth is not None or identity is not None:
             raise InputError(f"{path} is a recording, with its own truth; leave --truth, --id out")
         return Recording(path, topic)
-    footage = open_footage(source, truth=truth, fps=fps, identity=identity, beside=beside)
+    try:
+        use = Beside(beside)
+    except ValueError:
+        uses = ", ".join(Beside)
+        raise InputError(f"beside must be one of {uses}, not {brief(beside)}") from None
+    footage = open_footage(source, truth=truth, fps=fps, identity=identity, beside=use)
     # After it is opened: a source that is not there is the more important sentence.
     if topic is not None:
         raise InputError(f"{source} is not a recording and has no topics; leave --topic out")

@@ -22,7 +22,7 @@ from vehicle_pf_tracker.scenes.courses import (
     swaying,
     wave,
 )
-from vehicle_pf_tracker.scenes.lane_traffic import convoy
+from vehicle_pf_tracker.scenes.lane_traffic import Stage, convoy
 from vehicle_pf_tracker.scenes.random_streams import stream
 from vehicle_pf_tracker.scenes.roads import Carriageway, countryside, town
 from vehicle_pf_tracker.scenes.scene import Actor, Scene, stamps_parameter
@@ -123,6 +123,11 @@ class Drive:
         return int(self.frame_at(self._end)) + 1
 
     @property
+    def stage(self) -> Stage:
+        """What the scene shows."""
+        return Stage(self.frame_count, self.width)
+
+    @property
     def _end(self) -> float:
         """Place of the target's middle in the last frame; another where the drive has a turn."""
         return self.width - SHAKE_MARGIN - FREE_PX - self.target.size[0] / 2 - 2
@@ -168,7 +173,7 @@ class Drive:
         """Make the traffic of the far lane, behind the target."""
         # Slower than the target, which so passes vehicles of its own kind: distractors.
         speed = self.parameters.speed * self.rng.uniform(0.75, 0.85)
-        return convoy(self.road.lane(0), speed, self.frame_count, self.width, self.rng)
+        return convoy(self.road.lane(0), speed, self.stage, self.rng)
 
     def opposite_traffic(self) -> list[Actor]:
         """Make the traffic of the other carriageway, which never hides the target."""
@@ -176,9 +181,7 @@ class Drive:
         return [
             actor
             for number, speed in enumerate(speeds)
-            for actor in convoy(
-                self.opposite.lane(number), speed, self.frame_count, self.width, self.rng
-            )
+            for actor in convoy(self.opposite.lane(number), speed, self.stage, self.rng)
         ]
 
     def backdrop(self) -> Image:

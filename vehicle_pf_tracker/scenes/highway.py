@@ -25,6 +25,7 @@ from vehicle_pf_tracker.scenes.lane_traffic import (
     FAR_LANES,
     NEAR_LANES,
     LaneVehicle,
+    Stage,
     any_car,
     convoy,
 )
@@ -40,6 +41,8 @@ HEIGHT = 480
 """Height of the image, px: that of the papers' videos."""
 FRAME_COUNT = 200
 """Number of frames: room for both occlusions, with 30 clear frames before and between them."""
+STAGE = Stage(FRAME_COUNT, WIDTH)
+"""What the scene shows."""
 START_PX = 33
 """Start of the target's middle, px from the left: half of its 46 px, and 10 px free."""
 SPEED = 2.9
@@ -68,11 +71,11 @@ def highway(parameters: HighwayParameters, seed: int) -> Scene:
     actors = [
         *slow_lane,
         *_middle_lane(rng),
-        *convoy(FAR_LANES[2], rng.uniform(7.2, 8.4), FRAME_COUNT, WIDTH, rng),
+        *convoy(FAR_LANES[2], rng.uniform(7.2, 8.4), STAGE, rng),
         *(
             actor
             for lane, speed in zip(NEAR_LANES, (9.5, 7.8, 6.2), strict=True)
-            for actor in convoy(lane, speed * rng.uniform(0.93, 1.07), FRAME_COUNT, WIDTH, rng)
+            for actor in convoy(lane, speed * rng.uniform(0.93, 1.07), STAGE, rng)
         ),
         *bridge(150 + rng.uniform(-4, 4), 100, HEIGHT, stream(seed, "bridge")),
     ]

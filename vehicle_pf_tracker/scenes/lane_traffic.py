@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -120,18 +120,32 @@ def any_car(
     return LaneVehicle(kinds[rng.integers(len(kinds))](paint), lane)
 
 
+class Stage(NamedTuple):
+    """Part of the world that a scene shows.
+
+    Attributes
+    ----------
+    frame_count : int
+        Frames that it is shown for.
+    width : int
+        Width, px.
+    """
+
+    frame_count: int
+    width: int
+
+
 def convoy(
     lane: Lane,
     speed: float,
-    frame_count: int,
-    width: int,
+    stage: Stage,
     rng: np.random.Generator,
     gaps: tuple[float, float] = (90, 420),
     kinds: Kinds = (car, saloon, saloon, van),
 ) -> list[Actor]:
     """Fill `lane` for the whole scene with vehicles that all drive at `speed` (px/frame, > 0).
 
-    Gaps are left to chance between two limits (px). The lane runs across a stage of `width` px.
+    Gaps are left to chance between two limits (px). The lane runs across the stage.
     """
     # Four models a lane: sprites are drawn once and used for many vehicles.
     models = [any_car(lane, rng, kinds) for _ in range(4)]
@@ -139,10 +153,10 @@ def convoy(
     actors: list[Actor] = []
     ahead = rng.uniform(0, 200)
     # As much traffic as passes: what the stage holds, and what comes in over the whole scene.
-    while ahead < width + speed * frame_count:
+    while ahead < stage.width + speed * stage.frame_count:
         model = models[rng.integers(len(models))]
         # `ahead` counts backwards from the end of the lane that vehicles leave by.
-        left = width - ahead - model.size[0] if lane.rightward else ahead
+        left = stage.width - ahead - model.size[0] if lane.rightward else ahead
         actors += model.on(moving(model.box(left, lane), velocity))
         ahead += model.size[0] + rng.uniform(*gaps)
     return actors

@@ -93,23 +93,9 @@ class Annotator:
         return True
 
 
-def draw_target(
-    picture: Frame,
-    annotator: Annotator,
-    mode: str,
-    estimate: Estimate | None,
-    words: str,
-    row: int,
-    labels: Labels | None = None,
-) -> bool:
-    """Draw a target with its words: beside it, or into a row at the upper left where it has no box.
-
-    Those beside it are put into `labels`, where these are given. Returns whether the row was used.
-    """
-    if annotator.draw(picture, estimate, words, labels):
-        return False
+def write_mode(picture: Frame, mode: str, words: str, row: int) -> None:
+    """Write what is to be said of a target without a box into a row at the upper left."""
     write_line(picture, words, MODE_COLOURS.get(mode, NEUTRAL), row)
-    return True
 
 
 def estimate_words(name: str, row: EstimateRow) -> str:
@@ -136,7 +122,9 @@ def frame_with_targets(
     labels: Labels = []
     for annotator, row, estimate in states:
         words = estimate_words(annotator.name, row)
-        line += draw_target(picture, annotator, row.mode, estimate, words, line, labels)
+        if not annotator.draw(picture, estimate, words, labels):
+            write_mode(picture, row.mode, words, line)
+            line += 1
         number = row.frame
     write_labels(picture, labels)
     if elapsed_ns is not None:

@@ -12,7 +12,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.counting.counter import Counter
 from vehicle_pf_tracker.showing.heat_picture import HeatPicture
 from vehicle_pf_tracker.showing.path_picture import PathPicture
-from vehicle_pf_tracker.showing.side_products import SideProducts
+from vehicle_pf_tracker.showing.pictures import Pictures
 from vehicle_pf_tracker.trackers.traffic.estimate import TrackEstimate
 
 PATHS_FILE = "summary.png"
@@ -22,16 +22,24 @@ HEAT_FILE = "heat.png"
 
 
 class TrafficPictures:
-    """The two pictures, each of which may fail without the other.
+    """Pictures of the frames, and two of the whole run, of which each may fail by itself.
 
     Parameters
     ----------
+    of_frames : Pictures
+        Video and live page.
+
+    Attributes
+    ----------
+    of_frames : Pictures
+        As given.
     side : SideProducts
         Notes what fails.
     """
 
-    def __init__(self, side: SideProducts) -> None:
-        self._side = side
+    def __init__(self, of_frames: Pictures) -> None:
+        self.of_frames = of_frames
+        self.side = of_frames.side
         self._paths = PathPicture()
         self._heat = HeatPicture()
 
@@ -39,9 +47,9 @@ class TrafficPictures:
         self, frame: Frame, estimates: Sequence[TrackEstimate], stamp_ns: int, period: float
     ) -> None:
         """Take the next frame and the nominal period in s."""
-        with self._side.attempt(PATHS_FILE):
+        with self.side.attempt(PATHS_FILE):
             self._paths.add(frame, estimates)
-        with self._side.attempt(HEAT_FILE):
+        with self.side.attempt(HEAT_FILE):
             self._heat.add(frame, estimates, stamp_ns, period)
 
     def write(self, folder: Path, counter: Counter) -> bool:
@@ -51,14 +59,14 @@ class TrafficPictures:
         """
         ground = self._paths.ground
         for name in (PATHS_FILE, HEAT_FILE):
-            with self._side.attempt(name):
+            with self.side.attempt(name):
                 (folder / name).unlink(missing_ok=True)
         if ground is None:
             return False
-        if not self._side.failed(PATHS_FILE):
-            with self._side.attempt(PATHS_FILE):
+        if not self.side.failed(PATHS_FILE):
+            with self.side.attempt(PATHS_FILE):
                 self._paths.write(folder / PATHS_FILE, counter)
-        if not self._side.failed(HEAT_FILE):
-            with self._side.attempt(HEAT_FILE):
+        if not self.side.failed(HEAT_FILE):
+            with self.side.attempt(HEAT_FILE):
                 self._heat.write(folder / HEAT_FILE, ground)
-        return not self._side.failed(PATHS_FILE)
+        return not self.side.failed(PATHS_FILE)

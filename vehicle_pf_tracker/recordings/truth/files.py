@@ -58,12 +58,12 @@ class NoSuchTargetError(InputError):
     """Raised where the truth does not have the target that was asked for."""
 
 
-class Beside(Enum):
-    """Use of the truth that lies beside images."""
+class Beside(str, Enum):
+    """Use of the truth that lies beside images: a fault is an error, or a notice, or none read."""
 
-    NEEDED = "a fault is an error"
-    NOTED = "a fault is a notice"
-    IGNORED = "it is not read"
+    NEEDED = "needed"
+    NOTED = "noted"
+    IGNORED = "ignored"
 
 
 Table = dict[int, Truth]

@@ -25,7 +25,7 @@ from vehicle_pf_tracker.ros.node.publishers import (
     in_pixels,
 )
 from vehicle_pf_tracker.ros.node.stream_localisation import StreamLocalisation
-from vehicle_pf_tracker.showing.target_drawing import Annotator, draw_target
+from vehicle_pf_tracker.showing.target_drawing import Annotator, write_mode
 from vehicle_pf_tracker.trackers.estimate import Estimate
 
 
@@ -120,5 +120,6 @@ class TrackerOutputs:
         words = mode
         if estimate is not None:
             words = f"{mode} {estimate.confidence:.2f}  {self._localisation.words}".rstrip()
-        draw_target(picture, self._annotator, mode, estimate, words, row=1)
+        if not self._annotator.draw(picture, estimate, words):
+            write_mode(picture, mode, words, row=1)
         self._publishers.publish("overlay", messages.image_message, answer.header, picture)
