@@ -69,10 +69,3 @@ def test_a_piece_is_that_of_the_whole_frame():
     whole = grey.image[INNER].astype(int)
     # Places are rounded to a 32nd px, from the corner of what is asked for.
     assert np.abs(grey.piece(*INNER).astype(int) - whole).max() <= 1
-
-
-def test_what_a_frame_has_shown_ends_where_it_ended():
-    """Moved by 5 px to the right: the five columns on the left were not in view."""
-    seen = carried((np.eye(2), (5, 0))).seen
-    assert (seen[:, 5:] == 1).all()
-    assert (seen[:, :5] == 0).all()

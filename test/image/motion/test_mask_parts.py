@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.motion.mask_parts import connected_parts, joined_parts
+from vehicle_pf_tracker.image.motion.mask_parts import connected_parts
 
 
 def test_parts_that_touch_by_a_corner_are_one():
@@ -42,14 +42,3 @@ def test_parts_have_the_numbers_that_labels_of_32_bits_give(share):
     _, wide, expected, _ = cv2.connectedComponentsWithStats(mask, ltype=cv2.CV_32S)
     assert np.array_equal(labels, wide)
     assert np.array_equal(stats, expected)
-
-
-def test_parts_with_a_small_gap_are_joined():
-    """3 px of road between two parts of 4 and 6 px; they keep their extent."""
-    mask = np.zeros((12, 20), np.uint8)
-    mask[4:6, 2:4] = 1
-    mask[4:6, 7:10] = 1
-    assert joined_parts(mask, 4, 1).tolist() == [[[2, 4], [10, 6]]]
-    assert joined_parts(mask, 3, 1).tolist() == [[[2, 4], [4, 6]], [[7, 4], [10, 6]]]
-    assert joined_parts(mask, 3, 5).tolist() == [[[7, 4], [10, 6]]]
-    assert joined_parts(mask, 3, 7).shape == (0, 2, 2)

@@ -10,6 +10,5 @@
 - `camera_drift`: whether a camera that moves only sways
 - `foreground`: pixels that differ from the background of a standing camera, a `median_image` of its
   `kept_frames`, each a `carried_grey` frame that follows a camera that sways
-- `panned_frames`: moving pixels before a camera that moves
 - `mask_parts`: connected parts of such a mask; `side_edges`: where it ends at the sides of a box
 """

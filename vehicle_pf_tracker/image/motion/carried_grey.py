@@ -50,25 +50,12 @@ class CarriedGrey:
         """Return some rows and columns, which are inside the frame, of `image`."""
         if self._factor == 1 and self._shift == 0:
             return self.small.image[rows, columns]
-        return self._moved(self.small.image, rows, columns, cv2.BORDER_REPLICATE)
-
-    @property
-    def seen(self) -> npt.NDArray[np.uint8]:
-        """Mask, (h, w), of the px of `image` that the frame has shown: 1, its rim 0."""
-        height, width = self.small.image.shape
-        whole = slice(0, height), slice(0, width)
-        return self._moved(np.ones((height, width), np.uint8), *whole, cv2.BORDER_CONSTANT)
-
-    def _moved(
-        self, image: npt.NDArray[np.uint8], rows: slice, columns: slice, border: int
-    ) -> npt.NDArray[np.uint8]:
-        """Move an image of the frame's extent; `border` is OpenCV's way to go on beyond it."""
         along, across = self._factor.real, self._factor.imag
         x, y = self._shift.real - columns.start, self._shift.imag - rows.start
         moved = cv2.warpAffine(
-            image,
+            self.small.image,
             np.array([[along, -across, x], [across, along, y]]),
             (columns.stop - columns.start, rows.stop - rows.start),
-            borderMode=border,
+            borderMode=cv2.BORDER_REPLICATE,
         )
         return np.asarray(moved, np.uint8)

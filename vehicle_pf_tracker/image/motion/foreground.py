@@ -258,11 +258,7 @@ def _moving(
     image: npt.NDArray[np.uint8], background: npt.NDArray[np.uint8]
 ) -> npt.NDArray[np.uint8]:
     """Mask of what differs from the background."""
-    return changed_mask(np.asarray(cv2.absdiff(image, background), np.uint8))
-
-
-def changed_mask(change: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
-    """Mask, (h, w), of what has changed by more than noise, by the changes in grey levels."""
+    change = np.asarray(cv2.absdiff(image, background), np.uint8)
     blurred = cv2.GaussianBlur(change, (3, 3), 0)
     _, moving = cv2.threshold(blurred, _level(change), 1, cv2.THRESH_BINARY)
     # A windscreen of the road's grey would cut a car in two.

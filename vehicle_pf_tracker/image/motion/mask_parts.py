@@ -11,8 +11,6 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from vehicle_pf_tracker.core.array import Array
-
 Mask: TypeAlias = npt.NDArray[np.uint8]
 """Mask of an image, (H, W): not 0 where a pixel belongs to what is looked for."""
 Labels: TypeAlias = npt.NDArray[np.uint16] | npt.NDArray[np.int32]
@@ -39,21 +37,3 @@ def connected_parts(mask: Mask) -> tuple[Labels, Stats]:
     kind = cv2.CV_16U if most < _MOST_SMALL - 1 else cv2.CV_32S
     _, labels, stats, _ = cv2.connectedComponentsWithStats(mask, ltype=kind)
     return labels, stats  # type: ignore[return-value]  # of these types by `kind`
-
-
-def joined_parts(mask: Mask, gap: int, least: float) -> Array:
-    """Find boxes (N, 2, 2), low and high corner in px, of parts with less than `gap` px between.
-
-    Those with fewer than `least` px are left out.
-    """
-    joined = cv2.dilate(mask, np.ones((gap, gap), np.uint8))
-    labels, stats = connected_parts(np.asarray(joined, np.uint8))
-    own = np.where(mask > 0, labels, 0)
-    counts = np.bincount(own.ravel(), minlength=len(stats))
-    boxes = []
-    for part in np.flatnonzero(counts[1:] >= max(least, 1)) + 1:
-        left, top, width, height = stats[part, :4].tolist()
-        inside = np.asarray(own[top : top + height, left : left + width] == part, np.uint8)
-        x, y, across, down = cv2.boundingRect(inside)
-        boxes.append([[left + x, top + y], [left + x + across, top + y + down]])
-    return np.array(boxes, float).reshape(-1, 2, 2)

@@ -16,5 +16,5 @@
 - where a hidden vehicle cannot be: `exclusion`, `behind`
 - before a standing camera outlines (`outline_boxes`) show what turns (`turning`, `unfolding`) or
   comes out (`emergence`, `reappearance`)
-- gone: `departure`; lost before a moving camera: `recovery`, by the `lone_mover`
+- gone: `departure`
 """

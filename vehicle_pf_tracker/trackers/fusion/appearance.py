@@ -235,11 +235,6 @@ class Appearance:
     def learn_first(self, frame: Frame, position: Array, size: Array) -> None:
         """Train the filter on the first frame."""
         self.learn_paint(frame, position, size)
-        self.learn_anew(frame, position, size)
-
-    def learn_anew(self, frame: Frame, position: Array, size: Array) -> None:
-        """Train the filter as if nothing had been learnt before; the paint stays what it was."""
-        self.usual_response = 0.0  # of a filter that is no more
         spectrum = self._spectrum(self.patch(frame, position, size))
         self._filter.train(spectrum, 0.0)
         # The next patch may not show the vehicle: its response alone would be no safe level.

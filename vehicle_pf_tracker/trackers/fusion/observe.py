@@ -90,7 +90,6 @@ def _moved_with_camera(state: State, step: Step) -> State:
     # A camera that has come to rest shows a new background, however far it came.
     stands = camera.still or drift.stands
     memory.foreground.keep(small, camera, stands=stands, elapsed=step.elapsed)
-    memory.panned.keep(small, camera, step.elapsed * step.period)
     state = state._replace(
         drift=drift,
         sightings=state.sightings.moved_on(step.elapsed, camera, stands=stands),

@@ -36,10 +36,9 @@ from vehicle_pf_tracker.trackers.fusion.appearance import Appearance
 from vehicle_pf_tracker.trackers.fusion.entering import Entry
 from vehicle_pf_tracker.trackers.fusion.flow_evidence import weigh_by_flow
 from vehicle_pf_tracker.trackers.fusion.follow import follow, learn
-from vehicle_pf_tracker.trackers.fusion.lone_mover import LoneMover
+from vehicle_pf_tracker.trackers.fusion.hypotheses import PRIOR_DOUBT, Hypotheses
 from vehicle_pf_tracker.trackers.fusion.observe import observe, predict
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
-from vehicle_pf_tracker.trackers.fusion.recovery import recovered, scattered
 from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
 from vehicle_pf_tracker.trackers.fusion.state import State, Wholeness
 from vehicle_pf_tracker.trackers.fusion.step import Memory, Step
@@ -51,6 +50,9 @@ __all__ = ["FusionParameters", "FusionTracker"]
 _LONGEST_STEP = 30.0
 """Frame periods that motion is extrapolated over in one step at most: by then a prediction is off
 by half the size (laboratory/notes/fusion_tried.md, error after 20 to 40 occluded frames)."""
+_NEW_VELOCITY = 3.0
+"""Spread of the first velocities in units of the change per frame: none is known yet. That is .09
+of the size per frame; faster starts are measured by `SurfacePoints.first_motion`."""
 
 
 class FusionTracker(ParticleTracker[FusionParameters]):
@@ -67,7 +69,6 @@ class FusionTracker(ParticleTracker[FusionParameters]):
     state: State | None = None
     memory: Memory | None = None
     _tasks: Tasks = Tasks()
-    _search: LoneMover = LoneMover()
 
     def start(self, frame: Frame, box: Box) -> Estimate:
         """Learn the target; see `BaseTracker.start`."""
@@ -99,18 +100,17 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         count = self.parameters.num_particles
         position = np.array(centre, float)
         size = np.array([box.width, box.height], float)
-        particles = scattered(
-            self._rng,
-            count,
-            (position, size),
-            (motion.position_sigma, motion.velocity_sigma),
-        )
+        # Isotropic: neither heading nor speed is known. Both scale with the size, as a near vehicle
+        # moves by more px than a far one.
+        spread = self._rng.normal(size=(2, count, 2)) * float(np.sqrt(size.prod()))
+        velocities = spread[1] * motion.velocity_sigma * _NEW_VELOCITY
+        positions = np.asarray(position + spread[0] * motion.position_sigma)
+        particles = Hypotheses.around(positions, velocities, np.zeros(count), 1 - PRIOR_DOUBT)
         self.state = State(particles, position, size, Wholeness.at_start(size))
         # A new target: nothing of the last one may be compared with it.
         self.memory = None
         self._tasks = Tasks()
-        self._search = LoneMover()
-        return particles.positions
+        return positions
 
     def _learn(self) -> None:
         """Train a filter on the first frame's target."""
@@ -152,7 +152,6 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         verdict = judge(state, seen, prediction, step)
         state = follow(state, verdict, seen, step)
         state = learn(state, seen, step)
-        state, self._search = recovered(state, self._search, step)
         entered = _come_in(state, step)
         if entered.size is not state.size:  # what new parameters learn anew has to be all of it
             self._target = Target(frame, entered.box)
@@ -162,7 +161,6 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         self.state = state._replace(particles=particles)
         self._tasks = seen.tasks
         has_left = prediction.left_image or isinstance(verdict, Gone)
-        has_left &= state.frames > 0  # else it has been begun anew
         return _outcome(state, seen.response, step, has_left=has_left)
 
 
