@@ -94,7 +94,7 @@ TRAFFIC_PERMISSIONS: _Permissions = {
 
 # Files of SROS 2: the policy, and in it the part of a node.
 _POLICY = """<?xml version="1.0" encoding="UTF-8"?>
-<!-- Permissions that each node needs under SROS 2, and no more; docs/ros_interface.md explains its
+<!-- Permissions that each node needs under SROS 2, and no more; docs/ros_running.md explains its
      use. Give remapped topics by their new names. `make config` writes this file. -->
 <policy version="0.2.0">
   <enclaves>
