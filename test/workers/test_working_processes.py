@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import pytest
@@ -34,6 +35,15 @@ def test_a_process_that_is_ended_costs_its_task_only():
     assert found[7] == (
         "its process was ended by SIGKILL, perhaps out of memory: fewer --workers may help"
     )
+
+
+def test_of_a_pool_that_is_left_early_no_thread_goes_on():
+    """Python's end would wake a thread of the pool that is closing its pipe."""
+    before = threading.enumerate()
+    results = run_in_processes(answer, [0, 1, 4, 5, 6, 8], 2)
+    next(results)
+    results.close()
+    assert set(threading.enumerate()) <= set(before)
 
 
 def deaf_or_dying(task):

@@ -109,12 +109,14 @@ def _in_pool(
     except BrokenProcessPool:  # while tasks were handed over
         on_end(_how_it_ended(own))
     finally:
-        pool.shutdown(wait=False, cancel_futures=True)
         for process in multiprocessing.active_children():
             if process not in others:
                 # `run` takes SIGTERM for a wish to end well: it would then wait for good to hand
                 # over a result that nobody reads.
                 process.kill()
+        # Waited for, as without its processes it ends at once: a program that ends meanwhile may
+        # wake the pool's thread by a pipe that this one is closing, and would print a traceback.
+        pool.shutdown(cancel_futures=True)
 
 
 def _how_it_ended(processes: Sequence[multiprocessing.process.BaseProcess]) -> str:
