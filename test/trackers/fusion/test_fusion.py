@@ -305,6 +305,23 @@ def extent(estimate):
     return math.sqrt(estimate.box.width * estimate.box.height)
 
 
+def test_flow_has_to_tell_more_where_the_response_is_below_that_of_a_turn(monkeypatch):
+    asked = []
+
+    def judged(flow, *_, is_low):
+        asked.append(is_low)
+        return flow
+
+    responses = [0.65, 0.75]
+    tracker, street = fusion(), Street(speed=2.0)
+    follow(tracker, street, range(8))
+    monkeypatch.setattr(observe, "likeliest_peak", lambda _, each, __: (each.mean, responses.pop()))
+    monkeypatch.setattr(SurfaceFlow, "judged", judged)
+    for time in (8, 9):
+        tracker.step(street.frame(time))
+    assert asked == [False, True]
+
+
 def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
     def stiffness(response, share, *, reliable=True, outlines=False, whole=1.0):
         """Stiffness with which the next frame is learnt, in a list; empty where it is not."""
@@ -319,7 +336,7 @@ def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
                 "likeliest_peak",
                 lambda view, particles, extent: (particles.mean, response),
             )
-            patch.setattr(SurfaceFlow, "judged", lambda *_: surface)
+            patch.setattr(SurfaceFlow, "judged", lambda *_, **_low: surface)
             patch.setattr(visibility, "wholeness", lambda *_: whole)
             patch.setattr(flow_evidence, "points_evidence", lambda *_: 0.0)
             surface = tracker.state.surface._replace(share=share, is_reliable=reliable)
@@ -351,7 +368,7 @@ def test_a_turn_before_a_moving_camera_is_a_clear_sighting(monkeypatch):
                 lambda view, particles, extent: (particles.mean, response),
             )
             surface = tracker.state.surface._replace(share=share, is_reliable=reliable)
-            patch.setattr(SurfaceFlow, "judged", lambda *_: surface)
+            patch.setattr(SurfaceFlow, "judged", lambda *_, **_low: surface)
             patch.setattr(visibility, "wholeness", lambda *_: whole)
             patch.setattr(flow_evidence, "points_evidence", lambda *_: 0.0)
             change(tracker, surface=surface)
@@ -377,7 +394,7 @@ def test_of_a_vehicle_that_is_partly_hidden_nothing_is_learnt_and_its_size_is_pr
         sightings = tracker.state.sightings.added(np.array([32.0 - 2.0 * ago, 58.0]), size, 1.0)
         change(tracker, sightings=sightings.moved_on(1.0, CameraMotion()))
     half = tracker.state.surface._replace(share=0.5, is_reliable=True)
-    monkeypatch.setattr(SurfaceFlow, "judged", lambda *_: half)
+    monkeypatch.setattr(SurfaceFlow, "judged", lambda *_, **_low: half)
     while (estimate := tracker.step(street.frame(1))).similarities["whole"] > 0.5:
         pass  # the first frames may still count as whole
     done, size = counted(monkeypatch), extent(estimate)

@@ -54,10 +54,10 @@ class Drive:
     def _keep(self, patch):
         self.flow = self.flow.kept(patch, self.centre, SIZE)
 
-    def step(self, occlude=None):
+    def step(self, occlude=None, *, is_low=False):
         self.time += 1
         patch = self._patch(occlude)
-        self.flow = self.flow.judged(patch, self.centre, SIZE)
+        self.flow = self.flow.judged(patch, self.centre, SIZE, is_low=is_low)
         self._keep(patch)
         return self.flow.share
 
@@ -116,9 +116,48 @@ def lorry_of(textures):
     return lorry
 
 
+def plain_lorry(picture, time):
+    """It comes from behind by 20 px per frame and covers the vehicle's half in frame 12."""
+    picture[:, : max(20 * time - 116, 0)] = 40
+
+
+def test_flow_that_has_failed_is_not_believed_where_the_filter_hardly_responds():
+    """Flow finds no lorry as far away as it was, and takes it for a part of the vehicle."""
+    believed, doubted = [], []
+    for textures in SEVERAL:
+        for is_low, flows in ((False, believed), (True, doubted)):
+            drive = Drive(textures=textures)
+            drive.drive(11)
+            drive.step(plain_lorry, is_low=is_low)
+            flows.append(drive.flow)
+    assert all(flow.is_reliable for flow in believed)
+    assert np.mean([flow.share for flow in believed]) > 0.85
+    assert not any(flow.is_reliable for flow in doubted)
+
+
+def test_what_hardly_moves_is_not_told_from_what_stands_where_the_filter_hardly_responds():
+    """In 8 frames it moves by 1.6 px, of the 2 that tell: a wall there would move along as well."""
+    drive = Drive(speed=(0.2, 0.0))
+    drive.drive(19)
+    assert drive.step() > 0.9
+    assert drive.flow.is_reliable
+    drive.step(is_low=True)
+    assert not drive.flow.is_reliable
+
+
+def test_flow_that_shows_an_occluder_is_believed_whatever_it_explains():
+    drive = Drive()
+    drive.drive(29, wall(130))
+    assert drive.step(wall(130), is_low=True) < 0.25
+    assert drive.flow.is_reliable
+
+
 @pytest.mark.parametrize("spin", [3.0, -4.0])
 def test_a_vehicle_that_turns_keeps_its_surface(spin):
-    assert Drive(spin=spin).drive(20) > 0.7
+    drive = Drive(spin=spin)
+    drive.drive(19)
+    assert drive.step(is_low=True) > 0.7
+    assert drive.flow.is_reliable
 
 
 def panned_share(textures, *, known):

@@ -5,7 +5,11 @@
 
 from __future__ import annotations
 
-from vehicle_pf_tracker.trackers.fusion.parameters import EVEN_SHARE, VisibilityParameters
+from vehicle_pf_tracker.trackers.fusion.parameters import (
+    EVEN_SHARE,
+    TURNING_RESPONSE,
+    VisibilityParameters,
+)
 from vehicle_pf_tracker.trackers.fusion.state import State
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Step
 
@@ -25,9 +29,11 @@ def weigh_by_flow(state: State, seen: Observation, step: Step) -> State:
     if seen.tasks.follows_size:
         points = points.tracked(patch, seen.position, state.size)
     if seen.tasks.trains_filter:
-        surface = surface.judged(patch, seen.position, state.size)
+        is_low = seen.response < TURNING_RESPONSE
+        surface = surface.judged(patch, seen.position, state.size, is_low=is_low)
     particles = state.particles
-    # A vehicle whose surface never moved with it, of a few px, is judged by the response alone.
+    # A vehicle whose surface never moved with it, of a few px, is judged by the response alone; so
+    # is one whose flow has failed.
     if surface.is_reliable:
         ratio = points_evidence(surface.share, step.parameters.visibility)
         particles = particles.weighed_alike(ratio)

@@ -21,7 +21,11 @@ from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     hidden_hypotheses,
 )
 from vehicle_pf_tracker.trackers.fusion.observe import gathered
-from vehicle_pf_tracker.trackers.fusion.parameters import EVEN_RESPONSE, SIZE_RESPONSE
+from vehicle_pf_tracker.trackers.fusion.parameters import (
+    EVEN_RESPONSE,
+    SIZE_RESPONSE,
+    TURNING_RESPONSE,
+)
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 from vehicle_pf_tracker.trackers.fusion.sides import Sides
@@ -58,9 +62,6 @@ _TURNING_LEVEL_RATE = 0.3
 _TURNING_SHARE = 0.85
 """Share of the surface above which a visible vehicle may turn. With the survival of points in its
 place, 57 of 81 occlusions are recovered instead of 62 (laboratory/notes/fusion_tried.md)."""
-_TURNING_RESPONSE = 0.7
-"""Response below which such a vehicle turns: the filter then learns faster the lower it is. From
-.85 down, turns gain nothing (laboratory/notes/fusion_tried.md)."""
 _LEAST_STIFFNESS = 0.2
 """Least stiffness in such a turn, fraction of the usual one, however low the response. A choice:
 twice that of a turn that an outline proves (a tenth), since flow alone proves less."""
@@ -307,7 +308,7 @@ def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
     response = seen.response
     surface = state.surface
     appearance = memory.appearance
-    turns = surface.is_reliable and surface.share > _TURNING_SHARE and response < _TURNING_RESPONSE
+    turns = surface.is_reliable and surface.share > _TURNING_SHARE and response < TURNING_RESPONSE
     turns &= not memory.foreground.is_known  # outlines tell more of a turn, size included
     if not turns and (response <= EVEN_RESPONSE or not state.whole.is_likely):
         return

@@ -30,6 +30,10 @@ frames are on vehicles that shrink fast (laboratory/notes/fusion_tried.md)."""
 SIZE_RESPONSE = 0.6
 """Response relative to the usual one above which a size is measured: over the even odds of one half
 (`EVEN_RESPONSE`) by a tenth, since a half-hidden vehicle is measured smaller."""
+TURNING_RESPONSE = 0.7
+"""Response relative to the usual one below which a visible vehicle turns, if its surface moves with
+it as before: the filter then learns faster the lower it is. From .85 down, turns gain nothing
+(laboratory/notes/fusion_tried.md)."""
 PROOF_FRAMES = 8
 """Frames in a row that prove a motion or a recognition: a quarter of a second at 30 frames per
 second. At a hundredth of the size per frame, the least speed of a side that drives on, that is

@@ -27,6 +27,8 @@ from vehicle_pf_tracker.image.motion.box_motion import (
     solved,
 )
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
+from vehicle_pf_tracker.image.motion.explained_variance import explained_variance
+from vehicle_pf_tracker.trackers.fusion.parameters import EVEN_SHARE
 
 _KEPT = 8
 """Patches kept: over eight frames a vehicle gets `_APART_PX` ahead of the background by half a
@@ -60,6 +62,10 @@ vehicle of which .3 to .5 is visible is .33 (laboratory/notes/fusion_tried.md)."
 _LEAST_KEPT = 3
 """Patches from which a share counts as usual: the first two have hardly moved apart, so that all of
 the image moves with the vehicle."""
+_EXPLAINED = 0.5
+"""Share of the variance of the box's grey levels below which flow has failed: it explains less than
+it leaves. A choice; under lorries that came within three frames it explains a fifth, in real turns
+.53 and more but once (laboratory/notes/fusion_tried.md)."""
 
 
 class _Search(threading.local):
@@ -98,7 +104,8 @@ class SurfaceFlow(NamedTuple):
     share : float
         Ratio of the two, at most 1; 1 where flow tells nothing.
     is_reliable : bool
-        True where enough usually moves with the vehicle, when last judged.
+        True where enough usually moves with the vehicle, when last judged, and where flow did not
+        have to tell more than it can.
     is_back : bool
         True for a vehicle that has been hidden: its usual share is of earlier patches.
     """
@@ -127,7 +134,9 @@ class SurfaceFlow(NamedTuple):
         patches = (*self.patches, _Kept(_middle(patch), position, size))
         return self._replace(patches=patches[-_KEPT:])
 
-    def judged(self, patch: Patch, position: Array, size: Array) -> SurfaceFlow:
+    def judged(
+        self, patch: Patch, position: Array, size: Array, *, is_low: bool = False
+    ) -> SurfaceFlow:
         """Judge how much of the vehicle still moves with it.
 
         Parameters
@@ -136,6 +145,9 @@ class SurfaceFlow(NamedTuple):
             Shows the present frame.
         position, size : (2,) arrays
             Estimated centre, and width and height, px.
+        is_low : bool
+            True where the filter hardly responds. Flow that then speaks for the vehicle has to tell
+            it from the background, and to explain what is seen.
         """
         if not self.patches:
             return self
@@ -146,12 +158,20 @@ class SurfaceFlow(NamedTuple):
         if self.is_back and _TELLING_PX <= apart < hardly and len(self.patches) < _KEPT:
             return self._replace(share=1.0, is_reliable=False)
         background = camera if apart >= _TELLING_PX else None
-        latest = _moving_share(_middle(patch), kept, position, size, background)
+        middle = _middle(patch)
+        flow = _flow(middle, kept.patch)
+        latest = _moving_share(middle, flow, kept, (position, size), background)
         # The first share is its own usual one: no other is known.
         usual = self.usual or latest
         is_reliable = usual >= _LEAST_USUAL_SHARE
         # More than usual is no better than visible; an unreliable share must not speak against it.
         share = min(latest / usual, 1.0) if is_reliable else 1.0
+        # Patches are centred on the vehicle. So flow takes what stands in front of one that hardly
+        # moves for its surface, and what covers it within few frames, as flow finds none and is 0.
+        if is_low and share > EVEN_SHARE:
+            cells = _cells(middle, position, size)
+            explained = explained_variance(middle.grey, kept.patch.grey, flow, cells)
+            is_reliable &= apart >= _TELLING_PX and explained >= _EXPLAINED
         return SurfaceFlow(self.patches, usual, latest, share, is_reliable, self.is_back)
 
     def learnt_usual(self) -> SurfaceFlow:
@@ -176,14 +196,20 @@ class SurfaceFlow(NamedTuple):
 
 
 def _moving_share(
-    patch: Patch, kept: _Kept, position: Array, size: Array, camera: CameraMotion | None
+    patch: Patch,
+    flow: Flow,
+    kept: _Kept,
+    box: tuple[Array, Array],
+    camera: CameraMotion | None,
 ) -> float:
     """Share of the box that has moved with the vehicle since the earlier patch.
 
-    `camera` is the motion since, if the background tells anything. All maps are from the present
-    patch's px: a point p is mapped to p * map[0] + map[1] where a map has two rows, and the
-    background's to p @ map[:2] + map[2], since the camera may roll.
+    `flow` leads there; `box` is its present centre and size. `camera` is the motion since, if the
+    background tells anything. All maps are from the present patch's px: a point p is mapped to
+    p * map[0] + map[1] where a map has two rows, and the background's to p @ map[:2] + map[2],
+    since the camera may roll.
     """
+    position, size = box
     # 1. Maps from the patch to the frame, and on to the box: positions as fractions of its size.
     before = kept.patch
     half = _SIDE / 2
@@ -201,7 +227,7 @@ def _moving_share(
         background = np.array([*(to_frame[0][:, np.newaxis] * back), shift])  # (3, 2)
     # 4. A point counts for the vehicle if flow leads nearer to the second map than to the third.
     cells = _cells(patch, position, size)
-    return carried_share(_flow(patch, before), cells, to_box, vehicle, background)
+    return carried_share(flow, cells, to_box, vehicle, background)
 
 
 def _middle(patch: Patch) -> Patch:
