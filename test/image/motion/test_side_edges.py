@@ -6,7 +6,7 @@
 import numpy as np
 import pytest
 
-from vehicle_pf_tracker.image.motion.side_edges import edges_beyond
+from vehicle_pf_tracker.image.motion.side_edges import edges_beyond, outermost_beyond
 
 LOW, HIGH = np.array([25.0, 20.0]), np.array([55.0, 40.0])
 SIZE = HIGH - LOW
@@ -69,3 +69,29 @@ def test_a_box_of_a_few_pixels_has_no_edges():
     """They are good to a pixel, here of 8 and of 7."""
     assert edges_beyond(rectangle(), LOW + 10, LOW + 18) is not None
     assert edges_beyond(rectangle(), LOW + 10, LOW + 17) is None
+
+
+def test_a_plain_vehicle_moves_at_its_rims_only():
+    """Its first and last three columns and rows do; what is inside of them does, too."""
+    mask = rectangle()
+    mask[23:37, 28:52] = 0
+    assert edges_beyond(mask, LOW, HIGH) is None
+    found = outermost_beyond((mask, mask), (mask, mask), LOW, HIGH)
+    assert found == pytest.approx(np.array([[-0.5, -0.5]] * 2) / np.array([30, 20]))
+
+
+def test_each_side_is_found_in_its_own_mask():
+    empty = np.zeros_like(rectangle())
+    found = outermost_beyond((rectangle(), empty), (empty, rectangle()), LOW, HIGH)
+    assert np.isfinite(found).tolist() == [[True, False], [False, True]]
+
+
+def test_the_outermost_edge_counts_if_it_is_near_enough():
+    """From 7 to 9 px beside the rectangle, and 12 px beside it, of 30 px."""
+    mask = rectangle()
+    mask[20:40, 62:64] = 1
+    assert edges_beyond(mask, LOW, HIGH)[1, 0] == pytest.approx(-0.5 / 30)
+    found = outermost_beyond((mask, mask), (mask, mask), LOW, HIGH)
+    assert found[1, 0] == pytest.approx(8.5 / 30)
+    mask[20:40, 67:69] = 1
+    assert np.isnan(outermost_beyond((mask, mask), (mask, mask), LOW, HIGH)[1, 0])

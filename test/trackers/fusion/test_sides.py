@@ -5,10 +5,15 @@
 
 import numpy as np
 import pytest
+from fusion_samples import contrasted, grey_road
 
+from vehicle_pf_tracker.image.correlation.canonical_patch import cut_patch
+from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.foreground import Around
 from vehicle_pf_tracker.trackers.fusion.sides import Sides
 
+NOISE = np.random.default_rng(3).integers(0, 256, (20, 40)).astype(np.uint8)
+BODY = 255 - contrasted(NOISE, 1.5)
 POSITION, SIZE = np.array([50.0, 40.0]), np.array([40.0, 20.0])
 
 
@@ -27,11 +32,14 @@ def looked(sides, left, seconds):
 
 
 def test_one_look_counts_by_its_variances():
-    """A second of drift has .002, the bias .0025, the edge .04; the error is 8 - .5 px of 40."""
+    """A second of drift has .002, the first box and the bias .0025 each, the edge .04.
+
+    The error is 8 - .5 px of 40.
+    """
     sides = Sides().passed(0.6, SIZE).looked(around(8), POSITION, SIZE).passed(0.4, SIZE)
-    assert sides.beyond[0, 0] == pytest.approx(0.1875 * 0.002 / 0.0445)
-    assert sides.bias[0, 0] == pytest.approx(0.1875 * 0.0025 / 0.0445)
-    assert sides.variances[1][0, 0] == pytest.approx(-0.002 * 0.0025 / 0.0445)
+    assert sides.beyond[0, 0] == pytest.approx(0.1875 * 0.0045 / 0.047)
+    assert sides.bias[0, 0] == pytest.approx(0.1875 * 0.0025 / 0.047)
+    assert sides.variances[1][0, 0] == pytest.approx(-0.0045 * 0.0025 / 0.047)
 
 
 def test_what_was_beyond_from_the_first_is_a_bias():
@@ -71,7 +79,7 @@ def test_the_box_has_its_own_distance_at_each_side():
 
 
 def test_where_the_box_was_an_outline_an_edge_tells_more_of_the_side():
-    """As above, with .0225 more for what the outline held beside the vehicle."""
+    """As above, with .0225 for what the outline held beside the vehicle."""
     sides = Sides.of_outline().passed(0.6, SIZE).looked(around(8), POSITION, SIZE)
     sides = sides.passed(0.4, SIZE)
     assert sides.beyond[0, 0] == pytest.approx(0.1875 * 0.0245 / 0.067)
@@ -133,3 +141,49 @@ def test_a_mask_that_is_too_large_is_so_at_both_ends():
     mask[:, 70:] = 1  # what is beside the other end hides its edge
     hidden = Around(mask, np.zeros(2), 1.0)
     assert seen(turns, hidden, hidden).unfolded(SIZE).beyond[:, 0] == pytest.approx([7.5 / 40, 0])
+
+
+def driven(sides, frames, wide=30):
+    """Follow a box on the middle of a vehicle of 40 px that drives by 6 px, ten frames a second.
+
+    The vehicle is 5 px beyond either end of a box of 30 px, .17 of its width.
+    """
+    extent = np.array([200.0, 100.0])
+    size = np.array([wide, 20.0])
+    for time in range(frames):
+        image = grey_road(200, 100)
+        low = 10 + 6 * time
+        image[40:60, low : low + 40] = BODY
+        position = np.array([low + 20.0, 50.0])
+        colours = np.repeat(image[..., None], 3, axis=2)
+        sides = sides.passed(0.1, size)
+        sides = sides.compared(
+            cut_patch(colours, position, np.ones(2), 128), position, size, extent
+        )
+    return sides
+
+
+def test_three_frames_show_the_edges_of_what_moves():
+    assert driven(Sides(), 2).looks == ()
+    three = driven(Sides(), 3)
+    # Of the middle one, a tenth of a second ago.
+    ((age, found),) = three.looks
+    assert age == pytest.approx(0.1)
+    assert found[:, 0] == pytest.approx([5 / 30, 5 / 30], abs=0.05)
+    known = driven(Sides(), 12)
+    assert 0.03 < known.beyond[:, 0].min() < known.beyond[:, 0].max() < 0.17
+
+
+def test_looks_are_believed_in_the_order_of_their_frames():
+    sides = driven(Sides(), 2).looked(around(), POSITION, SIZE)
+    ages = [age for age, _ in driven(sides, 6).looks]
+    assert ages == sorted(ages, reverse=True)
+
+
+def test_a_doubt_and_a_moving_camera_end_a_comparison():
+    two = driven(Sides(), 2)
+    assert len(two.moments) == 2
+    assert two.doubted().moments == two.parted().moments == ()
+    assert two.moved(CameraMotion()) is two
+    panned = two.moved(CameraMotion(shift=np.array([3.0, 0.0])))
+    assert panned.moments[0].camera.shift == pytest.approx([3, 0])

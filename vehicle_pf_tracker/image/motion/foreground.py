@@ -145,6 +145,11 @@ class Foreground:
         return self._kept.present
 
     @property
+    def stands(self) -> bool:
+        """True where the camera has not moved since the frame before."""
+        return self._kept.number > 1
+
+    @property
     def is_known(self) -> bool:
         """True once the background has been seen for long enough, by a camera that stands."""
         return self._kept.are_enough

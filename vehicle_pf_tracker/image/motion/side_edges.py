@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -36,6 +37,10 @@ _LEAST_EXTENT = 8.0
 _OVERREACH = 0.5
 """Distance that a mask reaches beyond the true edge, px of it: it is blurred before the threshold.
 With 0 and 1 the gain is .021."""
+
+
+Masks = tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint8]]
+"""Masks for x and for y."""
 
 
 def edges_beyond(mask: npt.NDArray[np.uint8], low: Array, high: Array) -> Array | None:
@@ -73,6 +78,40 @@ def edges_beyond(mask: npt.NDArray[np.uint8], low: Array, high: Array) -> Array 
     )
     highs = _beyond(across, right, right - left), _beyond(down, bottom, bottom - top)
     return np.array([lows, highs])
+
+
+def outermost_beyond(lows: Masks, highs: Masks, low: Array, high: Array) -> Array:
+    """Distance of the outermost edges, as `edges_beyond`, where what moves has holes.
+
+    Of a plain vehicle only its rims differ from one image to the next: what is inside of something
+    that moves counts as moving.
+
+    Parameters
+    ----------
+    lows, highs : pairs of (h, w) arrays of uint8
+        Mask by which the low, and the high, side is found along x and along y.
+    low, high : (2,) arrays
+        Left and upper, right and lower side of the box, px of the masks.
+    """
+    beyond = np.empty((2, 2))
+    sides = low.tolist(), high.tolist()
+    for axis in (0, 1):
+        first, last = sides[0][axis], sides[1][axis]
+        for end, masks in enumerate((lows, highs)):
+            mask = masks[axis]
+            length = mask.shape[1 - axis]
+            band = _band(sides[0][1 - axis], sides[1][1 - axis], mask.shape[axis])
+            profile = _shares(mask[band] if axis == 0 else mask[:, band], axis)
+            # A low side is the high one of the mirrored profile.
+            mirrored = profile if end else profile[::-1]
+            side = last if end else length - first
+            beyond[end, axis] = _beyond(_filled(mirrored), side, last - first)
+    return beyond
+
+
+def _filled(profile: Sequence[float]) -> list[float]:
+    """At each px, the largest share from it outwards, to the high side."""
+    return list(itertools.accumulate(profile[::-1], max))[::-1]
 
 
 def _band(first: float, last: float, length: int) -> slice:

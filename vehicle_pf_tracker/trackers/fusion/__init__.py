@@ -10,9 +10,10 @@
 - belief: `state` has the `hypotheses`, and the `verdict` on the frame; `step` the frame, and the
   memory that all share
 - measured: `appearance` (filter) and `paint`; `surface_flow`, `surface_points`; `size_search`
-- cut by the image's border at first: `entering`
+- cut by the image's border at first: `entering`, by `moments` in which the box was followed
 - hidden: `perspective` predicts, by sightings that `standing_occluder` restores
-- reported: `sides` of the box before a standing camera, to which `anchoring` moves it
+- reported: `sides` of the box before a standing camera, by `moving_edges` between `moments` and by
+  the background, to which `anchoring` moves it
 - where a hidden vehicle cannot be: `exclusion`, `behind`
 - before a standing camera outlines (`outline_boxes`) show what turns (`turning`, `unfolding`) or
   comes out (`emergence`, `reappearance`)

@@ -17,21 +17,18 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
+from vehicle_pf_tracker.trackers.fusion.moments import Moment, Moments, followed, moved
 from vehicle_pf_tracker.trackers.fusion.sides import Sides
 
 _NEAR_BORDER = 0.1
 """Distance from the image's border, fraction of the box's longer side, up to which it may have cut
 a side, a choice: detectors are good to about that."""
-_WAY = 0.12
-"""Least way of the box from one compared image to the next, fraction of its size: what moves and
-what stands are then two cells apart. A choice."""
 _CELLS = 16
 """Cells per side of the box along which it is searched, and across: of a box of 30 px they are two
 px of the frame. A choice."""
@@ -68,25 +65,6 @@ _LEAST_CUT = 0.1
 _Mask = npt.NDArray[np.bool_]
 
 
-class Moment(NamedTuple):
-    """An image in which the box was followed.
-
-    Attributes
-    ----------
-    small : SmallGrey
-        The image.
-    position, size : (2,) arrays
-        Centre, and width and height of the box there, px.
-    camera : CameraMotion
-        Motion of the camera since then.
-    """
-
-    small: SmallGrey
-    position: Array
-    size: Array
-    camera: CameraMotion = CameraMotion()
-
-
 class Entry(NamedTuple):
     """Evidence of a vehicle beyond the sides at which the border cuts its first box.
 
@@ -105,7 +83,7 @@ class Entry(NamedTuple):
 
     is_cut: _Mask
     image_size: Array
-    moments: tuple[Moment, ...] = ()
+    moments: Moments = ()
     evidence: Array = np.zeros((2, 2, _INSIDE + _SEARCHED * _CELLS))
     looks: Array = np.zeros((2, 2, _INSIDE + _SEARCHED * _CELLS))
 
@@ -119,10 +97,7 @@ class Entry(NamedTuple):
 
     def moved(self, camera: CameraMotion) -> Entry:
         """Note that the camera has moved."""
-        if camera.still:
-            return self
-        moments = (each._replace(camera=camera.after(each.camera)) for each in self.moments)
-        return self._replace(moments=tuple(moments))
+        return self if camera.still else self._replace(moments=moved(self.moments, camera))
 
     def lost(self) -> Entry:
         """Discard the images: the next one will not follow on them."""
@@ -130,15 +105,8 @@ class Entry(NamedTuple):
 
     def looked(self, small: SmallGrey, position: Array, size: Array) -> Entry:
         """Look at a frame in which the box has this centre and size, px."""
-        moment = Moment(small, position, size)
-        if not self.moments:
-            return self._replace(moments=(moment,))
-        last = self.moments[-1]
-        way = np.abs(position - last.camera.apply(last.position)) / size
-        if way.max() < _WAY:
-            return self
-        moments = (*self.moments, moment)[-3:]
-        if len(moments) < 3:
+        moments = followed(self.moments, Moment.of_frame(small, position, size))
+        if moments is self.moments or len(moments) < 3:
             return self._replace(moments=moments)
         evidence = self.evidence.copy()
         looks = self.looks.copy()
@@ -199,38 +167,31 @@ class Entry(NamedTuple):
         return _end_of((self.evidence[end, axis, :first] / counts[:first]).tolist(), road)
 
 
-def _compared(moments: tuple[Moment, ...], end: int, axis: int) -> tuple[Array, Array]:
+def _compared(moments: Moments, end: int, axis: int) -> tuple[Array, Array]:
     """Evidence for the cells beyond a side, and which of them are in view, by three images."""
     earlier, middle, later = moments
-    present, in_view = _cells(middle.small, middle.position, middle.size, end, axis)
+    present, in_view = _cells(middle, middle.position, middle.size, end, axis)
     moved = np.zeros(present.shape, np.float32)
     stood = np.full(present.shape, np.inf, np.float32)
     compared = np.zeros(len(present), bool)
     for other in (earlier, later):
-        cells, seen = _cells(other.small, other.position, other.size, end, axis)
+        cells, seen = _cells(other, other.position, other.size, end, axis)
         # What drives in is not yet in view in the earlier image, and what drives out no more in the
         # later one.
         difference = np.where(seen[:, None], np.abs(present - cells), 0)
         moved = np.maximum(moved, difference)
         compared |= seen
         # Where the middle's background was, or will be, in the other image.
-        there = _background(middle.camera, other.camera)
-        centre = there.apply(middle.position)
-        cells, _ = _cells(other.small, centre, middle.size, end, axis)
+        centre = middle.background_in(other, middle.position)
+        cells, _ = _cells(other, centre, middle.size, end, axis)
         stood = np.minimum(stood, np.abs(present - cells))
     seen = in_view & compared
     evidence = np.clip(stood - moved, -_LARGEST, _LARGEST).mean(axis=1)
     return np.where(seen, evidence, 0.0), seen.astype(float)
 
 
-def _background(one: CameraMotion, other: CameraMotion) -> CameraMotion:
-    """Motion of the background from one image to another, by the motions since both."""
-    back = np.linalg.inv(other.turn)
-    return CameraMotion(back @ one.turn, back @ (one.shift - other.shift))
-
-
 def _cells(
-    small: SmallGrey, position: Array, size: Array, end: int, axis: int
+    moment: Moment, position: Array, size: Array, end: int, axis: int
 ) -> tuple[npt.NDArray[np.float32], _Mask]:
     """Grey levels of the cells from the middle of a box outwards, and which rows are in view."""
     outwards = (2 * end - 1) * size[axis] / _CELLS
@@ -240,20 +201,16 @@ def _cells(
     first = np.empty(2)
     first[axis] = along[0]
     first[1 - axis] = position[1 - axis] - across * (_CELLS - 1) / 2
-    # From cell (across, along) to the centre of a px of the reduced frame.
-    matrix = np.zeros((2, 3))
-    matrix[1 - axis, 0] = across * small.zoom
-    matrix[axis, 1] = outwards * small.zoom
-    matrix[:, 2] = first * small.zoom - 0.5
-    cells = cv2.warpAffine(
-        small.image,
-        matrix,
-        (_CELLS, count),
-        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
-        borderMode=cv2.BORDER_REPLICATE,
-    )
-    length = small.image.shape[1 - axis] / small.zoom
-    margin = 1 / small.zoom  # the outermost px is often black
+    step = np.empty(2)
+    step[axis] = outwards
+    step[1 - axis] = across
+    if axis == 0:
+        cells = moment.cells(first, step, (count, _CELLS)).T
+    else:
+        cells = moment.cells(first, step, (_CELLS, count))
+    zoom = moment.zoom[axis]
+    length = moment.grey.shape[1 - axis] / zoom
+    margin = 1 / zoom  # the outermost px is often black
     in_view = (along > margin) & (along < length - margin)
     return np.asarray(cells, np.float32), in_view
 

@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
 from vehicle_pf_tracker.trackers.fusion.anchoring import anchored
 from vehicle_pf_tracker.trackers.fusion.appearance import View
@@ -259,7 +260,16 @@ def learn(state: State, seen: Observation, step: Step) -> State:
     return state._replace(
         points=_renewed_points(state, seen, patch),
         surface=state.surface.kept(patch, state.position, state.size),
+        sides=_compared_sides(state, patch, step),
     )
+
+
+def _compared_sides(state: State, patch: Patch, step: Step) -> Sides:
+    """Compare a vehicle in full view with earlier frames of a camera that stands."""
+    if not (isinstance(state.verdict, Visible) and step.memory.foreground.stands):
+        return state.sides.parted()
+    extent = np.array(frame_size(step.frame))
+    return state.sides.compared(patch, state.position, state.size, extent)
 
 
 def _learn_usual(state: State, seen: Observation, step: Step) -> State:

@@ -95,6 +95,7 @@ def _moved_with_camera(state: State, step: Step) -> State:
         sightings=state.sightings.moved_on(step.elapsed, camera, stands=stands),
         surface=state.surface.moved(camera),
         whole=state.whole.moved(camera),
+        sides=state.sides.moved(camera),
     )
     # Outlines are places in an image whose background is gone, and cannot be carried along.
     if not memory.foreground.is_known:
