@@ -9,7 +9,7 @@ import pytest
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
-from vehicle_pf_tracker.trackers.fusion.moments import Moment, followed, moved
+from vehicle_pf_tracker.trackers.fusion.moments import Moment, is_due, moved
 
 SIZE = np.array([20.0, 10.0])
 RAMP = np.tile(np.arange(100, dtype=np.uint8), (50, 1))
@@ -19,26 +19,23 @@ def moment(x, y=20.0):
     return Moment.of_frame(SmallGrey(RAMP, 1.0), np.array([float(x), y]), SIZE)
 
 
+def is_due_at(moments, x, y=20.0):
+    return is_due(moments, np.array([float(x), y]), SIZE)
+
+
 def test_the_box_moves_on_by_an_eighth_of_its_size():
-    first = followed((), moment(30))
+    assert is_due_at((), 30)
+    first = (moment(30),)
     # .12 of 20 px are 2.4, of 10 px 1.2.
-    assert followed(first, moment(32)) is first
-    assert len(followed(first, moment(33))) == 2
-    assert len(followed(first, moment(30, 21.5))) == 2
-
-
-def test_the_last_three_are_kept():
-    moments = ()
-    for x in (30, 33, 36, 39):
-        moments = followed(moments, moment(x))
-    assert [each.position[0] for each in moments] == [33, 36, 39]
+    assert not is_due_at(first, 32)
+    assert is_due_at(first, 33)
+    assert is_due_at(first, 30, 21.5)
 
 
 def test_a_box_that_moves_with_the_camera_stands():
-    camera = CameraMotion(shift=np.array([5.0, 0.0]))
-    first = moved(followed((), moment(30)), camera)
-    assert followed(first, moment(35)) is first
-    assert len(followed(first, moment(30))) == 2
+    first = moved((moment(30),), CameraMotion(shift=np.array([5.0, 0.0])))
+    assert not is_due_at(first, 35)
+    assert is_due_at(first, 30)
 
 
 def test_the_background_is_where_the_camera_has_left_it():

@@ -157,9 +157,8 @@ def driven(sides, frames, wide=30):
         position = np.array([low + 20.0, 50.0])
         colours = np.repeat(image[..., None], 3, axis=2)
         sides = sides.passed(0.1, size)
-        sides = sides.compared(
-            cut_patch(colours, position, np.ones(2), 128), position, size, extent
-        )
+        patch = cut_patch(colours, position, np.ones(2), 128)
+        sides = sides.compared(patch, position, size, extent)
     return sides
 
 

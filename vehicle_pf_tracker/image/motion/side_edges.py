@@ -124,8 +124,8 @@ def _band(first: float, last: float, length: int) -> slice:
 
 def _shares(mask: npt.NDArray[np.uint8], axis: int) -> list[float]:
     """Share of each column (axis 0) or row (axis 1) of a mask that moves."""
-    counts = cv2.reduce(mask, axis, cv2.REDUCE_SUM, dtype=cv2.CV_32S)
-    shares: list[float] = (counts.ravel() / mask.shape[axis]).tolist()
+    counts = np.add.reduce(mask, axis=axis, dtype=np.int32)
+    shares: list[float] = (counts / mask.shape[axis]).tolist()
     return shares
 
 

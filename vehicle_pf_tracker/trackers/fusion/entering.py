@@ -23,7 +23,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
-from vehicle_pf_tracker.trackers.fusion.moments import Moment, Moments, followed, moved
+from vehicle_pf_tracker.trackers.fusion.moments import Moment, Moments, is_due, moved
 from vehicle_pf_tracker.trackers.fusion.sides import Sides
 
 _NEAR_BORDER = 0.1
@@ -105,8 +105,10 @@ class Entry(NamedTuple):
 
     def looked(self, small: SmallGrey, position: Array, size: Array) -> Entry:
         """Look at a frame in which the box has this centre and size, px."""
-        moments = followed(self.moments, Moment.of_frame(small, position, size))
-        if moments is self.moments or len(moments) < 3:
+        if not is_due(self.moments, position, size):
+            return self
+        moments = (*self.moments, Moment.of_frame(small, position, size))[-3:]
+        if len(moments) < 3:
             return self._replace(moments=moments)
         evidence = self.evidence.copy()
         looks = self.looks.copy()

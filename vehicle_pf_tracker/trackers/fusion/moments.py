@@ -99,11 +99,10 @@ def moved(moments: Moments, camera: CameraMotion) -> Moments:
     return tuple(each._replace(camera=camera.after(each.camera)) for each in moments)
 
 
-def followed(moments: Moments, present: Moment) -> Moments:
-    """Add the present one to the last two, once the box has come far enough; else the same."""
-    if moments:
-        last = moments[-1]
-        way = np.abs(present.position - last.camera.apply(last.position)) / present.size
-        if way.max() < _WAY:
-            return moments
-    return (*moments, present)[-3:]
+def is_due(moments: Moments, position: Array, size: Array) -> bool:
+    """True if a box of this centre and size, px, has come far enough from the last moment."""
+    if not moments:
+        return True
+    last = moments[-1]
+    way = np.abs(position - last.camera.apply(last.position)) / size
+    return bool(way.max() >= _WAY)

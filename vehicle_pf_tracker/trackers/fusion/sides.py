@@ -27,7 +27,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.foreground import Around
-from vehicle_pf_tracker.trackers.fusion.moments import Moment, Moments, followed, moved
+from vehicle_pf_tracker.trackers.fusion.moments import Moment, Moments, is_due, moved
 from vehicle_pf_tracker.trackers.fusion.moving_edges import moving_edges
 
 _DRIFT = 0.002
@@ -132,14 +132,16 @@ class Sides(NamedTuple):
 
     def compared(self, patch: Patch, position: Array, size: Array, extent: Array) -> Sides:
         """Look at what moves with the followed box in a frame of this width and height, px."""
-        present = Moment.of_patch(patch, position, size, self.time)
-        moments = followed(self.moments, present)
-        sides = self._replace(moments=moments)
-        if moments is self.moments or len(moments) < 3:
-            return sides
+        if not is_due(self.moments, position, size):
+            return self
+        moments = (*self.moments, Moment.of_patch(patch, position, size, self.time))
+        if len(moments) < 3:
+            return self._replace(moments=moments)
         # Of the middle one, so that it is older than the latest looks.
         look = self.time - moments[1].time, moving_edges(moments, extent)
-        return sides._replace(looks=tuple(sorted((look, *self.looks), key=_age, reverse=True)))
+        looks = tuple(sorted((look, *self.looks), key=_age, reverse=True))
+        # Each frame is compared once: the errors of two comparisons that share one are alike.
+        return self._replace(looks=looks, moments=())
 
     def parted(self) -> Sides:
         """Discard the frames: the next one will not follow on them."""
