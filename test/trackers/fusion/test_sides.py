@@ -32,14 +32,14 @@ def looked(sides, left, seconds):
 
 
 def test_one_look_counts_by_its_variances():
-    """A second of drift has .002, the first box and the bias .0025 each, the edge .04.
+    """A second of drift has .002, the first box and the bias .0025 each, the edge .0196.
 
     The error is 8 - .5 px of 40.
     """
     sides = Sides().passed(0.6, SIZE).looked(around(8), POSITION, SIZE).passed(0.4, SIZE)
-    assert sides.beyond[0, 0] == pytest.approx(0.1875 * 0.0045 / 0.047)
-    assert sides.bias[0, 0] == pytest.approx(0.1875 * 0.0025 / 0.047)
-    assert sides.variances[1][0, 0] == pytest.approx(-0.0045 * 0.0025 / 0.047)
+    assert sides.beyond[0, 0] == pytest.approx(0.1875 * 0.0045 / 0.0266)
+    assert sides.bias[0, 0] == pytest.approx(0.1875 * 0.0025 / 0.0266)
+    assert sides.variances[1][0, 0] == pytest.approx(-0.0045 * 0.0025 / 0.0266)
 
 
 def test_what_was_beyond_from_the_first_is_a_bias():
@@ -82,8 +82,8 @@ def test_where_the_box_was_an_outline_an_edge_tells_more_of_the_side():
     """As above, with .0225 for what the outline held beside the vehicle."""
     sides = Sides.of_outline().passed(0.6, SIZE).looked(around(8), POSITION, SIZE)
     sides = sides.passed(0.4, SIZE)
-    assert sides.beyond[0, 0] == pytest.approx(0.1875 * 0.0245 / 0.067)
-    assert sides.bias[0, 0] == pytest.approx(0.1875 * 0.0025 / 0.067)
+    assert sides.beyond[0, 0] == pytest.approx(0.1875 * 0.0245 / 0.0466)
+    assert sides.bias[0, 0] == pytest.approx(0.1875 * 0.0025 / 0.0466)
 
 
 def narrowed(widths):

@@ -100,7 +100,7 @@ def moved(moments: Moments, camera: CameraMotion) -> Moments:
 
 
 def is_due(moments: Moments, position: Array, size: Array) -> bool:
-    """True if a box of this centre and size, px, has come far enough from the last moment."""
+    """Tell whether a box of this centre and size, px, has come far from the last moment."""
     if not moments:
         return True
     last = moments[-1]
