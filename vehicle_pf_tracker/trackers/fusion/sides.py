@@ -29,6 +29,7 @@ from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.foreground import Around
 from vehicle_pf_tracker.trackers.fusion.moments import Moment, Moments, is_due, moved
 from vehicle_pf_tracker.trackers.fusion.moving_edges import moving_edges
+from vehicle_pf_tracker.trackers.fusion.unfolding import LEAST_BEYOND
 
 _DRIFT = 0.002
 """Variance that a side's distance gains, fraction of the size squared per second: .045 in the first
@@ -52,9 +53,6 @@ shadows in it. With 0, .05 and .1 turning_car has .724, .730 and .739, not .740.
 _OFF = 0.12
 """Least distance of an edge beyond the left or right side of a flank that comes into view, fraction
 of the width, a choice: three deviations of one look."""
-_LEAST_BEYOND = -0.2
-"""Least distance at the other end: further inside, an occluder covers it. A choice, that of
-`unfolding.py`."""
 _TURNS = 0.15
 """Least change of the logarithm of width over height of a box whose vehicle shows a flank, per
 second. With .1 a car of 27 px on a straight road has one, too (silver_estate, by its size's noise);
@@ -164,10 +162,11 @@ class Sides(NamedTuple):
         # All that are not believed yet: a single one may be of something else.
         are_many = np.isfinite(across).sum(axis=0) > 1
         # At the other end the box is on the vehicle, or beyond it: a mask that is too large is so
-        # at both ends. A side that was not seen compares as false.
+        # at both ends. Far inside of it an occluder covers that end. A side that was not seen
+        # compares as false.
         is_off = ~(across <= _OFF).any(axis=0) & are_many
         is_flank = is_off & ~(across[:, ::-1] > 0).any(axis=0)
-        if not is_flank.any() or (across < _LEAST_BEYOND).any():
+        if not is_flank.any() or (across < LEAST_BEYOND).any():
             return None
         beyond = self.beyond.copy()
         for found in across:

@@ -153,7 +153,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         state = follow(state, verdict, seen, step)
         state = learn(state, seen, step)
         entered = _come_in(state, step)
-        if entered.size is not state.size:  # what new parameters learn anew has to be all of it
+        has_grown = entered is not state and not np.array_equal(entered.size, state.size)
+        if has_grown:  # what new parameters learn anew has to be all of it
             self._target = Target(frame, entered.box)
         state = entered
         # Last, so that the estimate and the next prediction have the same set of hypotheses.

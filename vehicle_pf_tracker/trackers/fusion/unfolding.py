@@ -34,7 +34,7 @@ _LARGEST_PART = 0.5
 """Largest part of that growth from one look to the next, since what joins an outline does so at
 once; and at the other end, since a box that is too small at both ends is followed by the response.
 A choice."""
-_LEAST_BEYOND = -0.2
+LEAST_BEYOND = -0.2
 """Least distance of an outline's sides beyond the box's, fraction of it, a choice: further inside
 parts of the outline are missing."""
 _DRIVEN = 0.1
@@ -113,7 +113,7 @@ class Unfolding(NamedTuple):
         end, axis = divmod(int(beyond.argmax()), 2)
         ago = max(round(_AGO / period), 1)
         moves = _moves(foreground, outline, (low, high), (end, axis), ago)
-        if beyond.min() < _LEAST_BEYOND or not moves:
+        if beyond.min() < LEAST_BEYOND or not moves:
             return Unfolding(around=around)
         aged = (look._replace(age=look.age + since) for look in self.looks)
         looks = (*(look for look in aged if look.age < _KEPT), Look(0.0, beyond, position))
