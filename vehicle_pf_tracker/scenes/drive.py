@@ -124,7 +124,7 @@ class Drive:
 
     @property
     def stage(self) -> Stage:
-        """What the scene shows."""
+        """Number of frames and width of the scene."""
         return Stage(self.frame_count, self.width)
 
     @property

@@ -42,7 +42,7 @@ HEIGHT = 480
 FRAME_COUNT = 200
 """Number of frames: room for both occlusions, with 30 clear frames before and between them."""
 STAGE = Stage(FRAME_COUNT, WIDTH)
-"""What the scene shows."""
+"""Number of frames and width of the scene."""
 START_PX = 33
 """Start of the target's middle, px from the left: half of its 46 px, and 10 px free."""
 SPEED = 2.9
