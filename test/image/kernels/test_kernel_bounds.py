@@ -21,6 +21,7 @@ from vehicle_pf_tracker.image.kernels import (
     numba_box_colours,
     numba_cells,
     numba_counts,
+    numba_map_search,
     numba_pixel_cells,
     numba_windows,
 )
@@ -86,6 +87,11 @@ for _ in range(1500):
     attempt(numba_pixel_cells.pair_cells, frame[..., 0], table)
     grey = np.ascontiguousarray(frame[..., 0])
     attempt(numba_cells.gradient_cells, grey, int(rng.integers(-40, 2)))
+    places = rng.integers(-1, 30, (int(rng.integers(9)), int(rng.choice([2, 2, 2, 3]))))
+    costs = rng.random((int(rng.integers(1, 9)), int(rng.integers(1, 9))))
+    attempt(numba_map_search.climbed, rng.random((height, width)), places, costs)
+    costs = rng.random((2 * int(rng.integers(40)) + 1,) * 2)
+    attempt(numba_map_search.climbed, rng.random((height, width)), places % width, costs)
     boxes, covers = (rng.integers(-90, 150, (int(rng.integers(4)), 4)) for _ in range(2))
     ends = np.sort(rng.integers(-1, 5, int(rng.integers(4))))
     attempt(numba_box_colours.count_colours, frame, boxes, covers, ends)

@@ -1,7 +1,10 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Search of a map for the best value close to each of some places."""
+"""Search of a map for the best value close to each of some places.
+
+`image.kernels` has it compiled, too, to the same bits.
+"""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
-from vehicle_pf_tracker.image.correlation import gradient_cells
+from vehicle_pf_tracker.image.correlation import gradient_cells, map_search
 from vehicle_pf_tracker.image.correlation.row_waves import RowWaves
 from vehicle_pf_tracker.image.windows import box_colours, mean_shift
 from vehicle_pf_tracker.image.windows.similarity import Histogram, Reference
@@ -41,6 +41,7 @@ class Kernels:
 
     name = "opencv"
 
+    climbed = staticmethod(map_search.climbed)
     count_colours = staticmethod(box_colours.count_colours)
     gradient_cells = staticmethod(gradient_cells.gradient_cells)
     kernel_similarity = staticmethod(mean_shift.kernel_similarity)

@@ -15,12 +15,14 @@ import numpy as np
 
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.correlation.gradient_cells import CellFeatures
+from vehicle_pf_tracker.image.correlation.map_search import Places
 from vehicle_pf_tracker.image.kernels import (
     numba_box_colours,
     numba_cells,
     numba_counts,
     numba_edges,
     numba_gradients,
+    numba_map_search,
     numba_mean_shift,
     numba_pixel_cells,
     numba_placing,
@@ -62,6 +64,7 @@ _MODULES = (
     numba_mean_shift,
     numba_cells,
     numba_row_waves,
+    numba_map_search,
     numba_box_colours,
 )
 
@@ -173,6 +176,12 @@ def gradient_cells(grey: Grey, spare: int = 0) -> CellFeatures:
     return features
 
 
+def climbed(values: Reals, places: Places, costs: Reals) -> tuple[Places, Reals]:
+    """Move places on a map; see `image.correlation.map_search`."""
+    best: tuple[Places, Reals] = numba_map_search.climbed(values, places, costs)
+    return best
+
+
 def count_colours(frame: Frame, boxes: Pixels, covers: Pixels, ends: Pixels) -> Counts:
     """Count the pixels of each colour in boxes; see `image.windows.box_colours`."""
     counts: Counts = numba_box_colours.count_colours(frame, boxes, covers, ends)
@@ -184,6 +193,7 @@ class NumbaKernels(Kernels):
 
     name = "numba"
 
+    climbed = staticmethod(climbed)
     count_colours = staticmethod(count_colours)
     gradient_cells = staticmethod(gradient_cells)
     kernel_similarity = staticmethod(kernel_similarity)

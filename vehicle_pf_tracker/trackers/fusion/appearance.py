@@ -162,6 +162,11 @@ class Appearance:
         Width and height of the target in the first frame, and of the part that is learnt, px.
     penalty : float
         See `FilterParameters`.
+
+    Attributes
+    ----------
+    kernels : Kernels
+        Implementation in use; see `use_kernels`.
     """
 
     def __init__(self, kernels: Kernels, size: Array, learnt: Array, penalty: float) -> None:
@@ -181,7 +186,7 @@ class Appearance:
 
     def use_kernels(self, kernels: Kernels) -> None:
         """Measure gradients and transform spectra by another implementation from now on."""
-        self._kernels = kernels
+        self.kernels = kernels
         self._filter.waves = kernels.row_waves
 
     def patch(self, frame: Frame, position: Array, size: Array, *, wide: bool = False) -> Patch:
@@ -312,7 +317,7 @@ class Appearance:
         channels = colours.reshape(images, -1, *lab.shape[1:]).transpose(0, 3, 1, 2)
         described = []
         for part, own in zip(grey.reshape(images, -1, width), channels, strict=True):
-            features = self._kernels.gradient_cells(part, _COLOURS)
+            features = self.kernels.gradient_cells(part, _COLOURS)
             features[GRADIENT_CHANNELS:] = own
             described.append(features)
         return described

@@ -12,7 +12,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
-from vehicle_pf_tracker.image.correlation.map_search import climbed
+from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.small_grey import small_grey
 from vehicle_pf_tracker.image.windows.window import is_outside
@@ -223,7 +223,9 @@ def _searched(
     patch = appearance.patch(step.frame, particles.mean, scale * state.size, wide=wide)
     view = _viewed(patch, step)
     options = step.parameters.visibility
-    positions, ratios = response_evidence(view, particles.positions, climb, options)
+    positions, ratios = response_evidence(
+        view, particles.positions, climb, options, appearance.kernels
+    )
     # What answers where it cannot be is no evidence for it, only against it.
     if (ratios > 0).any():  # seldom, and the way costs time
         excludes = exclusion_of(state, step)
@@ -281,7 +283,11 @@ def _costs(reach: int, sigma: float) -> Array:
 
 
 def response_evidence(
-    view: View, positions: Array, climb: tuple[int, float], parameters: VisibilityParameters
+    view: View,
+    positions: Array,
+    climb: tuple[int, float],
+    parameters: VisibilityParameters,
+    kernels: Kernels,
 ) -> tuple[Array, Array]:
     """Judge hypotheses by the filter's response close by.
 
@@ -293,6 +299,8 @@ def response_evidence(
         Positions of the hypotheses, px.
     climb : (int, float)
         Reach and standard deviation of a move, in places of the response.
+    kernels : Kernels
+        Implementation that searches the response.
 
     Returns
     -------
@@ -306,7 +314,7 @@ def response_evidence(
     ratios = seen.astype(np.float64)
     ratios -= EVEN_RESPONSE
     ratios *= parameters.response_slope
-    moves, log_ratios = climbed(ratios, view.places(positions), _costs(*climb))
+    moves, log_ratios = kernels.climbed(ratios, view.places(positions), _costs(*climb))
     # Bounded last: a move is paid for out of the whole ratio, before what is too much of it is cut.
     bounded = np.minimum(np.maximum(log_ratios, -_LARGEST_LOG_RATIO), _LARGEST_LOG_RATIO)
     return positions + moves / view.steps, bounded

@@ -112,8 +112,9 @@ class Unfolding(NamedTuple):
         beyond = np.array([low - outline.low, outline.high - high]) / size
         end, axis = divmod(int(beyond.argmax()), 2)
         ago = max(round(_AGO / period), 1)
-        moves = _moves(foreground, outline, (low, high), (end, axis), ago)
-        if beyond.min() < LEAST_BEYOND or not moves:
+        if beyond.min() < LEAST_BEYOND or not _moves(
+            foreground, outline, (low, high), (end, axis), ago
+        ):
             return Unfolding(around=around)
         aged = (look._replace(age=look.age + since) for look in self.looks)
         looks = (*(look for look in aged if look.age < _KEPT), Look(0.0, beyond, position))
