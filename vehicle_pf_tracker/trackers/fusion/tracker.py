@@ -135,7 +135,10 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             self.state = state._replace(particles=particles)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        """Take one frame: predict, observe, weigh by flow, judge, follow, learn, resample."""
+        """Take one frame: predict, observe, weigh by flow, judge, follow, learn; come in, resample.
+
+        What comes in is the rest of a vehicle whose first box was cut.
+        """
         state, memory = self._track
         # The order is the model's: only what was predicted can be weighed. Flow needs the peak that
         # the response found, the verdict both pieces of evidence; and nothing is learnt before the
@@ -152,11 +155,9 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         verdict = judge(state, seen, prediction, step)
         state = follow(state, verdict, seen, step)
         state = learn(state, seen, step)
-        entered = _come_in(state, step)
-        has_grown = entered is not state and not np.array_equal(entered.size, state.size)
+        state, has_grown = _come_in(state, step)
         if has_grown:  # what new parameters learn anew has to be all of it
-            self._target = Target(frame, entered.box)
-        state = entered
+            self._target = Target(frame, state.box)
         # Last, so that the estimate and the next prediction have the same set of hypotheses.
         particles = state.particles.resampled(self._rng, self.parameters.num_particles)
         self.state = state._replace(particles=particles)
@@ -165,19 +166,19 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         return _outcome(state, seen.response, step, has_left=has_left)
 
 
-def _come_in(state: State, step: Step) -> State:
-    """Move a first box that was cut to what has come in behind it."""
+def _come_in(state: State, step: Step) -> tuple[State, bool]:
+    """Move a first box that was cut to what has come in behind it; also tell whether it has."""
     entry = state.whole.entry
     if entry is None:
-        return state
+        return state, False
     small = step.memory.foreground.present
     seen = entry.looked(small, state.position, state.size) if state.is_visible else entry.lost()
     grown = seen.grown(state.position, state.size)
     remaining = seen.remaining(state.size)
     if grown is None:
-        return state._replace(whole=state.whole._replace(entry=remaining and seen))
+        return state._replace(whole=state.whole._replace(entry=remaining and seen)), False
     state = anchored(state, grown, step)
-    return state._replace(whole=state.whole._replace(measured=state.size, entry=remaining))
+    return state._replace(whole=state.whole._replace(measured=state.size, entry=remaining)), True
 
 
 def _outcome(state: State, response: float, step: Step, *, has_left: bool) -> Outcome:
