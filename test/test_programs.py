@@ -73,9 +73,9 @@ PROGRAMS = {
         f"{BATTERY} {ONE_CASE} --budget 2 --cases 1", ("fit.json", "leave_one_camera_out.md")
     ),
     "laboratory.fusion.mechanisms": Program(
-        f"{BATTERY} --seeds 1 --kinds plain --without no~side~unfolds",
+        f"{BATTERY} --seeds 1 --kinds plain --without no~flank",
         ("mechanisms.md", "mechanisms.jsonl"),
-        "| no side unfolds |",
+        "| no flank |",
     ),
     "laboratory.fusion.reliability": Program(
         f"{BATTERY} {ONE_CASE}", ("shipped.md", "reliability.md", "reliability.png")

@@ -26,14 +26,14 @@ from laboratory.stress import StressSystem, variant_system
 from laboratory.stress.systems import Follower
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.fusion import exclusion, observe, reappearance, turning, visibility
+from vehicle_pf_tracker.trackers.fusion import exclusion, observe, reappearance, turning
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
 from vehicle_pf_tracker.trackers.fusion.reappearance import Reappearance
+from vehicle_pf_tracker.trackers.fusion.sides import Sides
 from vehicle_pf_tracker.trackers.fusion.turning import Branch
-from vehicle_pf_tracker.trackers.fusion.verdict import Visible
 
 FRAMES = 200
-"""Frames of a case at most: a turn in full view is proven by the 122nd of its sequence."""
+"""Frames of a case at most, a choice: what hides the vehicle is passed by then."""
 
 
 class Replacement(NamedTuple):
@@ -54,11 +54,6 @@ def _always(value: object) -> Any:
     return lambda *_arguments, **_named: value
 
 
-def _never_unfolding(_state: object, _seen: object, whole: float, _step: object) -> Visible:
-    """Judge a vehicle in full view by all but its outline."""
-    return Visible(whole)
-
-
 # One mechanism a row; the words are those of docs/fusion.md.
 MECHANISMS: Mapping[str, tuple[Replacement, ...]] = {
     DEFAULT: (),
@@ -73,7 +68,7 @@ MECHANISMS: Mapping[str, tuple[Replacement, ...]] = {
     "turns behind the path": (Replacement(turning, "BEHIND", np.inf),),
     "no outline in a turn": (Replacement(Branch, "begun", classmethod(_always(None))),),
     "nothing comes out beside the path": (Replacement(Emergence, "was_alone", _always(False)),),
-    "no side unfolds": (Replacement(visibility, "_judged_unfolding", _never_unfolding),),
+    "no flank": (Replacement(Sides, "unfolded", _always(None)),),
 }
 
 WHOLE = tuple(

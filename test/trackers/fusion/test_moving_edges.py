@@ -13,7 +13,7 @@ from vehicle_pf_tracker.trackers.fusion.moments import Moment, moved
 from vehicle_pf_tracker.trackers.fusion.moving_edges import moving_edges
 
 WIDTH, HEIGHT = 200, 100
-EXTENT = np.array([WIDTH, HEIGHT], float)
+EXTENT = WIDTH, HEIGHT
 WIDE, TALL = 40, 20
 ROAD = grey_road(WIDTH, HEIGHT)
 BODY = 255 - contrasted(

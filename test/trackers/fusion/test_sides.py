@@ -60,7 +60,17 @@ def test_an_edge_that_is_not_seen_changes_nothing():
     sides = Sides().looked(Around(mask, np.zeros(2), 1.0), POSITION, SIZE).passed(1.0, SIZE)
     assert sides.beyond[0, 0] == sides.bias[0, 0] == 0
     assert sides.beyond[1, 0] < 0
-    assert sides.looked(None, POSITION, SIZE) is sides
+    assert sides.looked(None, POSITION, SIZE).looks == ()
+
+
+def test_the_background_is_looked_at_eight_times_a_second():
+    sides = Sides().passed(0.1, SIZE)
+    assert not sides.is_rested
+    assert sides.passed(0.03, SIZE).is_rested
+    # What is not seen costs as much as what is.
+    assert not sides.passed(0.03, SIZE).looked(None, POSITION, SIZE).is_rested
+    # After a doubt the vehicle may still be cut.
+    assert not sides.passed(0.03, SIZE).doubted().is_rested
 
 
 def test_a_doubt_discards_the_looks_just_before():
@@ -76,14 +86,6 @@ def test_the_box_has_its_own_distance_at_each_side():
     # From 30 - 4 to 70 - 2, and from 30 to 50 + 4.
     assert centre == pytest.approx([47, 42])
     assert size == pytest.approx([42, 24])
-
-
-def test_where_the_box_was_an_outline_an_edge_tells_more_of_the_side():
-    """As above, with .0225 for what the outline held beside the vehicle."""
-    sides = Sides.of_outline().passed(0.6, SIZE).looked(around(8), POSITION, SIZE)
-    sides = sides.passed(0.4, SIZE)
-    assert sides.beyond[0, 0] == pytest.approx(0.1875 * 0.0245 / 0.0466)
-    assert sides.bias[0, 0] == pytest.approx(0.1875 * 0.0025 / 0.0466)
 
 
 def narrowed(widths):
@@ -148,7 +150,7 @@ def driven(sides, frames, wide=30):
 
     The vehicle is 5 px beyond either end of a box of 30 px, .17 of its width.
     """
-    extent = np.array([200.0, 100.0])
+    extent = 200, 100
     size = np.array([wide, 20.0])
     for time in range(frames):
         image = grey_road(200, 100)

@@ -207,30 +207,6 @@ class Foreground:
     def _boxes(self, image: npt.NDArray[np.uint8]) -> Array:
         return _pieces(_moving(image, self._background.image)) / self._kept.present.zoom
 
-    def changed(self, low: Array, high: Array, ago: int) -> float:
-        """Share of a part of the frame that has changed since `ago` frames before.
-
-        Zero where that one is not kept, or the part is outside.
-
-        Parameters
-        ----------
-        low, high : (2,) arrays
-            Left and upper, right and lower side of the part, px.
-        """
-        if ago >= len(self._kept.latest):
-            return 0.0
-        small = self._kept.present
-        left, top = np.floor(np.maximum(low * small.zoom, 0)).astype(int).tolist()
-        right, bottom = np.ceil(np.maximum(high * small.zoom, 0)).astype(int).tolist()
-        height, width = small.image.shape
-        rows = _within(top, bottom, height)
-        columns = _within(left, right, width)
-        now = small.image[rows, columns]
-        if not now.size:
-            return 0.0
-        before = self._kept.latest[-1 - ago].grey.piece(rows, columns)
-        return float((cv2.absdiff(now, before) > _LEAST_CONTRAST).mean())
-
     def outline(self, centre: Array, size: Array, ago: int = 0) -> Outline | None:
         """Outline of what moves in a box of this centre and size, px, some frames `ago`.
 

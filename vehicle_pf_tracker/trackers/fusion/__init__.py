@@ -15,7 +15,7 @@
 - reported: `sides` of the box before a standing camera, by `moving_edges` between `moments` and by
   the background, to which `anchoring` moves it
 - where a hidden vehicle cannot be: `exclusion`, `behind`
-- before a standing camera outlines (`outline_boxes`) show what turns (`turning`, `unfolding`) or
-  comes out (`emergence`, `reappearance`)
+- before a standing camera outlines (`outline_boxes`) show what turns (`turning`) or comes out
+  (`emergence`, `reappearance`)
 - gone: `departure`
 """

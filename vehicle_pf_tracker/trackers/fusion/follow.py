@@ -17,6 +17,7 @@ from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
 from vehicle_pf_tracker.trackers.fusion.anchoring import anchored
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
+    LARGEST_GROWTH,
     PRIOR_DOUBT,
     corrected_velocities,
     hidden_hypotheses,
@@ -48,10 +49,6 @@ from vehicle_pf_tracker.trackers.fusion.verdict import (
 _SURE = 0.8
 """Probability of being visible above which size, usual share and paint are measured: odds of 4 to
 1, since an occluder that is measured once stays in the size of all later frames."""
-_LARGEST_PARTIAL = 1.5
-"""Bound of the growth, and of the shrinking, of a partly hidden vehicle, since it became that or
-came back as that. It is a tenth on the real sequences; an error of the rate must not go on for as
-long as a vehicle waits behind a hedge."""
 _TURNING_STIFFNESS = 0.5
 """Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
 turn by 90 degrees nothing that was learnt before stays right (scene `turn`, seed 100)."""
@@ -70,9 +67,6 @@ twice that of a turn that an outline proves (a tenth), since flow alone proves l
 
 def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> State:
     """Follow a visible vehicle, or the prediction of a hidden one, by this frame's verdict."""
-    # The box becomes larger at once where a side has unfolded: that is no growth.
-    if isinstance(verdict, Turning) and isinstance(state.verdict, Visible):
-        state = state._replace(sightings=state.sightings.begun_anew())
     state = state._replace(verdict=verdict, sides=_sides(state, verdict, seen, step))
     match verdict:
         # Before the peak: a filter that does not know the new side has its peak anywhere.
@@ -98,10 +92,15 @@ def _sides(state: State, verdict: Verdict, seen: Observation, step: Step) -> Sid
     """Follow the sides of a vehicle in full view, where its surroundings were looked at."""
     sides = state.sides.passed(step.elapsed * step.period, state.size)
     match verdict:
-        case Visible(unfolding=unfolding):
-            return sides.looked(unfolding.around, seen.position, state.size)
-        case Turning():  # its box is the outline
-            return Sides.of_outline()
+        case Visible():
+            foreground = step.memory.foreground
+            # The first look comes some time after the background, which is poor at first.
+            if foreground.is_known and not sides.is_rested:
+                return sides
+            around = foreground.around(seen.position, state.size)
+            return sides.looked(around, seen.position, state.size)
+        case Turning():  # its box is the outline, and as loose as one that is given
+            return Sides()
     return sides.doubted()
 
 
@@ -123,7 +122,8 @@ def _with_whole(state: State, whole: float, seen: Observation, step: Step) -> St
     if before.is_likely or seen.was_hidden:
         measured = state.size
     grown = state.size * math.exp(growth * step.elapsed)
-    grown = np.clip(grown, measured / _LARGEST_PARTIAL, measured * _LARGEST_PARTIAL)
+    # An error of the rate must not go on for as long as a vehicle waits behind a hedge.
+    grown = np.clip(grown, measured / LARGEST_GROWTH, measured * LARGEST_GROWTH)
     whole_now = before._replace(probability=whole, measured=measured, growth=growth)
     return state._replace(whole=whole_now, size=step.bounded(grown))
 
@@ -250,6 +250,7 @@ def learn(state: State, seen: Observation, step: Step) -> State:
         case Visible() | PartlyHidden():
             _learn_appearance(state, seen, step)
             state = _learn_usual(state, seen, step)
+            # Of a part none is: a doubt discards the looks.
             unfolded = state.sides.unfolded(state.size)
             if unfolded is not None and _is_sure(state):
                 return anchored(state, unfolded.box(state.position, state.size), step)
@@ -268,8 +269,7 @@ def _compared_sides(state: State, patch: Patch, step: Step) -> Sides:
     """Compare a vehicle in full view with earlier frames of a camera that stands."""
     if not (isinstance(state.verdict, Visible) and step.memory.foreground.stands):
         return state.sides.parted()
-    extent = np.array(frame_size(step.frame))
-    return state.sides.compared(patch, state.position, state.size, extent)
+    return state.sides.compared(patch, state.position, state.size, frame_size(step.frame))
 
 
 def _learn_usual(state: State, seen: Observation, step: Step) -> State:

@@ -22,8 +22,9 @@ from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.perspective import FASTEST_GROWTH, PerspectiveMotion
 
 LARGEST_GROWTH = 3.0
-"""Bound of the growth in one occlusion: the vehicles of real sequences that drive towards a fixed
-camera grow fivefold from where they are first seen to where they leave the image."""
+"""Bound of the growth in one occlusion, of all or a part of it: the vehicles of real sequences that
+drive towards a fixed camera grow fivefold from where they are first seen to where they leave the
+image."""
 HIDDEN_SCALES = (1.0, 1.2, 1 / 1.2)
 """Sizes that a hidden vehicle is searched at, relative to the predicted one: behind painted walls
 that is a fifth too low in the median when the vehicle comes out, as the wall has cut the last

@@ -33,12 +33,12 @@ cell is part of the vehicle: the noise of an image. With 4, 8 and 10 the mean ga
 .0073 and .0063, not .0081 (laboratory/notes/fusion_tried.md)."""
 
 
-def moving_edges(moments: Moments, extent: Array) -> Array:
+def moving_edges(moments: Moments, extent: tuple[int, int]) -> Array:
     """Distances of the edges beyond the sides of the box in the middle one of three moments.
 
     Parameters
     ----------
-    extent : (2,) array
+    extent : pair of int
         Width and height of the frame, px.
 
     Returns
@@ -64,7 +64,7 @@ def moving_edges(moments: Moments, extent: Array) -> Array:
 
 
 def _moving_part(
-    present: Cells, moving: Cells, middle: Moment, other: Moment, extent: Array
+    present: Cells, moving: Cells, middle: Moment, other: Moment, extent: tuple[int, int]
 ) -> Cells:
     """Mask of what does not stand, by the difference that moving with the box leaves."""
     centre = middle.background_in(other, middle.position)
@@ -84,12 +84,15 @@ def _cells(moment: Moment, position: Array, size: Array) -> Cells:
     return moment.cells(position - step * ((_ALL - 1) / 2), step, (_ALL, _ALL))
 
 
-def _in_view(moment: Moment, position: Array, size: Array, extent: Array) -> tuple[slice, slice]:
+def _in_view(
+    moment: Moment, position: Array, size: Array, extent: tuple[int, int]
+) -> tuple[slice, slice]:
     """Rows and columns of these cells that are in the moment's image, and in the frame."""
     ends = []
     shape = moment.grey.shape[::-1]
     both = zip(
-        *(each.tolist() for each in (moment.corner, moment.zoom, position, size, extent)),
+        *(each.tolist() for each in (moment.corner, moment.zoom, position, size)),
+        extent,
         shape,
         strict=True,
     )

@@ -142,10 +142,6 @@ class Sightings(NamedTuple):
         rows[-1] = 0.0, *position.tolist(), *size.tolist(), response
         return self._replace(rows=rows, in_view=1 if returned else self.in_view + 1)
 
-    def begun_anew(self) -> Sightings:
-        """Leave out all: from now on another part of the vehicle is sighted."""
-        return Sightings(camera_stood=self.camera_stood)
-
     def rescaled(self, shift: Array, scale: Array) -> Sightings:
         """Move all by a fraction `shift` (2,) of their size, and scale that by `scale` (2,)."""
         rows = self.rows.copy()

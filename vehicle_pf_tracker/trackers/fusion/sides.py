@@ -12,8 +12,8 @@ at first and wanders, and in a bias of its edge that stays.
 
 Only the box that is reported is corrected. What the filter follows stays as it is: moved, its peak
 would draw it back. But where a flank comes into view the drift is faster than that belief, and goes
-on: there the box that is followed is moved to the edges, and the filter is trained anew on it
-(`anchoring.py`).
+on: at one of its ends edges are beyond it in look after look, and its shape changes. There the box
+that is followed is moved to the edges, and the filter is trained anew on it (`anchoring.py`).
 """
 
 from __future__ import annotations
@@ -29,7 +29,6 @@ from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.foreground import Around
 from vehicle_pf_tracker.trackers.fusion.moments import Moment, Moments, is_due, moved
 from vehicle_pf_tracker.trackers.fusion.moving_edges import moving_edges
-from vehicle_pf_tracker.trackers.fusion.unfolding import LEAST_BEYOND
 
 _DRIFT = 0.002
 """Variance that a side's distance gains, fraction of the size squared per second: .045 in the first
@@ -47,16 +46,21 @@ errors of looks in a row are alike. Chosen on 58 vehicles and, against .2 (IoU .
 _DELAY = 0.3
 """Age of a look at which it is believed, s: what an occluder cuts is seen in looks just before the
 doubt, and a doubt discards them. With 0 one that is cut loses .02, with 1 all gain .020."""
-_AFTER_OUTLINE = 0.15
-"""Standard deviation of a side's distance, fraction of the size, where the box was an outline, with
-shadows in it. With 0, .05 and .1 turning_car has .724, .730 and .739, not .740."""
+_EVERY = 0.125
+"""Least time between two looks at the background, s: four frames at 30 Hz, since a mask costs time.
+"""
 _OFF = 0.12
 """Least distance of an edge beyond the left or right side of a flank that comes into view, fraction
 of the width, a choice: three deviations of one look."""
+_LEAST_BEYOND = -0.2
+"""Least distance of an edge beyond a side there, fraction of the width, a choice: farther inside it
+is an occluder's, or parts of the mask are missing."""
+
 _TURNS = 0.15
 """Least change of the logarithm of width over height of a box whose vehicle shows a flank, per
 second. With .1 a car of 27 px on a straight road has one, too (silver_estate, by its size's noise);
-with .05 also a car behind a pole, which loses .25 of IoU (laboratory/notes/fusion_tried.md)."""
+with none 133 vehicles gain .003, but looks against a background that has just become known lose
+three of 39 recoveries behind walls (laboratory/notes/fusion_tried.md)."""
 _SETTLED = 0.5
 """Time over which that change is measured, s, a choice: of turns that take one to three."""
 
@@ -82,6 +86,8 @@ class Sides(NamedTuple):
     shape : float or None
         Logarithm of the width over the height of the followed box, an exponential mean; None where
         none is known.
+    rested : float
+        Time since the last look at the background, s.
     time : float
         Time since the first frame, s.
     moments : tuple of Moment
@@ -98,14 +104,9 @@ class Sides(NamedTuple):
     since: float = 0.0
     looks: tuple[_Look, ...] = ()
     shape: float | None = None
+    rested: float = 0.0
     time: float = 0.0
     moments: Moments = ()
-
-    @classmethod
-    def of_outline(cls) -> Sides:
-        """Sides of a box that was an outline: they may be anywhere near its own."""
-        _, shared, constant = cls().variances
-        return cls(variances=(np.full((2, 2), _AFTER_OUTLINE**2), shared, constant))
 
     def moved(self, camera: CameraMotion) -> Sides:
         """Note that the camera has moved."""
@@ -118,18 +119,30 @@ class Sides(NamedTuple):
         if self.shape is not None:
             shape = self.shape + (shape - self.shape) * min(seconds / _SETTLED, 1.0)
         sides = self._replace(
-            since=self.since + seconds, looks=looks, shape=shape, time=self.time + seconds
+            since=self.since + seconds,
+            looks=looks,
+            shape=shape,
+            rested=self.rested + seconds,
+            time=self.time + seconds,
         )
         while sides.looks and sides.looks[0][0] >= _DELAY:
             sides = sides._believed(sides.looks[0][1])._replace(looks=sides.looks[1:])
         return sides
 
+    @property
+    def is_rested(self) -> bool:
+        """True where the last look at the background is long enough ago for another one."""
+        return self.rested >= _EVERY
+
     def looked(self, around: Around | None, position: Array, size: Array) -> Sides:
         """Look at what moves around the followed box of this centre and size, px."""
         found = around and around.beyond(position, size)
-        return self if found is None else self._replace(looks=(*self.looks, (0.0, found)))
+        looks = self.looks if found is None else (*self.looks, (0.0, found))
+        return self._replace(looks=looks, rested=0.0)
 
-    def compared(self, patch: Patch, position: Array, size: Array, extent: Array) -> Sides:
+    def compared(
+        self, patch: Patch, position: Array, size: Array, extent: tuple[int, int]
+    ) -> Sides:
         """Look at what moves with the followed box in a frame of this width and height, px."""
         if not is_due(self.moments, position, size):
             return self
@@ -148,7 +161,7 @@ class Sides(NamedTuple):
 
     def doubted(self) -> Sides:
         """Discard the looks of just before a doubt: an occluder may have cut the vehicle."""
-        return self._replace(looks=(), shape=None, moments=())
+        return self._replace(looks=(), shape=None, rested=0.0, moments=())
 
     def unfolded(self, size: Array) -> Sides | None:
         """Sides as the last look found them left and right, if a flank comes into view.
@@ -166,7 +179,7 @@ class Sides(NamedTuple):
         # compares as false.
         is_off = ~(across <= _OFF).any(axis=0) & are_many
         is_flank = is_off & ~(across[:, ::-1] > 0).any(axis=0)
-        if not is_flank.any() or (across < LEAST_BEYOND).any():
+        if not is_flank.any() or (across < _LEAST_BEYOND).any():
             return None
         beyond = self.beyond.copy()
         for found in across:

@@ -12,7 +12,6 @@ from typing import NamedTuple, TypeAlias
 
 from vehicle_pf_tracker.trackers.fusion.departure import Departure
 from vehicle_pf_tracker.trackers.fusion.turning import Outlines
-from vehicle_pf_tracker.trackers.fusion.unfolding import Unfolding
 
 WHOLE_AT_FIRST = 0.99
 """Probability of `Wholeness` in the first frame, whose box is given: 2 frames of no share at all,
@@ -26,12 +25,9 @@ class Visible(NamedTuple):
     ----------
     whole : float
         Probability that all of it is visible, given that a part of it is.
-    unfolding : Unfolding
-        Looks at its outline, which may show a side that comes into view.
     """
 
     whole: float = WHOLE_AT_FIRST
-    unfolding: Unfolding = Unfolding()
 
 
 class PartlyHidden(NamedTuple):

@@ -18,7 +18,6 @@ from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.state import State
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Prediction, Step
 from vehicle_pf_tracker.trackers.fusion.turning import Outlines
-from vehicle_pf_tracker.trackers.fusion.unfolding import Unfolding
 from vehicle_pf_tracker.trackers.fusion.verdict import (
     Gone,
     Hidden,
@@ -56,23 +55,7 @@ def judge(state: State, seen: Observation, prediction: Prediction, step: Step) -
     if not is_visible:
         return Hidden(outlines)
     whole = _judged_whole(state, seen, step)
-    if whole <= 0.5:
-        return PartlyHidden(whole)
-    # 4. One in full view may turn as well, where the filter knows the end that stays as it is.
-    return _judged_unfolding(state, seen, whole, step)
-
-
-def _judged_unfolding(state: State, seen: Observation, whole: float, step: Step) -> Verdict:
-    """Decide whether a vehicle in full view turns, as a side of it unfolds beyond the box."""
-    foreground = step.memory.foreground
-    if not foreground.is_known:
-        return Visible(whole)
-    before = state.verdict.unfolding if isinstance(state.verdict, Visible) else Unfolding()
-    times = step.elapsed, step.period
-    unfolding = before.looked(foreground, seen.position, state.size, times)
-    fitted = state.sightings.fit() if unfolding.outline is not None else None
-    branch = fitted and unfolding.branch(fitted[0], state.size)
-    return Visible(whole, unfolding) if branch is None else Turning(Outlines(branch))
+    return Visible(whole) if whole > 0.5 else PartlyHidden(whole)
 
 
 def _departure(state: State, step: Step, *, left_image: bool) -> Departure | None:
