@@ -9,7 +9,6 @@ from fusion_samples import contrasted, fusion, grey_road
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
-from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 from vehicle_pf_tracker.parameters.table import from_mapping, to_mapping
 from vehicle_pf_tracker.trackers.fusion.entering import Entry
 from vehicle_pf_tracker.trackers.fusion.parameters import FusionParameters
@@ -35,6 +34,11 @@ def picture(time, length, pan=0):
     return image
 
 
+def coloured(grey):
+    """A frame of these grey levels."""
+    return np.repeat(grey[..., None], 3, axis=2)
+
+
 def entered(length, frames, pans=0):
     """Follow the first 20 px of a vehicle of this length; give what is known after some frames.
 
@@ -48,7 +52,7 @@ def entered(length, frames, pans=0):
         entry = entry.moved(
             CameraMotion(shift=np.array([-float(pans), 0.0])) if pans else CameraMotion()
         )
-        entry = entry.looked(SmallGrey(picture(time, length, pans * time), 1.0), position, size)
+        entry = entry.looked(coloured(picture(time, length, pans * time)), position, size)
     return entry, position, size
 
 
@@ -83,6 +87,61 @@ def test_a_vehicle_is_as_long_as_what_moves_with_it(length, pans):
     assert entry.remaining(size) is None
 
 
+def followed(frames):
+    """Follow the first 20 px of what drives through these frames; give what is known at last."""
+    size = np.array([FIRST, TALL], float)
+    entry = Entry.of_box(np.array([FIRST / 2, TOP + TALL / 2]), size, np.array([WIDTH, HEIGHT]))
+    for time, frame in enumerate(frames):
+        position = np.array([FIRST / 2 + SPEED * time, TOP + TALL / 2])
+        entry = entry.looked(frame, position, size)
+    return entry, position, size
+
+
+def test_a_vehicle_as_bright_as_the_road_is_seen_by_its_colour():
+    """Red of a luminance of 100, as the road has: what it has of red it lacks of green."""
+    red = BODY.astype(float) / 4 + 30
+    body = np.dstack((100 + red, 100 - red * (0.299 / 0.587), np.full_like(red, 100)))
+
+    def frame(time):
+        image = coloured(np.full((HEIGHT, WIDTH), 100, np.uint8))
+        front = FIRST + SPEED * time
+        tail = max(front - 40, 0)
+        image[TOP : TOP + TALL, tail:front] = body[:, : front - tail][:, ::-1].round()
+        return image
+
+    entry, position, size = followed(frame(time) for time in range(40))
+    assert entry.grown(position, size)[1] == pytest.approx([40 - 3, TALL], abs=2)
+
+
+def test_a_plain_bonnet_is_followed_by_a_cabin():
+    """The half of the box that is nearer to the border is as grey as the road."""
+
+    def frame(time):
+        image = picture(time, 40)
+        front = FIRST + SPEED * time
+        plain = slice(max(front - FIRST, 0), front - FIRST // 2)
+        image[TOP : TOP + TALL, plain] = 100
+        return coloured(image)
+
+    entry, position, size = followed(frame(time) for time in range(40))
+    assert entry.grown(position, size)[1] == pytest.approx([40 - 3, TALL], abs=2)
+
+
+@pytest.mark.parametrize("wide", [10, 16])
+def test_what_stands_in_front_of_it_is_not_the_road_behind_it(wide):
+    """Stripes at the border, as of a clock: the vehicle comes in behind them."""
+    stripes = np.where(np.arange(wide) % 4 < 2, 0, 255)
+
+    def frame(time):
+        image = picture(time, 40)
+        image[:, :wide] = stripes
+        return coloured(image)
+
+    entry, position, size = followed(frame(time) for time in range(18))
+    # The tail is at 31 px, past the stripes.
+    assert entry.grown(position, size)[1] == pytest.approx([40 - 3, TALL], abs=3)
+
+
 def test_what_is_whole_is_left_as_it_is():
     entry, position, size = entered(FIRST, 40)
     assert entry.grown(position, size) is None
@@ -99,7 +158,7 @@ def test_a_vehicle_behind_it_is_another():
         if tail > 0:
             image[TOP : TOP + TALL, max(tail - 30, 0) : tail] = BODY[:, : min(tail, 30)][:, ::-1]
         position = np.array([FIRST / 2 + SPEED * time, TOP + TALL / 2])
-        entry = entry.looked(SmallGrey(image, 1.0), position, size)
+        entry = entry.looked(coloured(image), position, size)
     assert entry.grown(position, size)[1][0] == pytest.approx(27, abs=2)
 
 
@@ -117,7 +176,7 @@ def test_a_vehicle_that_waits_is_not_looked_at():
     position = np.array([FIRST / 2, TOP + TALL / 2])
     entry = Entry.of_box(position, size, np.array([WIDTH, HEIGHT]))
     for _ in range(10):
-        entry = entry.looked(SmallGrey(picture(0, 60), 1.0), position, size)
+        entry = entry.looked(coloured(picture(0, 60)), position, size)
     assert len(entry.moments) == 1
     assert entry.box(position, size)[1] == pytest.approx(size)
 
@@ -132,7 +191,7 @@ def test_images_before_a_doubt_are_not_compared_with_those_after_it():
 def driven_in(seed):
     """A tracker that has followed a vehicle of 50 px from its first 20 px on."""
     tracker = fusion(seed=seed)
-    frames = (np.repeat(picture(time, 50)[..., None], 3, axis=2) for time in range(45))
+    frames = (coloured(picture(time, 50)) for time in range(45))
     tracker.start(next(frames), Box(0, TOP, FIRST, TALL))
     for frame in frames:
         estimate = tracker.step(frame)
@@ -154,7 +213,7 @@ def test_a_filter_that_new_parameters_learn_anew_knows_the_whole_vehicle():
         from_mapping(FusionParameters, {**to_mapping(tracker.parameters), **doubled})
     )
     for time in range(45, 50):
-        estimate = tracker.step(np.repeat(picture(time, 50)[..., None], 3, axis=2))
+        estimate = tracker.step(coloured(picture(time, 50)))
     moved = 5 * SPEED
     assert estimate.position[0] - before.position[0] == pytest.approx(moved, abs=2)
     assert estimate.box.width == pytest.approx(before.box.width, abs=4)

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Reduced grey frame, in which the motion of a background is measured."""
+"""Reduced frame, in whose grey levels the motion of a background is measured."""
 
 from __future__ import annotations
 
@@ -36,7 +36,30 @@ class SmallGrey:
     zoom: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SmallColour:
+    """A reduced frame in colour.
+
+    Attributes
+    ----------
+    image : (h, w, 3) array of uint8
+        RGB.
+    zoom : float
+        Px of the reduced frame per px of the frame, at most 1.
+    """
+
+    image: npt.NDArray[np.uint8]
+    zoom: float
+
+
 def small_grey(frame: Frame) -> SmallGrey:
+    """Reduce a frame (H, W, 3) until its larger side has 320 px at most, to its luminance."""
+    small = small_colour(frame)
+    grey = cv2.cvtColor(small.image, cv2.COLOR_RGB2GRAY)
+    return SmallGrey(np.asarray(grey, np.uint8), small.zoom)
+
+
+def small_colour(frame: Frame) -> SmallColour:
     """Reduce a frame (H, W, 3) until its larger side has 320 px at most.
 
     Of a large frame only so many rows are read as the reduced one has: the cost lies in fetching
@@ -52,4 +75,4 @@ def small_grey(frame: Frame) -> SmallGrey:
     if zoom < 1:
         size = max(round(width * zoom), 1), max(round(height * zoom), 1)
         small = np.asarray(cv2.resize(small, size, interpolation=cv2.INTER_LINEAR), np.uint8)
-    return SmallGrey(np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2GRAY), np.uint8), zoom)
+    return SmallColour(small, zoom)

@@ -7,7 +7,8 @@ Detectors find a vehicle while it drives into the image. The filter answers to t
 given for as long as that is in view, and the box stays on it. What comes in behind it moves with
 it, and not with the road: an image between an earlier and a later one is compared with both, once
 moved with the box and once with the background. The earlier one alone would take the road that the
-vehicle has just left for a part of it, as a smooth road fits anything.
+vehicle has just left for a part of it, as a smooth road fits anything. In colour: a red car may be
+as bright as the road.
 
 The box is moved to what has come in, and the filter trained anew, each time that this is half as
 much again, and once road is seen behind the vehicle.
@@ -21,8 +22,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
+from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
-from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
+from vehicle_pf_tracker.image.motion.small_grey import small_colour
 from vehicle_pf_tracker.trackers.fusion.moments import Moment, Moments, is_due, moved
 from vehicle_pf_tracker.trackers.fusion.sides import Sides
 
@@ -40,9 +42,10 @@ while more comes in."""
 _MIDDLE = 0.7
 """Part of the box across that is compared, fraction of it, a choice: beside corners is road."""
 _LARGEST = 30.0
-"""Largest evidence of a cell, grey levels, a choice: one reflection must not outweigh a side."""
+"""Largest evidence of a cell, levels of a colour, a choice: one reflection must not outweigh a
+side."""
 _CLEAR = 1.0
-"""Least evidence that tells anything, grey levels: the noise of an image."""
+"""Least evidence that tells anything, levels of a colour: the noise of an image."""
 _LEVEL = 0.5
 """Evidence of the vehicle's last cell, fraction of the mean up to it: half. A shadow has less."""
 _SHADOW = 0.15
@@ -52,8 +55,8 @@ _ROAD = 0.4
 """Length of road that ends a vehicle, fraction of the box's longer side, a choice: a plain
 bonnet is shorter."""
 _STANDS = 3.0
-"""Evidence against the vehicle, grey levels, from which a cell counts twice, a choice: a plain
-flank tells nothing, road with a kerb stands."""
+"""Evidence against the vehicle, levels of a colour, from which a cell counts twice, and the most
+that one comparison gives, a choice: a plain flank tells nothing, road with a kerb stands."""
 _LOOKS = 2
 """Times that a cell has to be compared for the box to move, a choice: once for the reported one."""
 _COME_IN = 0.5
@@ -63,6 +66,7 @@ _LEAST_CUT = 0.1
 """The same once all of it has come in, a choice: less is within the error of a first box."""
 
 _Mask = npt.NDArray[np.bool_]
+_Levels = npt.NDArray[np.float32]
 
 
 class Entry(NamedTuple):
@@ -78,7 +82,8 @@ class Entry(NamedTuple):
         Last images that were compared, oldest first.
     evidence, looks : (2, 2, cells) arrays
         By side and cell, from the middle of the box outwards: summed excess of the difference that
-        standing leaves over that which moving leaves, grey levels; and the number of comparisons.
+        standing leaves over that which moving leaves, levels of a colour; and the number of
+        comparisons.
     """
 
     is_cut: _Mask
@@ -103,11 +108,11 @@ class Entry(NamedTuple):
         """Discard the images: the next one will not follow on them."""
         return self._replace(moments=())
 
-    def looked(self, small: SmallGrey, position: Array, size: Array) -> Entry:
+    def looked(self, frame: Frame, position: Array, size: Array) -> Entry:
         """Look at a frame in which the box has this centre and size, px."""
         if not is_due(self.moments, position, size):
             return self
-        moments = (*self.moments, Moment.of_frame(small, position, size))[-3:]
+        moments = (*self.moments, Moment.of_frame(small_colour(frame), position, size))[-3:]
         if len(moments) < 3:
             return self._replace(moments=moments)
         evidence = self.evidence.copy()
@@ -173,29 +178,36 @@ def _compared(moments: Moments, end: int, axis: int) -> tuple[Array, Array]:
     """Evidence for the cells beyond a side, and which of them are in view, by three images."""
     earlier, middle, later = moments
     present, in_view = _cells(middle, middle.position, middle.size, end, axis)
-    moved = np.zeros(present.shape, np.float32)
-    stood = np.full(present.shape, np.inf, np.float32)
+    moved = np.zeros(present.shape[:2], np.float32)
+    stood = np.full(present.shape[:2], np.inf, np.float32)
     compared = np.zeros(len(present), bool)
     for other in (earlier, later):
         cells, seen = _cells(other, other.position, other.size, end, axis)
         # What drives in is not yet in view in the earlier image, and what drives out no more in the
         # later one.
-        difference = np.where(seen[:, None], np.abs(present - cells), 0)
+        difference = np.where(seen[:, None], _apart(present, cells), 0)
         moved = np.maximum(moved, difference)
         compared |= seen
         # Where the middle's background was, or will be, in the other image.
         centre = middle.background_in(other, middle.position)
         cells, _ = _cells(other, centre, middle.size, end, axis)
-        stood = np.minimum(stood, np.abs(present - cells))
+        stood = np.minimum(stood, _apart(present, cells))
     seen = in_view & compared
-    evidence = np.clip(stood - moved, -_LARGEST, _LARGEST).mean(axis=1)
+    excess = np.clip(stood - moved, -_LARGEST, _LARGEST).mean(axis=1)
+    # What stands in front, as a clock in the image, must not outweigh what is seen once it is past.
+    evidence = np.maximum(excess, -_STANDS)
     return np.where(seen, evidence, 0.0), seen.astype(float)
+
+
+def _apart(some: _Levels, other: _Levels) -> _Levels:
+    """Difference of the colours of cells (n, m, 3), mean of the three."""
+    return np.asarray(np.abs(some - other).mean(axis=2))
 
 
 def _cells(
     moment: Moment, position: Array, size: Array, end: int, axis: int
-) -> tuple[npt.NDArray[np.float32], _Mask]:
-    """Grey levels of the cells from the middle of a box outwards, and which rows are in view."""
+) -> tuple[_Levels, _Mask]:
+    """Colours of the cells (n, m, 3) from a box's middle outwards, and which rows are in view."""
     outwards = (2 * end - 1) * size[axis] / _CELLS
     across = _MIDDLE * size[1 - axis] / _CELLS
     count = _INSIDE + _SEARCHED * _CELLS
@@ -207,11 +219,11 @@ def _cells(
     step[axis] = outwards
     step[1 - axis] = across
     if axis == 0:
-        cells = moment.cells(first, step, (count, _CELLS)).T
+        cells = np.swapaxes(moment.cells(first, step, (count, _CELLS)), 0, 1)
     else:
         cells = moment.cells(first, step, (_CELLS, count))
     zoom = moment.zoom[axis]
-    length = moment.grey.shape[1 - axis] / zoom
+    length = moment.image.shape[1 - axis] / zoom
     margin = 1 / zoom  # the outermost px is often black
     in_view = (along > margin) & (along < length - margin)
     return np.asarray(cells, np.float32), in_view
@@ -220,7 +232,8 @@ def _cells(
 def _end_of(evidence: list[float], road: float) -> tuple[float, float]:
     """Where the vehicle ends, fractions of the box beyond its side, and the road that is seen.
 
-    That is the share of the length that ends the vehicle: from 1 on its end is seen.
+    That is the share of the length that ends the vehicle: from 1 on its end is seen. Both are 0
+    where the mean evidence up to no cell is clear: the box may not be on what moves.
 
     Parameters
     ----------
@@ -230,8 +243,7 @@ def _end_of(evidence: list[float], road: float) -> tuple[float, float]:
         Cells of road that end it.
     """
     total = sum(evidence[:_INSIDE])
-    if total < _CLEAR * _INSIDE:
-        return 0.0, 0.0
+    moves = total >= _CLEAR * _INSIDE
     last = _INSIDE - 1
     plain = 0
     for cell in range(_INSIDE, len(evidence)):
@@ -240,7 +252,12 @@ def _end_of(evidence: list[float], road: float) -> tuple[float, float]:
         plain = 0 if each >= _CLEAR else plain + (1 if each > -_STANDS else 2)
         if plain >= road:
             break
+        if total < _CLEAR * (cell + 1):
+            continue
+        moves = True
         if each >= _LEVEL * total / (cell + 1):
             last = cell
+    if not moves:
+        return 0.0, 0.0
     length = max((last + 1 - _INSIDE) / _CELLS - _SHADOW, 0.0)
     return length, plain / road

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
-from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
+from vehicle_pf_tracker.image.motion.small_grey import SmallColour
 
 _WAY = 0.12
 """Least way of the box from one moment to the next, fraction of its size: what moves and what
@@ -32,8 +32,8 @@ class Moment(NamedTuple):
 
     Attributes
     ----------
-    grey : (h, w) array of uint8
-        Luminance of a resampled piece of the frame.
+    image : (h, w) or (h, w, 3) array of uint8
+        Luminance or colours of a resampled piece of the frame.
     zoom, corner : (2,) arrays
         Px of the piece per px of the frame, and its left and upper side in px of the frame.
     position, size : (2,) arrays
@@ -44,7 +44,7 @@ class Moment(NamedTuple):
         Time of the frame, s.
     """
 
-    grey: Cells
+    image: Cells
     zoom: Array
     corner: Array
     position: Array
@@ -53,24 +53,24 @@ class Moment(NamedTuple):
     time: float = 0.0
 
     @classmethod
-    def of_frame(cls, small: SmallGrey, position: Array, size: Array) -> Moment:
-        """Keep a whole frame, reduced."""
+    def of_frame(cls, small: SmallColour, position: Array, size: Array) -> Moment:
+        """Keep the colours of a whole frame, reduced."""
         return cls(small.image, np.full(2, small.zoom), np.zeros(2), position, size)
 
     @classmethod
     def of_patch(cls, patch: Patch, position: Array, size: Array, time: float) -> Moment:
-        """Keep the surroundings of the box."""
+        """Keep the luminance of the surroundings of the box."""
         corner = patch.centre - patch.side / 2 / patch.zoom
         return cls(patch.grey, patch.zoom, corner, position, size, time=time)
 
     def cells(self, first: Array, step: Array, count: tuple[int, int]) -> Cells:
-        """Grey levels at so many cells along x and y: the first one's centre, and steps, px."""
+        """Levels at so many cells along x and y: the first one's centre, and steps, px."""
         # In scalars, which are quicker than arrays of two.
         (across, down), (left, top) = (step * self.zoom).tolist(), self._place(first)
         matrix = np.array([[across, 0.0, left], [0.0, down, top]])
         flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
         cells = cv2.warpAffine(
-            self.grey, matrix, count, flags=flags, borderMode=cv2.BORDER_REPLICATE
+            self.image, matrix, count, flags=flags, borderMode=cv2.BORDER_REPLICATE
         )
         return np.asarray(cells, np.uint8)
 

@@ -89,7 +89,7 @@ def _in_view(
 ) -> tuple[slice, slice]:
     """Rows and columns of these cells that are in the moment's image, and in the frame."""
     ends = []
-    shape = moment.grey.shape[::-1]
+    shape = moment.image.shape[::-1]
     both = zip(
         *(each.tolist() for each in (moment.corner, moment.zoom, position, size)),
         extent,

@@ -171,8 +171,10 @@ def _come_in(state: State, step: Step) -> tuple[State, bool]:
     entry = state.whole.entry
     if entry is None:
         return state, False
-    small = step.memory.foreground.present
-    seen = entry.looked(small, state.position, state.size) if state.is_visible else entry.lost()
+    if state.is_visible:
+        seen = entry.looked(step.frame, state.position, state.size)
+    else:
+        seen = entry.lost()
     grown = seen.grown(state.position, state.size)
     remaining = seen.remaining(state.size)
     if grown is None:
