@@ -180,7 +180,7 @@ def test_sightings_are_of_a_box_that_is_larger_at_one_end():
         size = np.array([width, 20.0])
         sightings = sightings.moved_on(1.0, CameraMotion()).added(np.array([9.0, 5]), size, 1.0)
     wider = sightings.rescaled(np.array([1 / 6, 0]), np.array([4 / 3, 1]))
-    expected = np.array([[1, 14, 5, 40, 20, 1], [0, 19, 5, 80, 20, 1]])
+    expected = np.array([[1, 14, 5, 40, 20, 1, 14, 5], [0, 19, 5, 80, 20, 1, 19, 5]])
     assert wider.rows == pytest.approx(expected)
     assert sightings.rows[0, 1] == 9
 

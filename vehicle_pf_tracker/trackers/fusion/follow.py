@@ -150,6 +150,9 @@ def _enter_occlusion(state: State, step: Step) -> State:
     count = step.parameters.num_particles
     sigma = step.hidden_velocity_sigma(state.sightings)
     particles = hidden_hypotheses(step.rng, path, last.age, count, state.extent, sigma)
+    followed = state.sightings.followed()
+    if followed is not None:
+        particles = particles.held(followed.place, followed.share)
     return state._replace(particles=particles)
 
 

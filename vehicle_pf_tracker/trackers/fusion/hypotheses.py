@@ -172,6 +172,10 @@ class Hypotheses(NamedTuple):
         positions += sample_normal(rng, count, sigmas[0] * root)
         return self._replace(positions=positions, velocities=velocities, growths=growths)
 
+    def held(self, place: Array, share: float) -> Hypotheses:
+        """Move all by a share of the way of their mean to a place (2,), px."""
+        return self._replace(positions=self.positions + share * (place - self.mean))
+
     def passed(self, elapsed: float) -> Hypotheses:
         """Let the chain of visibility pass `elapsed` frames."""
         # One step of a two-state Markov chain: what stays visible, and what returns.

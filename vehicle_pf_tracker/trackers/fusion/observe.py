@@ -69,10 +69,11 @@ part of the first box answers better than the vehicle, and the filter cannot tel
 
 def predict(state: State, step: Step) -> tuple[State, Prediction]:
     """Move with the camera, and predict all hypotheses; the first step measures a first motion."""
+    place = state.particles.mean
     # The camera first: all velocities are against the background, and flow too.
     state = _moved_with_camera(state, step)
     moved = _set_off(state, step) if state.frames == 0 else None
-    state, mean = _predicted(moved or state, step)
+    state, mean = _predicted(moved or state, place, step)
     # By the mean before it is moved into the image: inside, no vehicle would ever leave.
     left_image = is_outside(step.frame, *mean.tolist())
     return state, Prediction(left_image, sets_off=moved is not None)
@@ -133,8 +134,11 @@ def _set_off(state: State, step: Step) -> State | None:
     return state._replace(particles=particles)
 
 
-def _predicted(state: State, step: Step) -> tuple[State, Array]:
-    """Predict all hypotheses, and their mean (2,) in px; a hidden vehicle grows as they do."""
+def _predicted(state: State, place: Array, step: Step) -> tuple[State, Array]:
+    """Predict all hypotheses, and their mean (2,) in px; a hidden vehicle grows as they do.
+
+    `place` (2,) is where they were in the image before, px.
+    """
     motion = step.parameters.motion
     elapsed = step.elapsed
     particles = state.particles
@@ -152,6 +156,11 @@ def _predicted(state: State, step: Step) -> tuple[State, Array]:
     across = 1.0 if visible else ACROSS_LANES
     covered = is_covered(state)
     predicted = particles.predicted(step.rng, elapsed, sigmas, across, keeps_mean=covered)
+    if isinstance(state.verdict, Hidden):
+        # As one: how far apart they are is what either guess may be off.
+        followed = state.sightings.followed()
+        if followed is not None:
+            predicted = predicted.held(place, followed.share)
     predicted = predicted.passed(elapsed)
     inside = predicted._replace(positions=step.inside(predicted.positions))
     return state._replace(particles=inside, size=size, frames=state.frames + 1), predicted.mean

@@ -16,6 +16,7 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
+from vehicle_pf_tracker.trackers.fusion.followed_by_camera import Followed
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.schedule import UNDISTURBED
 from vehicle_pf_tracker.trackers.fusion.standing_occluder import restored_sightings
@@ -121,15 +122,15 @@ class Sightings(NamedTuple):
 
     Attributes
     ----------
-    rows : (N, 6) array
-        Age in frames, position and size in px, and response of each.
+    rows : (N, 8) array
+        Age in frames, position and size in px, response, and place in the image then, px, of each.
     camera_stood : float
         Frames since the camera moved last.
     in_view : int
         Number of the last of them in a row, between which the vehicle was never hidden.
     """
 
-    rows: Array = np.empty((0, 6))
+    rows: Array = np.empty((0, 8))
     camera_stood: float = math.inf
     in_view: int = 0
 
@@ -137,15 +138,18 @@ class Sightings(NamedTuple):
         self, position: Array, size: Array, response: float, *, returned: bool = False
     ) -> Sightings:
         """Add a sighting of the present frame; before one that has `returned` it was hidden."""
-        rows = np.empty((len(self.rows) + 1, 6))
+        rows = np.empty((len(self.rows) + 1, 8))
         rows[:-1] = self.rows
-        rows[-1] = 0.0, *position.tolist(), *size.tolist(), response
+        place = position.tolist()
+        rows[-1] = 0.0, *place, *size.tolist(), response, *place
         return self._replace(rows=rows, in_view=1 if returned else self.in_view + 1)
 
     def rescaled(self, shift: Array, scale: Array) -> Sightings:
         """Move all by a fraction `shift` (2,) of their size, and scale that by `scale` (2,)."""
         rows = self.rows.copy()
-        rows[:, 1:3] += shift * rows[:, 3:5]
+        moved = shift * rows[:, 3:5]
+        rows[:, 1:3] += moved
+        rows[:, 6:8] += moved
         rows[:, 3:5] *= scale
         return self._replace(rows=rows)
 
@@ -179,6 +183,14 @@ class Sightings(NamedTuple):
     def are_steady(self) -> bool:
         """True where the camera has stood for as long as sightings are kept."""
         return self.camera_stood > KEPT_FRAMES
+
+    def followed(self) -> Followed | None:
+        """Tell how far a camera that moves follows the vehicle; None where it stands."""
+        clear = self.rows[self.rows[:, 5] >= CLEAR_RESPONSE]
+        if self.are_steady or not len(clear):
+            return None
+        # Tried for as long as positions count in the fit: by then the speed is another one.
+        return Followed.measured(clear[:, 0], clear[:, 1:3], clear[:, 6:8], _MEMORY)
 
     def fit(self) -> tuple[PerspectiveMotion, Sighting] | None:
         """Fit the motion to clear sightings; also give the last of them, which is at time 0.
