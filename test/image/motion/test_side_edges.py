@@ -49,6 +49,19 @@ def test_a_side_with_a_neighbour_or_a_slanted_rim_has_no_edge():
     assert np.isnan(found).tolist() == [[True, False], [True, False]]
 
 
+@pytest.mark.parametrize(("slant", "is_edge"), [(4, True), (14, False)])
+def test_a_vehicle_that_stands_aslant_in_its_box_has_no_edge_at_its_middle(slant, is_edge):
+    """Its left rim goes `slant` px to the right from the lowest row to the highest.
+
+    Half of the 12 rows that are looked at lie within 1.3 and 4.4 px of that; an edge of a box of
+    30 px is at most 4 px wide.
+    """
+    mask = rectangle()
+    for row in range(20):
+        mask[39 - row, 25 : 25 + round(slant * row / 19)] = 0
+    assert np.isnan(edges_beyond(mask, LOW, HIGH)[0, 0]) != is_edge
+
+
 def test_what_is_farther_than_a_third_of_the_size_is_another():
     mask = rectangle()
     mask[20:40, 55:67] = 1

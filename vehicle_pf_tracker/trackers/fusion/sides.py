@@ -55,7 +55,6 @@ of the width, a choice: three deviations of one look."""
 _LEAST_BEYOND = -0.2
 """Least distance of an edge beyond a side there, fraction of the width, a choice: farther inside it
 is an occluder's, or parts of the mask are missing."""
-
 _TURNS = 0.15
 """Least change of the logarithm of width over height of a box whose vehicle shows a flank, per
 second. With .1 a car of 27 px on a straight road has one, too (silver_estate, by its size's noise);
