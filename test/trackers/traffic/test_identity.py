@@ -16,7 +16,9 @@ RED, BLUE = np.eye(COLOUR_BINS)[:2]
 
 
 def confirmed(number, left, colours=RED, **facts):
-    return track(number, left, colours=colours, confirmed=True, **facts)
+    first = facts.pop("first", left)
+    seen = (first, 100.0, first + 40.0, 130.0)
+    return track(number, left, colours=colours, confirmed=True, first=seen, **facts)
 
 
 def found_again(*tracks):
@@ -72,8 +74,26 @@ def test_a_vehicle_confirmed_a_second_time_is_the_first_unless_there_were_two():
 def test_a_new_one_that_was_detected_beside_the_hidden_vehicle_is_another_one(age, box, expected):
     where = np.array([[100.0, 100.0, 140.0, 130.0]])
     hidden = changed(confirmed(1, 100.0, undetected=20.0), detection=where)
-    new = changed(track(2, 115.0, colours=RED, age=age), detection=np.array([box]))
+    new = track(2, 115.0, colours=RED, age=age, first=(115.0, 100.0, 155.0, 130.0))
+    new = changed(new, detection=np.array([box]))
     assert found_again(hidden, new) == expected
+
+
+@pytest.mark.parametrize(
+    ("last", "first", "expected"),
+    [(100.0, 186.0, 0), (100.0, 187.0, None), (52.0, 22.0, 0), (52.0, 21.0, None)],
+    ids=["ahead", "too far ahead", "behind", "too far behind"],
+)
+def test_a_vehicle_that_was_first_seen_elsewhere_is_another_one(last, first, expected):
+    # Predicted at 160 after 60 periods, and a third of the way there after 20, when the other one
+    # came into view: at 120, or at 88. It may be 1 + 20 / 30 widths of 40 px off by then, 66.7 px.
+    where = np.array([[last, 100.0, last + 40.0, 130.0]])
+    hidden = changed(confirmed(1, 160.0, undetected=60.0), detection=where)
+    new = confirmed(2, 165.0, age=40.0, first=first)
+    assert found_again(hidden, new) == expected
+    every = together(hidden, new)
+    # The first shape may have been of several vehicles.
+    assert find_hidden(every, 1, every.confirmed, are_shapes=True) == 0
 
 
 def test_of_two_hidden_vehicles_the_nearer_one_has_come_back():

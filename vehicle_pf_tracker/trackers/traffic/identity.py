@@ -19,7 +19,7 @@ from vehicle_pf_tracker.core.overlaps import areas
 from vehicle_pf_tracker.trackers.traffic.bodies import LONG_DRIVE, MISSED_FOR, SHORT_DRIVE
 from vehicle_pf_tracker.trackers.traffic.colours import similarities
 from vehicle_pf_tracker.trackers.traffic.existence import CERTAIN_LOG_ODDS
-from vehicle_pf_tracker.trackers.traffic.rows import Bools, objects
+from vehicle_pf_tracker.trackers.traffic.rows import Bools, Integers, objects
 from vehicle_pf_tracker.trackers.traffic.state import State
 from vehicle_pf_tracker.trackers.traffic.tracks import Tracks, added_votes
 
@@ -51,10 +51,13 @@ def number_proven(state: State, proven: Bools, *, returning: bool) -> State:
     tracks = state.tracks
     kept = np.ones(len(proven), np.bool_)
     identity = state.last_identity
+    are_shapes = state.experience.detections.are_shapes
     rows = np.flatnonzero(proven)
     # Of those that are proven in the same image the one that was seen first gets the lower number.
     for row in rows[np.argsort(tracks.names.serial[rows])].tolist():
-        hidden = find_hidden(tracks, row, tracks.confirmed) if returning else None
+        hidden = None
+        if returning:
+            hidden = find_hidden(tracks, row, tracks.confirmed, are_shapes=are_shapes)
         if hidden is not None:
             # The number stays with the old row, the new one goes: rows are dropped at the end, so
             # that the others keep their indices meanwhile.
@@ -65,7 +68,7 @@ def number_proven(state: State, proven: Bools, *, returning: bool) -> State:
             if _replaces(state._replace(tracks=tracks), body, row):
                 tracks = _resume_as_body(tracks, body, row)
                 kept[row] = False
-        elif not is_double(tracks, row, are_shapes=state.experience.detections.are_shapes):
+        elif not is_double(tracks, row, are_shapes=are_shapes):
             # A double gets no number, and stays tentative.
             identity += 1
             tracks = _numbered(tracks, row, identity)
@@ -106,8 +109,11 @@ def merge_returned(state: State) -> State:
     # A twin is younger than the absence that it ends; a cheap bound before the search.
     young = tracks.confirmed & ~tracks.names.by_hand & (age < undetected[missed].max())
     kept = np.ones(len(tracks), np.bool_)
+    are_shapes = state.experience.detections.are_shapes
     for row in np.flatnonzero(young).tolist():
-        twin = find_hidden(tracks, row, missed) if tracks.detected[row] else None
+        if not tracks.detected[row]:
+            continue
+        twin = find_hidden(tracks, row, missed, are_shapes=are_shapes)
         if twin is not None:
             tracks = resume(tracks, twin, row)
             # Either can be merged once: a vehicle has one twin.
@@ -179,7 +185,7 @@ def is_double(tracks: Tracks, row: int, *, are_shapes: bool = False) -> bool:
     return bool((intersections(own, boxes) > _SHARED * smaller).any())
 
 
-def find_hidden(tracks: Tracks, row: int, others: Bools) -> int | None:
+def find_hidden(tracks: Tracks, row: int, others: Bools, *, are_shapes: bool = False) -> int | None:
     """Find the hidden vehicle, among `others` (N,), that the new one at `row` is, if it is any."""
     undetected = tracks.absences.undetected
     hidden = others & tracks.confirmed & (undetected >= _HIDDEN_FOR)
@@ -198,6 +204,9 @@ def find_hidden(tracks: Tracks, row: int, others: Bools) -> int | None:
     distance /= 1 + undetected[rows] / _FARTHER_IN
     may_be = (ratio > 1 / _MOST_GROWN) & (ratio < _MOST_GROWN)
     may_be &= distance <= (_NEAR_A_DOUBLE if is_named else 1.0)
+    if is_named and not are_shapes:  # the first shape may have been of several vehicles
+        # One that comes from elsewhere, and drives up to where the hidden one is, is another.
+        may_be &= _born_away(tracks, row, rows) <= 1.0
     # Colours last: few are near enough to be compared.
     rows = rows[may_be]
     distance = distance[may_be]
@@ -223,6 +232,25 @@ def _beside(tracks: Tracks, row: int) -> Bools:
     smaller = np.minimum(areas(detections), areas(own))
     apart = intersections(own, detections) <= _SHARED * smaller
     return np.asarray((together >= _HIDDEN_FOR) & apart)
+
+
+def _born_away(tracks: Tracks, row: int, hidden: Integers) -> Array:
+    """Distance (K,) of the first detection of the new track at `row` from vehicles `hidden` (K,).
+
+    From where each was by then, on the way from its last detection to its prediction; in shares of
+    the distance at which it may reappear.
+    """
+    edges = tracks.edges[hidden]
+    last = tracks.latest.detection[hidden]
+    # Of a vehicle given by hand, and never detected, only the prediction is known.
+    last = np.where((last[:, 2] > last[:, 0])[:, np.newaxis], last, edges)
+    undetected = tracks.absences.undetected[hidden]
+    paths = tracks.beliefs.paths
+    before = np.maximum(undetected - paths.age[row], 0.0)
+    share = before / np.maximum(undetected, 1.0)
+    then = last + share[:, np.newaxis] * (edges - last)
+    distance, _ = _apart(paths.first[row], then)
+    return np.asarray(distance / (1 + before / _FARTHER_IN))
 
 
 def _apart(new: Array, old: Array) -> tuple[Array, Array]:
