@@ -133,3 +133,20 @@ def test_a_hidden_vehicle_that_is_followed_is_expected_where_it_was_in_the_image
     assert error(estimates[69], filmed, 69) < 20
     assert estimates[79].mode is Mode.TRACKING
     assert error(estimates[79], filmed, 79) < 3
+
+
+def test_both_guesses_are_weighed_once_where_the_doubt_begins(monkeypatch):
+    """No later frame tells more of them: what is carried along with the background only ages."""
+    weighed = []
+    whole = Sightings.followed
+
+    def followed(sightings):
+        weighed.append(whole(sightings))
+        return weighed[-1]
+
+    monkeypatch.setattr(Sightings, "followed", followed)
+    tracker = fusion()
+    follow(tracker, Filmed(), range(70))
+    assert len(weighed) == 1
+    assert weighed[0].share > 0.5
+    assert tracker.state.verdict.followed is weighed[0]

@@ -143,14 +143,15 @@ def _enter_occlusion(state: State, step: Step) -> State:
     if foreground.is_known:
         foreground.learn_background()
     outlines = Outlines.begun(foreground, path, last)
-    state = state._replace(verdict=Hidden(outlines))
+    # Weighed once, too: of a hidden vehicle no new sightings tell more.
+    followed = state.sightings.followed()
+    state = state._replace(verdict=Hidden(outlines, followed))
     # The size too: the occluder has shrunk the box in the frames since.
     size = last.size * path.scale_at(last.age)
     state = state._replace(size=size, whole=state.whole._replace(measured=size))
     count = step.parameters.num_particles
     sigma = step.hidden_velocity_sigma(state.sightings)
     particles = hidden_hypotheses(step.rng, path, last.age, count, state.extent, sigma)
-    followed = state.sightings.followed()
     if followed is not None:
         particles = particles.held(followed.place, followed.share)
     return state._replace(particles=particles)

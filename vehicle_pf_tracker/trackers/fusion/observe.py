@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 
 import numpy as np
 
@@ -18,7 +19,13 @@ from vehicle_pf_tracker.image.motion.small_grey import small_grey
 from vehicle_pf_tracker.image.windows.window import is_outside
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.departure import Departure
-from vehicle_pf_tracker.trackers.fusion.exclusion import exclusion_of, is_covered, is_stranger
+from vehicle_pf_tracker.trackers.fusion.exclusion import (
+    Exclusion,
+    exclusion_of,
+    is_covered,
+    is_stranger,
+)
+from vehicle_pf_tracker.trackers.fusion.followed_by_camera import Followed
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
     ACROSS_LANES,
     HIDDEN_SCALES,
@@ -69,11 +76,11 @@ part of the first box answers better than the vehicle, and the filter cannot tel
 
 def predict(state: State, step: Step) -> tuple[State, Prediction]:
     """Move with the camera, and predict all hypotheses; the first step measures a first motion."""
-    place = state.particles.mean
+    before = state.particles
     # The camera first: all velocities are against the background, and flow too.
     state = _moved_with_camera(state, step)
     moved = _set_off(state, step) if state.frames == 0 else None
-    state, mean = _predicted(moved or state, place, step)
+    state, mean = _predicted(moved or state, before, step)
     # By the mean before it is moved into the image: inside, no vehicle would ever leave.
     left_image = is_outside(step.frame, *mean.tolist())
     return state, Prediction(left_image, sets_off=moved is not None)
@@ -114,8 +121,8 @@ def _without_outlines(state: State) -> Verdict:
     match state.verdict:
         case Turning():  # what it was followed by is lost, and the vehicle still in sight
             return PartlyHidden(state.whole.probability)
-        case Hidden():
-            return Hidden()
+        case Hidden(followed=followed):
+            return Hidden(followed=followed)
     return state.verdict
 
 
@@ -134,10 +141,10 @@ def _set_off(state: State, step: Step) -> State | None:
     return state._replace(particles=particles)
 
 
-def _predicted(state: State, place: Array, step: Step) -> tuple[State, Array]:
+def _predicted(state: State, before: Hypotheses, step: Step) -> tuple[State, Array]:
     """Predict all hypotheses, and their mean (2,) in px; a hidden vehicle grows as they do.
 
-    `place` (2,) is where they were in the image before, px.
+    `before` are those of the frame before, where they were in it.
     """
     motion = step.parameters.motion
     elapsed = step.elapsed
@@ -156,11 +163,10 @@ def _predicted(state: State, place: Array, step: Step) -> tuple[State, Array]:
     across = 1.0 if visible else ACROSS_LANES
     covered = is_covered(state)
     predicted = particles.predicted(step.rng, elapsed, sigmas, across, keeps_mean=covered)
-    if isinstance(state.verdict, Hidden):
-        # As one: how far apart they are is what either guess may be off.
-        followed = state.sightings.followed()
-        if followed is not None:
-            predicted = predicted.held(place, followed.share)
+    match state.verdict:
+        case Hidden(followed=Followed(share=share)):
+            # As one: how far apart they are is what either guess may be off.
+            predicted = predicted.held(before.mean, share)
     predicted = predicted.passed(elapsed)
     inside = predicted._replace(positions=step.inside(predicted.positions))
     return state._replace(particles=inside, size=size, frames=state.frames + 1), predicted.mean
@@ -205,7 +211,9 @@ def _weighed(state: State, climb: tuple[int, float], step: Step) -> tuple[State,
     is visible.
     """
     scales = (1.0,) if state.is_visible else HIDDEN_SCALES
-    results = [(*_searched(state, climb, step, scale), scale) for scale in scales]
+    # The way costs time: it is asked for seldom, and is the same for all sizes.
+    exclusion = functools.cache(functools.partial(exclusion_of, state, step))
+    results = [(*_searched(state, climb, step, scale, exclusion), scale) for scale in scales]
     # The size of the highest marginal likelihood, summed over positions and visibility: the highest
     # peak alone would prefer the size that clutter answers to best.
     best = results[0]
@@ -222,9 +230,16 @@ def _weighed(state: State, climb: tuple[int, float], step: Step) -> tuple[State,
 
 
 def _searched(
-    state: State, climb: tuple[int, float], step: Step, scale: float
+    state: State,
+    climb: tuple[int, float],
+    step: Step,
+    scale: float,
+    exclusion: Callable[[], Exclusion | None],
 ) -> tuple[View, Array, Array]:
-    """Judge the hypotheses by the response to a vehicle `scale` times as large as believed."""
+    """Judge the hypotheses by the response to a vehicle `scale` times as large as believed.
+
+    `exclusion` gives the places where a hidden one cannot be.
+    """
     particles = state.particles
     appearance = step.memory.appearance
     # Four times the cells: only where the usual patch would miss hypotheses.
@@ -236,8 +251,8 @@ def _searched(
         view, particles.positions, climb, options, appearance.kernels
     )
     # What answers where it cannot be is no evidence for it, only against it.
-    if (ratios > 0).any():  # seldom, and the way costs time
-        excludes = exclusion_of(state, step)
+    if (ratios > 0).any():
+        excludes = exclusion()
         if excludes is not None:
             ratios = np.where(excludes(positions), np.minimum(ratios, 0.0), ratios)
     return view, positions, ratios

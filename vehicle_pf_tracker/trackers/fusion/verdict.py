@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple, TypeAlias
 
 from vehicle_pf_tracker.trackers.fusion.departure import Departure
+from vehicle_pf_tracker.trackers.fusion.followed_by_camera import Followed
 from vehicle_pf_tracker.trackers.fusion.turning import Outlines
 
 WHOLE_AT_FIRST = 0.99
@@ -63,9 +64,12 @@ class Hidden(NamedTuple):
     ----------
     outlines : Outlines
         Outlines that may turn out to be those of the vehicle.
+    followed : Followed or None
+        How far a camera that moved as the vehicle was hidden follows it; None where it stood.
     """
 
     outlines: Outlines = Outlines()
+    followed: Followed | None = None
 
 
 class Gone(NamedTuple):

@@ -53,7 +53,8 @@ def judge(state: State, seen: Observation, prediction: Prediction, step: Step) -
         return Turning(outlines)
     # 3. The hypotheses decide between hidden and visible, the surface between a part and all.
     if not is_visible:
-        return Hidden(outlines)
+        followed = state.verdict.followed if isinstance(state.verdict, Hidden) else None
+        return Hidden(outlines, followed)
     whole = _judged_whole(state, seen, step)
     return Visible(whole) if whole > 0.5 else PartlyHidden(whole)
 
