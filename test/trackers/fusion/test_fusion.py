@@ -345,7 +345,7 @@ def test_a_turn_is_learnt_the_faster_the_lower_the_response(monkeypatch):
             tracker.step(street.frame(8))
         return learnt
 
-    for response, share, expected in ((0.9, 1.0, 5.0), (0.4, 0.95, 2.0), (0.1, 0.95, 1.0)):
+    for response, share, expected in ((0.9, 1.0, 5.0), (0.4, 0.95, 2.0), (0.1, 0.95, 1.5)):
         assert stiffness(response, share) == [pytest.approx(expected, rel=0.02)]
     assert stiffness(0.4, 0.8) == []
     assert stiffness(0.4, 0.95, reliable=False) == []

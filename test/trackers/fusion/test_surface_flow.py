@@ -211,20 +211,6 @@ def test_the_middle_of_a_wide_patch_will_do(side):
     assert drive.flow.judged(patch, drive.centre, SIZE).share > 0.8
 
 
-def test_after_a_return_few_magnified_patches_that_have_hardly_moved_apart_tell_nothing():
-    """It drives by 1 px a frame, 2.5 of its patch; what is seen is the road that stands."""
-    size = np.array([16.0, 16.0])
-    flow = SurfaceFlow(usual=0.9).restarted()
-    judged = []
-    for time in range(3):
-        centre = START + np.array([float(time), 0.0])
-        patch = cut_patch(USUAL.road, centre, 40.0 / size, 128)
-        flow = flow.judged(patch, centre, size)
-        judged.append((flow.is_reliable, flow.share > 0.5))
-        flow = flow.kept(patch, centre, size)
-    assert judged == [(False, True), (False, True), (True, False)]
-
-
 def test_a_share_is_the_same_whatever_flow_was_measured_before():
     def share(textures):
         drive = Drive(textures=textures)

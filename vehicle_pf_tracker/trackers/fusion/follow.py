@@ -53,16 +53,13 @@ _TURNING_STIFFNESS = 0.5
 """Resistance against change while a vehicle turns, a tenth of the usual: within the 20 frames of a
 turn by 90 degrees nothing that was learnt before stays right (scene `turn`, seed 100)."""
 _LEAST_LEVEL = 0.3
-"""Least response that the usual one follows in a turn: below it the filter may answer to the
-road."""
+"""Least response that the usual one follows in a turn, and that learning is the faster by: below it
+the filter may answer to the road."""
 _TURNING_LEVEL_RATE = 0.3
 """Rate per frame at which the usual response follows that in a turn: a new level in 3 frames."""
 _TURNING_SHARE = 0.85
 """Share of the surface above which a visible vehicle may turn. With the survival of points in its
 place, 57 of 81 occlusions are recovered instead of 62 (laboratory/notes/fusion_tried.md)."""
-_LEAST_STIFFNESS = 0.2
-"""Least stiffness in such a turn, fraction of the usual one, however low the response. A choice:
-twice that of a turn that an outline proves (a tenth), since flow alone proves less."""
 
 
 def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> State:
@@ -335,5 +332,5 @@ def _learn_appearance(state: State, seen: Observation, step: Step) -> None:
     # Stiffness is the weight of the filter before: half as sure, the frame counts half as much.
     stiffness = options.stiffness / visible
     if turns:
-        stiffness *= max(response, _LEAST_STIFFNESS)
+        stiffness *= max(response, _LEAST_LEVEL)
     appearance.learn(step.frame, seen.view, state.position, state.size, stiffness)

@@ -39,11 +39,6 @@ one is compared with: the youngest such patch is taken. Flow is good to about on
 _TELLING_PX = 2.0
 """Motion apart in canonical px below which the background's flow is too close to the vehicle's:
 twice the error."""
-_MAGNIFIED_PX = 1.5
-"""Motion apart in px of the frame below which a magnified vehicle is not judged in the first frames
-after a return: its flow is no better than its image. Of one of 18 px that moved by one px no point
-counted as moving; the number was chosen on it (straight_bridge_total,
-laboratory/notes/fusion_tried.md)."""
 _SIDE = 96
 """Side in canonical px of the middle of a patch that flow is measured in: a target has 77 px at
 most, and flow of all 128 takes 1.7 times as long."""
@@ -106,8 +101,6 @@ class SurfaceFlow(NamedTuple):
     is_reliable : bool
         True where enough usually moves with the vehicle, when last judged, and where flow did not
         have to tell more than it can.
-    is_back : bool
-        True for a vehicle that has been hidden: its usual share is of earlier patches.
     """
 
     patches: tuple[_Kept, ...] = ()
@@ -115,11 +108,10 @@ class SurfaceFlow(NamedTuple):
     latest: float = 1.0
     share: float = 1.0
     is_reliable: bool = False
-    is_back: bool = False
 
     def restarted(self) -> SurfaceFlow:
         """Discard all patches, but not the usual share."""
-        return SurfaceFlow((), self.usual, self.latest, is_back=True)
+        return SurfaceFlow((), self.usual, self.latest)
 
     def moved(self, camera: CameraMotion) -> SurfaceFlow:
         """Let the camera move, once between two patches that are kept."""
@@ -152,11 +144,6 @@ class SurfaceFlow(NamedTuple):
         if not self.patches:
             return self
         kept, camera, apart = self._earlier(position, patch.zoom)
-        # In the first frames after a return: once all patches are kept, a slow vehicle has no
-        # others.
-        hardly = min(_MAGNIFIED_PX * float(patch.zoom.max()), _APART_PX)
-        if self.is_back and _TELLING_PX <= apart < hardly and len(self.patches) < _KEPT:
-            return self._replace(share=1.0, is_reliable=False)
         background = camera if apart >= _TELLING_PX else None
         middle = _middle(patch)
         flow = _flow(middle, kept.patch)
@@ -172,7 +159,7 @@ class SurfaceFlow(NamedTuple):
             cells = _cells(middle, position, size)
             explained = explained_variance(middle.grey, kept.patch.grey, flow, cells)
             is_reliable &= apart >= _TELLING_PX and explained >= _EXPLAINED
-        return SurfaceFlow(self.patches, usual, latest, share, is_reliable, self.is_back)
+        return SurfaceFlow(self.patches, usual, latest, share, is_reliable)
 
     def learnt_usual(self) -> SurfaceFlow:
         """Count the present share as one of a clear frame."""
