@@ -12,7 +12,7 @@ from vehicle_pf_tracker.image.correlation.canonical_patch import cut_patch
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.estimate import Mode
 from vehicle_pf_tracker.trackers.fusion.appearance import View
-from vehicle_pf_tracker.trackers.fusion.departure import Departure, Strangers, is_too_far
+from vehicle_pf_tracker.trackers.fusion.departure import Departure, Strangers
 
 LEAVES = 62
 """The time at which the whole vehicle is outside."""
@@ -65,11 +65,6 @@ def test_a_vehicle_that_comes_back_by_the_same_border_is_found():
     assert found >= 2
 
 
-@pytest.mark.parametrize(("size", "first", "far"), [(5, 30, True), (5, 8, False), (12, 60, False)])
-def test_only_a_dot_that_was_larger_is_too_far_to_see(size, first, far):
-    assert is_too_far(np.full(2, float(size)), np.full(2, float(first))) is far
-
-
 PLACE = np.array([100.0, 60.0])
 
 
@@ -82,13 +77,13 @@ def peaked(x, height):
     return view
 
 
-def far_away():
-    """One that drove to the right until it was too far to see."""
-    return Departure.far_away(PLACE, np.full(2, 7.0), np.array([0.5, 0.0]), Strangers())
+def left():
+    """One that left at the left."""
+    return Departure("", np.array([1.0, 0.0]), PLACE, np.full(2, 7.0), Strangers().level)
 
 
 def test_the_velocity_of_a_return_is_per_period_though_frames_were_dropped():
-    departure = far_away()
+    departure = left()
     for time in range(0, 18, 2):
         departure = departure.observed(peaked(100 + time, 0.9), 2.0)
     assert departure.returned[1] == pytest.approx([1.0, 0.0], abs=0.1)
@@ -98,7 +93,7 @@ def test_what_stands_does_not_return_though_the_camera_pans():
     """The background moves to the right by 2 px a frame, and with it the place of departure."""
     pan = CameraMotion(np.eye(2), np.array([2.0, 0.0]))
     for standing in (True, False):
-        departure = far_away()
+        departure = left()
         for time in range(12):
             departure = departure.moved(pan)
             assert departure.position[0] == pytest.approx(PLACE[0] + 2 * (time + 1))
@@ -108,8 +103,8 @@ def test_what_stands_does_not_return_though_the_camera_pans():
 
 
 def returns(views, elapsed=1.0):
-    """Frame by frame, whether one too far to see has come back."""
-    departure = far_away()
+    """Frame by frame, whether one that left has come back."""
+    departure = left()
     for view in views:
         departure = departure.observed(view, elapsed)
         yield departure.returned is not None
@@ -119,12 +114,14 @@ def returns(views, elapsed=1.0):
     ("speed", "height", "found"),
     [(2.0, 0.9, True), (-2.0, 0.9, False), (0.0, 0.9, False), (2.0, 0.7, False)],
 )
-def test_one_too_far_to_see_is_found_only_as_it_drives_on(speed, height, found):
+def test_one_that_left_is_found_only_as_it_moves_inwards(speed, height, found):
     assert any(returns(peaked(100 + speed * time, height) for time in range(10))) is found
 
 
-def test_one_too_far_to_see_is_given_up_when_its_heading_is_old():
-    assert not any(returns((peaked(90 + time, 0.9) for time in range(20)), 10.0))
+def test_what_is_first_seen_far_inside_is_another_one():
+    """One and a half of its sizes are 10.5 px."""
+    found = [any(returns(peaked(x + 2 * time, 0.9) for time in range(10))) for x in (109, 112)]
+    assert found == [True, False]
 
 
 def test_a_return_has_to_look_more_like_it_than_strangers_did():

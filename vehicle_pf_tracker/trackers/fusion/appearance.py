@@ -176,7 +176,6 @@ class Appearance:
         self._side = _CELLS * GRADIENT_CELL_PX
         target = np.minimum(learnt * zoom, _LONGEST_IN_PATCH * self._side)
         self._box = target * (size / learnt)
-        self.first_size = size
         self._filter = CorrelationFilter(_CELLS, target / GRADIENT_CELL_PX, penalty)
         self.use_kernels(kernels)
         # Unknown until the first patch after the start (`has_level`).

@@ -1,12 +1,12 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""A vehicle that has left: by a border of the image, or too far away to be seen.
+"""A vehicle that has left by a border of the image.
 
 From then on whatever resembles it may be a stranger, and on a road strangers come by all the time.
 It is taken to be back only where it comes back from: something enters by the same border and moves
-inwards, or goes on along the far road. Its response has to be above that of anything else while the
-vehicle was tracked, frame after frame.
+inwards. Its response has to be above that of anything else while the vehicle was tracked, frame
+after frame.
 """
 
 from __future__ import annotations
@@ -20,16 +20,8 @@ from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
-from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE, KEPT_FRAMES
+from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
 
-TOO_FAR = "too far to see"
-"""Reason of a departure that is by no border."""
-_SMALLEST = 8.0
-"""Geometric mean of the sides, px, below which a vehicle that is hidden is too far to see: smaller
-ones are dots, and what is taken for their return is a pattern of the background in most cases."""
-_SHRUNK = 0.5
-"""Bound of the same mean as a fraction of that of the first box: a vehicle that was as small at
-first has not shrunk."""
 _ENTERS_WITHIN = 1.5
 """Largest distance from the border, in sizes, at which something that enters is first seen: its
 centre has to be half a size inside, and moves at less than one per frame."""
@@ -87,15 +79,13 @@ class Departure(NamedTuple):
     Attributes
     ----------
     reason : str
-        The border that it left by, or that it is too far to see.
+        The border that it left by.
     return_direction : (2,) array
-        Direction that a return has to move in: into the image, or on along the road.
+        Direction that a return has to move in: into the image.
     position, size : (2,) arrays
         Centre where it left, carried along with the background, and its width and height then, px.
     response : float
         Response that a return has to reach, relative to the usual one.
-    waited : float
-        Periods since it left.
     candidate : _Candidate or None
         Peak that may be the vehicle on its way back.
     """
@@ -105,7 +95,6 @@ class Departure(NamedTuple):
     position: Array
     size: Array
     response: float
-    waited: float = 0.0
     candidate: _Candidate | None = None
 
     @classmethod
@@ -122,15 +111,6 @@ class Departure(NamedTuple):
         direction = np.array(inwards[border], float)
         return cls(f"left at the {border}", direction, position, size, strangers.level)
 
-    @classmethod
-    def far_away(
-        cls, position: Array, size: Array, heading: Array, strangers: Strangers
-    ) -> Departure:
-        """Depart by becoming too small, on the way in the direction `heading`."""
-        # A vehicle without a heading has a way of zero, along which no motion proves a return.
-        direction = heading / max(float(np.hypot(*heading)), 1e-9)
-        return cls(TOO_FAR, direction, position, size, strangers.level)
-
     def moved(self, camera: CameraMotion) -> Departure:
         """Move with the background: where the camera pans, all that stands moves in the image."""
         if camera.still:
@@ -142,14 +122,8 @@ class Departure(NamedTuple):
         return self._replace(position=camera.apply(self.position), candidate=candidate)
 
     def observed(self, view: View, elapsed: float = 1.0) -> Departure:
-        """Look for a return in the next frame, which `view` shows around the place of departure.
-
-        The heading of one too far to see is valid for as long as sightings are kept.
-        """
-        waited = self.waited + elapsed
-        is_old = self.reason == TOO_FAR and waited > KEPT_FRAMES
-        candidate = None if is_old else self._found_in(view, elapsed)
-        return self._replace(waited=waited, candidate=candidate)
+        """Look for a return in the next frame, which `view` shows around the place of departure."""
+        return self._replace(candidate=self._found_in(view, elapsed))
 
     @property
     def returned(self) -> tuple[Array, Array] | None:
@@ -187,12 +161,4 @@ class Departure(NamedTuple):
         # Seen for the first time, it is as near to the border as one that enters. From the middle
         # of the view: with a camera that pans the place of departure itself may leave the image.
         depth = float((found - view.patch.centre) @ self.return_direction)
-        is_near = self.reason == TOO_FAR or depth < _ENTERS_WITHIN * self._extent
-        return _Candidate(found, found) if is_near else None
-
-
-def is_too_far(size: Array, first: Array) -> bool:
-    """Test whether a hidden vehicle of this size is too small, and was larger at first."""
-    # By both bounds: a dot that the user marked has not driven away, and may come back as a dot.
-    extent = float(np.sqrt(size.prod()))
-    return extent < _SMALLEST and extent < _SHRUNK * float(np.sqrt(first.prod()))
+        return _Candidate(found, found) if depth < _ENTERS_WITHIN * self._extent else None

@@ -12,7 +12,7 @@ from __future__ import annotations
 import functools
 import math
 
-from vehicle_pf_tracker.trackers.fusion.departure import Departure, is_too_far
+from vehicle_pf_tracker.trackers.fusion.departure import Departure
 from vehicle_pf_tracker.trackers.fusion.hypotheses import chain
 from vehicle_pf_tracker.trackers.fusion.parameters import VisibilityParameters
 from vehicle_pf_tracker.trackers.fusion.state import State
@@ -37,8 +37,10 @@ def judge(state: State, seen: Observation, prediction: Prediction, step: Step) -
     """Decide on the vehicle's visibility."""
     is_visible = state.particles.probability_visible > 0.5
     # 1. A vehicle that has left stays gone until it is visible; a hidden one may have left.
-    left_image = prediction.left_image and not is_visible
-    departure = _departure(state, step, left_image=left_image)
+    departure = None
+    if prediction.left_image and not is_visible and isinstance(state.verdict, Hidden):
+        place = step.inside(state.particles.mean)
+        departure = Departure.by_border(step.frame, place, state.size, state.strangers)
     if isinstance(state.verdict, Gone):
         departure = None if is_visible else seen.departure
     if departure is not None:
@@ -57,19 +59,6 @@ def judge(state: State, seen: Observation, prediction: Prediction, step: Step) -
         return Hidden(outlines, followed)
     whole = _judged_whole(state, seen, step)
     return Visible(whole) if whole > 0.5 else PartlyHidden(whole)
-
-
-def _departure(state: State, step: Step, *, left_image: bool) -> Departure | None:
-    """Decide whether a hidden vehicle has left, by a border or by becoming too small."""
-    if not isinstance(state.verdict, Hidden):
-        return None
-    position = step.inside(state.particles.mean)
-    strangers = state.strangers
-    if left_image:
-        return Departure.by_border(step.frame, position, state.size, strangers)
-    if is_too_far(state.size, step.memory.appearance.first_size):
-        return Departure.far_away(position, state.size, state.particles.mean_velocity, strangers)
-    return None
 
 
 def _judged_whole(state: State, seen: Observation, step: Step) -> float:
