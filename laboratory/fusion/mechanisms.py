@@ -26,9 +26,8 @@ from laboratory.stress import StressSystem, variant_system
 from laboratory.stress.systems import Follower
 from vehicle_pf_tracker.cli.main import exit_status
 from vehicle_pf_tracker.core.array import Array
-from vehicle_pf_tracker.trackers.fusion import exclusion, observe, reappearance, turning
+from vehicle_pf_tracker.trackers.fusion import exclusion, hidden_way, observe, turning
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
-from vehicle_pf_tracker.trackers.fusion.reappearance import Reappearance
 from vehicle_pf_tracker.trackers.fusion.sides import Sides
 from vehicle_pf_tracker.trackers.fusion.turning import Branch
 
@@ -44,7 +43,7 @@ class Replacement(NamedTuple):
     value: Any
 
 
-def _nowhere(_way: Reappearance, positions: Array) -> Array:
+def _nowhere(positions: Array, *_motion: object) -> Array:
     """Exclude no position."""
     return np.zeros(positions.shape[:-1], np.bool_)
 
@@ -57,12 +56,9 @@ def _always(value: object) -> Any:
 # One mechanism a row; the words are those of docs/fusion.md.
 MECHANISMS: Mapping[str, tuple[Replacement, ...]] = {
     DEFAULT: (),
-    "no search for what comes out on the way": (
-        Replacement(Reappearance, "vehicle", property(_always(None))),
-    ),
-    "returns far ahead": (Replacement(reappearance, "_EARLY", np.inf),),
-    "returns behind": (Replacement(Reappearance, "is_behind", _nowhere),),
-    "returns in another paint": (Replacement(exclusion, "LEAST_PAINT", -1.0),),
+    "returns far ahead": (Replacement(hidden_way, "_EARLY", np.inf),),
+    "returns behind": (Replacement(hidden_way, "is_behind", _nowhere),),
+    "returns in another paint": (Replacement(exclusion, "_LEAST_PAINT", -1.0),),
     "hypotheses drawn to what stands": (Replacement(observe, "is_covered", _always(False)),),
     "turns in another paint": (Replacement(turning, "_OTHER_PAINT", np.inf),),
     "turns behind the path": (Replacement(turning, "BEHIND", np.inf),),

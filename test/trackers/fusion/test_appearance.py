@@ -218,14 +218,3 @@ def test_paint_is_told_by_the_share_of_a_box_that_has_it(stripes, share):
     appearance.learn_paint(plain((136, 48, YELLOW)), PLACE, SIZE)
     found = appearance.paint_share(plain(*stripes), PLACE, SIZE)
     assert found == pytest.approx(share, abs=0.13)
-
-
-def test_the_vehicle_is_found_at_its_side_of_an_outline_with_a_shadow():
-    appearance = learnt()
-    appearance.learn_level(appearance.patch(frame(), PLACE, SIZE))
-    # The outline reaches 20 px farther to the left: its height gives the size.
-    outline = np.stack([PLACE - SIZE / 2 - [20, 0], PLACE + SIZE / 2])
-    found = appearance.found_in(frame(), outline, SIZE / 2)
-    assert found.position == pytest.approx(PLACE, abs=1.5)
-    assert found.size == pytest.approx(SIZE)
-    assert found.response > 0.8

@@ -10,9 +10,9 @@ import pytest
 
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.trackers.fusion.exclusion import exclusion_of, is_stranger
+from vehicle_pf_tracker.trackers.fusion.hidden_way import HiddenWay
 from vehicle_pf_tracker.trackers.fusion.hypotheses import Hypotheses
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion, Sighting, Sightings
-from vehicle_pf_tracker.trackers.fusion.reappearance import Reappearance
 from vehicle_pf_tracker.trackers.fusion.state import State, Wholeness
 from vehicle_pf_tracker.trackers.fusion.turning import Outlines
 from vehicle_pf_tracker.trackers.fusion.verdict import Hidden, Visible
@@ -48,10 +48,8 @@ def step(*, stands, paint=1.0):
 
 
 def on_its_way():
-    way = Reappearance(
-        Sighting(0.0, LAST, SIZE), PerspectiveMotion(LAST, VELOCITY, 0.0), 15.0, LAST
-    )
-    return Hidden(Outlines(reappearance=way))
+    way = HiddenWay(Sighting(0.0, LAST, SIZE), PerspectiveMotion(LAST, VELOCITY, 0.0), 15.0)
+    return Hidden(Outlines(way=way))
 
 
 def test_before_a_moving_camera_what_is_behind_is_excluded():

@@ -15,7 +15,6 @@ from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import PerspectiveMotion, Sighting
-from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 from vehicle_pf_tracker.trackers.fusion.turning import Branch, Outlines
 
 SIZE = np.array([26.0, 16.0])
@@ -33,11 +32,6 @@ def view(response):
     blank = np.zeros((8, 8), np.uint8)
     patch = Patch(np.dstack([blank] * 3), blank, START, np.ones(2))
     return View(patch, None, np.full((8, 8), response, np.float32))
-
-
-def stranger(sides, size):
-    """Nothing that comes out has the vehicle's appearance."""
-    return Candidate(sides.mean(axis=0), size, 0.0, 0.0)
 
 
 def path(turns):
@@ -72,9 +66,7 @@ def drive(
         if not foreground.is_known:
             turning = Outlines()
         if time > DOUBT + late:
-            turning = turning.followed(
-                foreground, 1.0, view(response), lambda *_: difference, stranger
-            )
+            turning = turning.followed(foreground, 1.0, view(response), lambda *_: difference)
             given.append(turning.vehicle)
         elif time == DOUBT + late:
             if foreground.is_known:

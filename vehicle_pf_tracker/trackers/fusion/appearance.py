@@ -32,7 +32,6 @@ from vehicle_pf_tracker.image.correlation.row_waves import Spectrum
 from vehicle_pf_tracker.image.correlation.spectra import shifted
 from vehicle_pf_tracker.image.kernels.interface import Kernels
 from vehicle_pf_tracker.trackers.fusion.paint import Paint
-from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 
 _CELLS = 32
 """Cells along each side of a patch: three times the target's ten, so that background is learnt on
@@ -67,9 +66,6 @@ _COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32) / 100
 """Factors of L, a and b, which span 100 units."""
 _MIDDLE_COLOUR = np.array([0.5, 0, 0], np.float32)
 """Subtracted from L, a and b then: middle grey is 0, as what a patch fades to at its rim."""
-_RIM_REACH = 4
-"""Places beyond an outline within which the filter has to answer: a tenth of the target's side, as
-outlines are good to that."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -272,27 +268,6 @@ class Appearance:
     def paint_share(self, frame: Frame, position: Array, size: Array) -> float:
         """Measure the share of a box that has the paint learnt last, lighter or darker."""
         return self._paint.share(frame, position, size)
-
-    def found_in(self, frame: Frame, sides: Array, size: Array) -> Candidate:
-        """Find the vehicle in an outline (2, 2), with shadows, as the largest box that fits in.
-
-        `size` (2,) gives the ratio of its sides.
-        """
-        whole = sides[1] - sides[0]
-        # On one of its sides, which is not known, the outline has a shadow, so that the box may be
-        # anywhere in it; the filter tells where.
-        size = size * float((whole / size).min())
-        view = self.view(self.patch(frame, sides.mean(axis=0), size))
-        free = (whole - size) / 2
-        middle = sides.mean(axis=0)
-        low, high = view.places(np.stack([middle - free, middle + free]))
-        left, top = np.maximum(low - _RIM_REACH, 0).tolist()
-        right, bottom = (high + _RIM_REACH + 1).tolist()
-        near = view.response[top:bottom, left:right]
-        row, column = np.unravel_index(int(near.argmax()), near.shape)
-        position = view.position(float(column + left), float(row + top))
-        share = self.paint_share(frame, position, size)
-        return Candidate(position, size, float(near.max()), share)
 
     def _spectrum(self, patch: Patch) -> Spectrum:
         wide = patch.side > self._side

@@ -17,21 +17,22 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.fusion.departure import PROOF_DISTANCE
-from vehicle_pf_tracker.trackers.fusion.outline_boxes import areas, front_move
+from vehicle_pf_tracker.trackers.fusion.outline_boxes import (
+    LEAST_AREA,
+    MOST_AREA,
+    areas,
+    front_move,
+)
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import KEPT_FRAMES, PerspectiveMotion, Sighting
 
 _SPEEDS = 0.4, 1.6
 """Bounds of the speed of what comes out, fractions of the vehicle's before: it may brake to less
 than half or accelerate by half while hidden; a stranger of any other speed is excluded."""
-_LEAST_AREA = 0.2
-"""Least area of its bounding box, fraction of the vehicle's: end on, a car has half of the area
-that it has from aside, and a part of it may still be hidden."""
-_LARGEST_AREA = 2.0
-"""Largest such area: from aside, a car has twice the area that it has end on."""
 _LEAST_MOVING = 0.03
 """Least area of something that moves, fraction of the vehicle's: less flickers, by the noise of the
-camera. Of a vehicle of 30 x 30 px that is 27 px squared."""
+camera. Of a vehicle of 30 x 30 px that is 27 px squared. With `LEAST_AREA` what comes out is seen
+too late (laboratory/notes/fusion_tried.md)."""
 
 
 class Emergence(NamedTuple):
@@ -110,7 +111,7 @@ class Emergence(NamedTuple):
         boxes = self._near(boxes, self.last.position if is_entering else None)
         if not len(boxes):
             return new._replace(sides=())
-        if len(boxes) > 1 or self._area(boxes[0]) >= _LARGEST_AREA:
+        if len(boxes) > 1 or self._area(boxes[0]) >= MOST_AREA:
             return None
         sides = boxes[0]
         before = self.sides
@@ -125,7 +126,7 @@ class Emergence(NamedTuple):
     def proven(self) -> tuple[Array, Array] | None:
         """Sides (2, 2), px, and velocity (2,), px per frame, if size, way and speed prove it."""
         frames = len(self.sides)
-        if frames < PROOF_FRAMES or self._area(sides := self.sides[-1]) <= _LEAST_AREA:
+        if frames < PROOF_FRAMES or self._area(sides := self.sides[-1]) <= LEAST_AREA:
             return None
         moved = front_move(self.sides[0], sides)
         if np.hypot(*moved) < PROOF_DISTANCE * self._extent:

@@ -16,10 +16,14 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.trackers.fusion.behind import BEHIND, is_behind
-from vehicle_pf_tracker.trackers.fusion.reappearance import LEAST_PAINT, Reappearance
+from vehicle_pf_tracker.trackers.fusion.hidden_way import HiddenWay
 from vehicle_pf_tracker.trackers.fusion.state import State
 from vehicle_pf_tracker.trackers.fusion.step import Step
 from vehicle_pf_tracker.trackers.fusion.verdict import Hidden
+
+_LEAST_PAINT = 0.1
+"""Least share of a box that has the vehicle's paint: windows, lamps and road have another. A tenth
+is a choice: 7 of the 64 spots that are compared."""
 
 Exclusion = Callable[[Array], npt.NDArray[np.bool_]]
 """Function of positions (..., 2), px: at which of them no hypothesis is the vehicle."""
@@ -60,7 +64,7 @@ def is_stranger(state: State, position: Array, step: Step) -> bool:
     if _way_of(state) is None:
         return False
     appearance = step.memory.appearance
-    return appearance.paint_share(step.frame, position, state.size) < LEAST_PAINT
+    return appearance.paint_share(step.frame, position, state.size) < _LEAST_PAINT
 
 
 def is_covered(state: State) -> bool:
@@ -69,9 +73,9 @@ def is_covered(state: State) -> bool:
     return way is not None and way.is_covered
 
 
-def _way_of(state: State) -> Reappearance | None:
+def _way_of(state: State) -> HiddenWay | None:
     """Way on which a hidden vehicle is expected, before a standing camera."""
     match state.verdict:
         case Hidden(outlines=outlines):
-            return outlines.reappearance
+            return outlines.way
     return None

@@ -11,7 +11,6 @@ from functools import partial
 
 import numpy as np
 
-from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
 from vehicle_pf_tracker.trackers.fusion.anchoring import anchored
@@ -29,7 +28,6 @@ from vehicle_pf_tracker.trackers.fusion.parameters import (
     TURNING_RESPONSE,
 )
 from vehicle_pf_tracker.trackers.fusion.perspective import CLEAR_RESPONSE
-from vehicle_pf_tracker.trackers.fusion.reappearance import Candidate
 from vehicle_pf_tracker.trackers.fusion.sides import Sides
 from vehicle_pf_tracker.trackers.fusion.size_search import believed_stretch, searched_size
 from vehicle_pf_tracker.trackers.fusion.state import State
@@ -71,14 +69,9 @@ def follow(state: State, verdict: Verdict, seen: Observation, step: Step) -> Sta
             return _follow_outline(state, outlines, step)
         case Visible(whole=whole) | PartlyHidden(whole=whole):
             return _follow_peak(_with_whole(state, whole, seen, step), seen, step)
-        # The first hidden frame. In later ones the hypotheses go on by themselves, but for an
-        # outline that has come out on the way.
+        # The first hidden frame. In later ones the hypotheses go on by themselves.
         case Hidden() if not seen.was_hidden:
             state = _enter_occlusion(state, step)
-        case Hidden(outlines=Outlines(reappearance=way)) if way is not None:
-            found = way.vehicle
-            if found is not None:
-                state = _expect_at(state, *found, step)
         # In each frame, since the chain lets some become visible: only a proven return counts.
         case Gone():
             state = state._replace(particles=state.particles.all_visible(0.0))
@@ -151,15 +144,6 @@ def _enter_occlusion(state: State, step: Step) -> State:
     particles = hidden_hypotheses(step.rng, path, last.age, count, state.extent, sigma)
     if followed is not None:
         particles = particles.held(followed.place, followed.share)
-    return state._replace(particles=particles)
-
-
-def _expect_at(state: State, found: Candidate, velocity: Array, step: Step) -> State:
-    """Expect the vehicle where it has come out, at the size that it has there."""
-    # Still hidden: the response of the next frame decides. Without outlines the same one cannot
-    # call the hypotheses back in every frame.
-    state = state._replace(size=step.bounded(found.size), verdict=Hidden())
-    particles = gathered(state, step, found.position, velocity, 1 - PRIOR_DOUBT)
     return state._replace(particles=particles)
 
 

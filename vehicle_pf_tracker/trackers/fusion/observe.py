@@ -37,14 +37,7 @@ from vehicle_pf_tracker.trackers.fusion.parameters import EVEN_RESPONSE, Visibil
 from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
 from vehicle_pf_tracker.trackers.fusion.state import State
 from vehicle_pf_tracker.trackers.fusion.step import Observation, Prediction, Step
-from vehicle_pf_tracker.trackers.fusion.verdict import (
-    Gone,
-    Hidden,
-    PartlyHidden,
-    Turning,
-    Verdict,
-    Visible,
-)
+from vehicle_pf_tracker.trackers.fusion.verdict import Gone, Hidden, Visible, without_outlines
 
 _LARGEST_LOG_RATIO = 6.0
 """Bound of one observation's log ratio: no single frame is believed beyond 400 to 1."""
@@ -107,23 +100,14 @@ def _moved_with_camera(state: State, step: Step) -> State:
     )
     # Outlines are places in an image whose background is gone, and cannot be carried along.
     if not memory.foreground.is_known:
-        state = state._replace(verdict=_without_outlines(state))
+        verdict = without_outlines(state.verdict, state.whole.probability)
+        state = state._replace(verdict=verdict)
     if camera.still:
         return state
     if isinstance(state.verdict, Gone):
         state = state._replace(verdict=Gone(state.verdict.departure.moved(camera)))
     position = camera.apply(state.position)
     return state._replace(position=position, particles=state.particles.moved(camera))
-
-
-def _without_outlines(state: State) -> Verdict:
-    """Return the verdict where outlines have ended with the background."""
-    match state.verdict:
-        case Turning():  # what it was followed by is lost, and the vehicle still in sight
-            return PartlyHidden(state.whole.probability)
-        case Hidden(followed=followed):
-            return Hidden(followed=followed)
-    return state.verdict
 
 
 def _set_off(state: State, step: Step) -> State | None:

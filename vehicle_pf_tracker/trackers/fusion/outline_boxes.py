@@ -9,6 +9,13 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 
+LEAST_AREA = 0.25
+"""Least area of an outline that is a vehicle's, fraction of its box: less is a piece, and may be
+the tip of a shadow. The quarter is a choice; end on, a car has half of the area of its side."""
+MOST_AREA = 2.0
+"""Largest such area: beyond, another vehicle has merged with it, or it is a larger one. A choice: a
+shadow may be as large as the vehicle, and from aside a car has twice the area of its end."""
+
 
 def areas(boxes: Array) -> Array:
     """Areas (N,) of boxes (N, 2, 2), px squared."""

@@ -11,8 +11,8 @@ on, and `step.py` the frame and the memory that they share.
 - Partly hidden: climb to the peak, predict the size, learn nothing unless flow shows a turn.
 - Turning: follow the outline of what moves, learn fast.
 - Hidden: predict along the road, or with the camera that follows (`followed_by_camera.py`), learn
-  nothing, and wait until hypotheses gather evidence, or an outline comes out on the way
-  (`reappearance.py`).
+  nothing, and wait until hypotheses gather evidence on the way (`hidden_way.py`), or an outline
+  comes out beside it (`emergence.py`).
 - Gone: learn nothing, and wait until something comes back from where the vehicle left.
 
 The filter response at each hypothesis is a calibrated log-likelihood ratio of visible against

@@ -9,8 +9,7 @@ outline is cut from one side, and where one drives by it becomes larger at once;
 turns moves as a whole to one side of the predicted path.
 
 One that was hidden as a whole is followed the same way where it comes out beside its path
-(`emergence.py`); where it comes out on its way, it is only expected there (`reappearance.py`).
-Outlines are found before a standing camera.
+(`emergence.py`). Outlines are found before a standing camera.
 """
 
 from __future__ import annotations
@@ -26,14 +25,15 @@ from vehicle_pf_tracker.image.motion.foreground import Foreground, Outline
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.behind import BEHIND
 from vehicle_pf_tracker.trackers.fusion.emergence import Emergence
+from vehicle_pf_tracker.trackers.fusion.hidden_way import HiddenWay
 from vehicle_pf_tracker.trackers.fusion.hypotheses import corrected_velocities
+from vehicle_pf_tracker.trackers.fusion.outline_boxes import MOST_AREA
 from vehicle_pf_tracker.trackers.fusion.parameters import PROOF_FRAMES
 from vehicle_pf_tracker.trackers.fusion.perspective import (
     CLEAR_RESPONSE,
     PerspectiveMotion,
     Sighting,
 )
-from vehicle_pf_tracker.trackers.fusion.reappearance import Judge, Reappearance
 
 _ASIDE = 0.15
 """Least distance of both sides from the predicted path in a turn, fraction of the size: an outline
@@ -51,9 +51,6 @@ twice that of vehicles that pass a camera at 10 images a second (`box_motion.LAR
 _LEAST_COVERED = 0.6
 """Least area of the outline in the last clear sighting, of the box, which holds some road: below,
 parts of the vehicle are missing. A choice."""
-_MOST_COVERED = 2.0
-"""Largest such area: beyond, another vehicle has merged. A choice: a shadow may be as large as the
-vehicle."""
 _FURTHEST = 40.0
 """Frames after the last clear sighting within which a turn is proven, and its outline has to keep
 its shape: a turn by 90 degrees takes 20 (scene `turn`), and leaves the path in its first half."""
@@ -116,7 +113,7 @@ class Branch(NamedTuple):
         if first is None:
             return None
         # An outline that was not the vehicle's alone would leave the path for another's sake.
-        if not _LEAST_COVERED < float(first.size.prod() / last.size.prod()) < _MOST_COVERED:
+        if not _LEAST_COVERED < float(first.size.prod() / last.size.prod()) < MOST_AREA:
             return None
         half = last.size / 2
         margins = first.low - (last.position - half), first.high - (last.position + half)
@@ -184,13 +181,13 @@ class Outlines(NamedTuple):
         The outline that has been followed since the doubt began, or that came out beside the path.
     emergence : Emergence or None
         Search for one that comes out beside the path.
-    reappearance : Reappearance or None
-        Search for one that comes out on the way, and where no hypothesis is the vehicle.
+    way : HiddenWay or None
+        Where the vehicle is expected; it ends with a proven turn.
     """
 
     branch: Branch | None = None
     emergence: Emergence | None = None
-    reappearance: Reappearance | None = None
+    way: HiddenWay | None = None
 
     @classmethod
     def begun(cls, foreground: Foreground, motion: PerspectiveMotion, last: Sighting) -> Outlines:
@@ -200,15 +197,14 @@ class Outlines(NamedTuple):
         """
         if not foreground.is_known:
             return cls()
-        # On its way it may come out even if its outline was cut: that one is not compared.
-        reappearance = Reappearance(last, motion, last.age)
+        way = HiddenWay(last, motion, last.age)
         if last.cut:  # its outline was not the vehicle's
-            return cls(reappearance=reappearance)
+            return cls(way=way)
         emergence = Emergence(last, motion, foreground.extent)
         # In traffic whatever comes out beside the path may be another vehicle.
         was_alone = emergence.was_alone(foreground.history())
         branch = Branch.begun(foreground, motion, last)
-        return cls(branch, emergence if was_alone else None, reappearance)
+        return cls(branch, emergence if was_alone else None, way)
 
     def followed(
         self,
@@ -216,7 +212,6 @@ class Outlines(NamedTuple):
         elapsed: float,
         view: View,
         difference: PaintDifference,
-        judge: Judge,
     ) -> Outlines:
         """Follow the outlines into the present frame.
 
@@ -226,37 +221,34 @@ class Outlines(NamedTuple):
             Shows whether the filter recognises the vehicle again, which ends the branch.
         difference : callable
             Difference of the paint in a box of this centre and size, px, from the vehicle's.
-        judge : callable
-            Finds the vehicle in an outline.
         """
         # 1. The outline that was followed since the doubt began.
         followed = self.branch and self.branch.moved(foreground, elapsed)
         branch = followed
         emergence = self.emergence
-        reappearance = self.reappearance
+        way = self.way
         # 2. What comes out beside the path: a new branch, if the first one is lost.
         if emergence is not None:
             emergence, emerged = _emerged(emergence, foreground.boxes(), elapsed, difference)
             branch = branch or emerged
-        # 3. What comes out on the way, judged where it is now.
-        if reappearance is not None:
-            reappearance = reappearance.aged(elapsed)
-            if reappearance.is_due:
-                boxes = foreground.boxes_near(*reappearance.place)
-                reappearance = reappearance.observed(boxes, judge)
+        # 3. What moves where it is expected.
+        if way is not None:
+            way = way.aged(elapsed)
+            if way.is_due:
+                way = way.looked(foreground.boxes_near(*way.place))
         if branch is None:
-            return Outlines(None, emergence, reappearance)
+            return Outlines(None, emergence, way)
         # 4. In another paint it is another vehicle, which what was left of the outline ran into.
         # The searches go on; while they do, no proof has been believed yet.
-        is_new = branch is followed and branch.is_proven and self.reappearance is not None
+        is_new = branch is followed and branch.is_proven and self.way is not None
         if is_new and difference(*branch.box) > _OTHER_PAINT:
-            return Outlines(None, emergence, reappearance)
-        # 5. A proven turn ends the other searches, and is over once the filter knows the new side.
+            return Outlines(None, emergence, way)
+        # 5. A proven turn ends all else, and is over once the filter knows the new side.
         branch = branch.judged(view)
         if branch.is_proven:
             emergence = None
-            reappearance = None
-        return Outlines(None if branch.is_over else branch, emergence, reappearance)
+            way = None
+        return Outlines(None if branch.is_over else branch, emergence, way)
 
     @property
     def vehicle(self) -> Branch | None:

@@ -88,3 +88,16 @@ class Gone(NamedTuple):
 # left (its departure) cannot be left over from an earlier frame.
 Verdict: TypeAlias = Visible | PartlyHidden | Turning | Hidden | Gone
 """Judgement on the vehicle in a frame, which decides what the rest of the step does."""
+
+
+def without_outlines(verdict: Verdict, whole: float) -> Verdict:
+    """Return the verdict where outlines have ended with the background.
+
+    `whole` is the probability that all of a visible vehicle is visible.
+    """
+    match verdict:
+        case Turning():  # what it was followed by is lost, and the vehicle still in sight
+            return PartlyHidden(whole)
+        case Hidden(followed=followed):
+            return Hidden(followed=followed)
+    return verdict

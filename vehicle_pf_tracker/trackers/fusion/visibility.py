@@ -48,9 +48,8 @@ def judge(state: State, seen: Observation, prediction: Prediction, step: Step) -
     # 2. An outline that proves a turn is believed before the response, which a turn lowers.
     outlines = state.verdict.outlines if isinstance(state.verdict, Turning | Hidden) else Outlines()
     difference = functools.partial(step.memory.appearance.paint_difference, step.frame)
-    find = functools.partial(step.memory.appearance.found_in, step.frame)
     foreground = step.memory.foreground
-    outlines = outlines.followed(foreground, step.elapsed, seen.view, difference, find)
+    outlines = outlines.followed(foreground, step.elapsed, seen.view, difference)
     if outlines.vehicle is not None:
         return Turning(outlines)
     # 3. The hypotheses decide between hidden and visible, the surface between a part and all.
