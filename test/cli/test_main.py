@@ -151,6 +151,13 @@ def test_the_package_as_a_module_is_the_command(words, capsys):
     assert (done.returncode, done.stdout, done.stderr) == (status, told.out, told.err)
 
 
+def test_a_box_that_the_left_border_cuts_is_no_option(capsys):
+    words = ["run", "nothing.mp4", "--target", "-3.5,97,46,26"]
+    assert command.main(words) == 1
+    assert "there is no file or folder nothing.mp4" in capsys.readouterr().err
+    assert command.main([*words, "--overwrite", "-3.5,97,46,26", "--target"]) == 2
+
+
 def test_bag_replay_is_the_verb_replay(capsys):
     assert command.bag_replay(["--help"]) == 0
     assert "usage: vehicle-pf-tracker replay" in capsys.readouterr().out

@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import os
+import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 
@@ -84,12 +85,24 @@ def bag_replay(argv: Sequence[str] | None = None) -> int:
 
 def _run(words: list[str]) -> int:
     try:
-        args = make_parser(words).parse_args(words)
+        args = make_parser(words).parse_args(_with_negative_boxes(words))
     except SystemExit as ended:  # argparse has said all there is to say
         return ended.code if isinstance(ended.code, int) else console.USAGE_STATUS
     check_extra(args.verb)
     status: int = args.module.run(request_of(args.module.Request, args))
     return status
+
+
+def _with_negative_boxes(words: Sequence[str]) -> list[str]:
+    """Join options with values as `-3,97,46,26`: a box that the left border cuts is no option."""
+    joined: list[str] = []
+    for word in words:
+        is_box = re.match(r"-[\d.]+,", word) is not None
+        if is_box and joined and joined[-1].startswith("--") and "=" not in joined[-1]:
+            joined[-1] += f"={word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def _without_secrets(words: Sequence[str]) -> list[str]:
