@@ -101,6 +101,7 @@ setup(
         f"{NAME}.recordings.bags": ["ImageAnnotations.msg"],
         f"{NAME}.ros": ["transport.xml"],
         f"{NAME}.evaluation": ["baselines.txt"],
+        f"{NAME}.image.patches": ["side_network.npz"],
         f"{NAME}.evaluation.report": ["templates/*"],
     },
     data_files=[

@@ -89,6 +89,9 @@ PROGRAMS = {
         "--seeds 1 --speeds 130 --variant apf -o {out}/a.md", ("a.md",), "| all | pairs |"
     ),
     "laboratory.target_contrast": Program("{toy}/sequences", printed="| one |"),
+    "laboratory.train_sides": Program(
+        "{toy}/sequences/toy {toy}/clip -o {out}/sides.npz", ("sides.npz",), "| left or right | "
+    ),
     "laboratory.traffic.clips": Program(
         "{toy}/clip.mp4 0 {toy}/clip/groundtruth.csv --seeds 1", printed="| clip | 0 |"
     ),

@@ -10,7 +10,7 @@ from fusion_samples import fusion, texture
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.trackers.fusion.anchoring import anchored
 from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
-from vehicle_pf_tracker.trackers.fusion.sides import Sides
+from vehicle_pf_tracker.trackers.fusion.sides import moved_box
 from vehicle_pf_tracker.trackers.fusion.step import Step
 
 SMOOTH = {"blur": 2.0, "gain": 3.0}
@@ -39,7 +39,7 @@ def followed():
 
 def moved(state):
     """The box of all of the car."""
-    return Sides(BEYOND).box(state.position, state.size)
+    return moved_box(state.position, state.size, BEYOND)
 
 
 def step_of(tracker):

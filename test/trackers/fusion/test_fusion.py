@@ -221,10 +221,12 @@ def test_follows_a_turn_by_the_outline_before_a_standing_camera():
 def test_only_the_reported_box_has_the_sides_of_the_vehicle():
     street, tracker = Street(speed=2.0), fusion()
     follow(tracker, street, range(40))
-    beyond = np.array([[0.1, 0.0], [0.0, 0.2]])
+    # Of the left side and the lower one; neither bias.
+    known = np.zeros((2, 2, 3))
+    known[0, 0, 0], known[1, 1, 0] = 0.1, 0.2
     other = copy.deepcopy(tracker)
     tracker.state = tracker.state._replace(sides=Sides())
-    other.state = other.state._replace(sides=Sides(beyond))
+    other.state = other.state._replace(sides=Sides(known))
     box, wider = tracker.step(street.frame(40)).box, other.step(street.frame(40)).box
     assert wider.x == pytest.approx(box.x - 0.1 * box.width)
     assert wider.y + wider.height == pytest.approx(box.y + 1.2 * box.height)
@@ -240,8 +242,11 @@ def test_the_sides_are_looked_at_before_a_standing_camera_in_full_view():
         followed.append(tracker.state.sides)
     # Three frames are compared before there is a background; a look counts a third of a second
     # later.
-    assert not followed[8].bias.any()
-    assert followed[20].bias.any()
+    assert not followed[8].means[..., 1].any()
+    assert followed[20].means[..., 1].any()
+    # The network sees them from the fourth frame on, an eighth of a second after the first.
+    assert not followed[3].means.any()
+    assert followed[4].means[..., 2].any()
     assert np.abs(followed[45].beyond).max() < 0.05
     assert any(sides.looks for sides in followed[:50])
     assert not followed[-1].looks

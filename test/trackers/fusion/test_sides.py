@@ -10,7 +10,7 @@ from fusion_samples import contrasted, grey_road
 from vehicle_pf_tracker.image.correlation.canonical_patch import cut_patch
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.foreground import Around
-from vehicle_pf_tracker.trackers.fusion.sides import Sides
+from vehicle_pf_tracker.trackers.fusion.sides import Sides, moved_box
 
 NOISE = np.random.default_rng(3).integers(0, 256, (20, 40)).astype(np.uint8)
 BODY = 255 - contrasted(NOISE, 1.5)
@@ -31,6 +31,11 @@ def looked(sides, left, seconds):
     return sides
 
 
+def edge_bias(sides):
+    """What is believed of the left edge, beyond the vehicle's side."""
+    return sides.means[0, 0, 1]
+
+
 def test_one_look_counts_by_its_variances():
     """A second of drift has .002, the first box and the bias .0025 each, the edge .0196.
 
@@ -38,16 +43,19 @@ def test_one_look_counts_by_its_variances():
     """
     sides = Sides().passed(0.6, SIZE).looked(around(8), POSITION, SIZE).passed(0.4, SIZE)
     assert sides.beyond[0, 0] == pytest.approx(0.1875 * 0.0045 / 0.0266)
-    assert sides.bias[0, 0] == pytest.approx(0.1875 * 0.0025 / 0.0266)
-    assert sides.variances[1][0, 0] == pytest.approx(-0.0045 * 0.0025 / 0.0266)
+    assert edge_bias(sides) == pytest.approx(0.1875 * 0.0025 / 0.0266)
+    covariance = sides.covariances[0, 0]
+    assert covariance[0, 1] == covariance[1, 0] == pytest.approx(-0.0045 * 0.0025 / 0.0266)
+    # Of what the network sees nothing was told.
+    assert covariance[2] == pytest.approx([0, 0, 0.0025])
 
 
 def test_what_was_beyond_from_the_first_is_a_bias():
     """A shadow, or a loose first box; a side that moves away later is one of the vehicle."""
     shadow = looked(Sides(), 8, 4.0)
-    assert shadow.bias[0, 0] > 0.05
+    assert edge_bias(shadow) > 0.05
     side = looked(looked(Sides(), 0, 2.0), 8, 4.0)
-    assert side.beyond[0, 0] > 2 * side.bias[0, 0]
+    assert side.beyond[0, 0] > 2 * edge_bias(side)
     # Most of the .2 that it has moved by.
     assert 0.1 < side.beyond[0, 0] < 0.2
     # The other sides are where they were, but for half a pixel.
@@ -58,7 +66,7 @@ def test_an_edge_that_is_not_seen_changes_nothing():
     mask = around().mask.copy()
     mask[:, :30] = 1  # a neighbour at the left side
     sides = Sides().looked(Around(mask, np.zeros(2), 1.0), POSITION, SIZE).passed(1.0, SIZE)
-    assert sides.beyond[0, 0] == sides.bias[0, 0] == 0
+    assert not sides.means[0, 0].any()
     assert sides.beyond[1, 0] < 0
     assert sides.looked(None, POSITION, SIZE).looks == ()
 
@@ -82,10 +90,88 @@ def test_a_doubt_discards_the_looks_just_before():
 
 def test_the_box_has_its_own_distance_at_each_side():
     beyond = np.array([[0.1, 0.0], [-0.05, 0.2]])
-    centre, size = Sides(beyond).box(POSITION, SIZE)
+    centre, size = moved_box(POSITION, SIZE, beyond)
     # From 30 - 4 to 70 - 2, and from 30 to 50 + 4.
     assert centre == pytest.approx([47, 42])
     assert size == pytest.approx([42, 24])
+
+
+def network(left, share=1.0):
+    """One that sees a vehicle with its left side so far beyond the middle of the box, px.
+
+    Its answers follow a shift of the box by a share; it keeps the boxes.
+    """
+    boxes = []
+
+    def look(centre, size):
+        boxes.append((centre, size))
+        off = share * (centre - POSITION) / size
+        larger = share * (size - SIZE) / 2 / size
+        first = np.array([left / size[0], 0.0])
+        return np.array([first + off - larger, -off - larger])
+
+    return look, boxes
+
+
+def test_what_the_network_sees_counts_by_its_noise():
+    """A half second of drift has .001, the box and the bias .0025 each, the network .01 here."""
+    look, boxes = network(8)
+    noise = np.array([[0.1, 0.2], [0.3, 0.4]])
+    sides = Sides().passed(0.5, SIZE).seen(look, noise, POSITION, SIZE)
+    assert sides.means[0, 0] == pytest.approx(0.2 * np.array([0.0035, 0, 0.0025]) / 0.016)
+    assert sides.means.reshape(4, 3)[1:] == pytest.approx(0, abs=1e-12)
+    assert sides.covariances[1, 1, 0, 0] == pytest.approx(0.0035 - 0.0035**2 / 0.166)
+    centre, size = boxes[-1]
+    assert np.array_equal(centre, POSITION)
+    assert np.array_equal(size, SIZE)
+
+
+def test_the_network_looks_halfway_to_the_reported_box():
+    sides = looked(looked(Sides(), 0, 2.0), 8, 4.0)
+    look, boxes = network(8)
+    after = sides.seen(look, np.full((2, 2), 1e-6), POSITION, SIZE)
+    low, high = sides.beyond[:, 0]
+    assert boxes[-1][1][0] == pytest.approx(40 * (1 + (low + high) / 2))
+    # Told without noise, both sum up to what was seen, wherever it was seen from.
+    assert after.means[0, 0, [0, 2]].sum() == pytest.approx(0.2, abs=1e-6)
+
+
+def test_it_is_measured_how_far_the_answers_follow_the_box():
+    """Before and behind the box by .1 of it, in the first four looks."""
+    look, boxes = network(8, share=0.25)
+    sides = Sides()
+    for _ in range(5):
+        sides = sides.seen(look, np.ones((2, 2)), np.array([50.0, 40.0]), SIZE)
+    assert sides.share == pytest.approx([0.25, 0.25])
+    assert len(boxes) == 4 * 3 + 1
+    first, second, third = (centre for centre, _ in boxes[:3])
+    assert first == pytest.approx([54, 42])
+    assert second == pytest.approx([46, 38])
+    assert third == pytest.approx([50, 40])
+
+
+def test_answers_that_follow_by_a_share_count_by_that_share():
+    """Of a half the noise is twice as large: .0025 each, and .04 instead of .01."""
+    look, _ = network(8, share=0.5)
+    sides = Sides().seen(look, np.full((2, 2), 0.1), POSITION, SIZE)
+    assert sides.means[0, 0] == pytest.approx(0.2 * np.array([0.0025, 0, 0.0025]) / 0.045)
+
+
+@pytest.mark.parametrize("share", [0.0, -0.5])
+def test_a_network_that_answers_the_same_wherever_it_looks_tells_nothing(share):
+    look, _ = network(8, share)
+    sides = Sides()
+    for _ in range(20):
+        sides = sides.passed(0.125, SIZE).seen(look, np.full((2, 2), 0.1), POSITION, SIZE)
+    assert sides.means == pytest.approx(0, abs=1e-12)
+
+
+def test_the_network_looks_eight_times_a_second():
+    look, _ = network(0)
+    sides = Sides().passed(0.1, SIZE)
+    assert not sides.is_unseen
+    assert sides.passed(0.03, SIZE).is_unseen
+    assert not sides.passed(0.03, SIZE).seen(look, np.ones((2, 2)), POSITION, SIZE).is_unseen
 
 
 def narrowed(widths):

@@ -13,8 +13,8 @@
 - cut by the image's border at first: `entering`, by `moments` in which the box was followed
 - hidden: `perspective` predicts, by sightings that `standing_occluder` restores;
   `followed_by_camera` where the camera moves
-- reported: `sides` of the box before a standing camera, by `moving_edges` between `moments` and by
-  the background, to which `anchoring` moves it
+- reported: `sides` of the box, by what the network of `image/patches` has learnt; before a standing
+  camera by `moving_edges` between `moments` and by the background, to which `anchoring` moves it
 - where a hidden vehicle cannot be: `exclusion`, `behind`
 - before a standing camera outlines (`outline_boxes`) show what turns (`turning`), comes out beside
   the path (`emergence`), or covers the vehicle (`hidden_way`)

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,15 +21,11 @@ from vehicle_pf_tracker.image.correlation.correlation_filter import (
     CorrelationFilter,
     Response,
 )
-from vehicle_pf_tracker.image.correlation.gradient_cells import (
-    GRADIENT_CELL_PX,
-    GRADIENT_CHANNELS,
-    CellFeatures,
-    Grey,
-)
+from vehicle_pf_tracker.image.correlation.gradient_cells import GRADIENT_CELL_PX
 from vehicle_pf_tracker.image.correlation.row_waves import Spectrum
 from vehicle_pf_tracker.image.correlation.spectra import shifted
 from vehicle_pf_tracker.image.kernels.interface import Kernels
+from vehicle_pf_tracker.image.patches.cells import cells_of
 from vehicle_pf_tracker.trackers.fusion.paint import Paint
 
 _CELLS = 32
@@ -57,15 +52,6 @@ _TINY_RESPONSE = 1e-3
 zeros."""
 _RIM = 1
 """Cells around the target that are measured with it: their gradients normalise its outermost."""
-_COLOURS = 3
-"""Channels of colour of a cell: its mean L, a and b (Lab)."""
-_HUE_GAIN = 4.0
-"""Weight of Lab's a and b. Paint spans some 20 of their 100 units: unweighted, a grey car answers
-to the filter of a beige one of the same shape (scenes `bus` and `braking`, seeds 100 to 104)."""
-_COLOUR_GAINS = np.array([1, _HUE_GAIN, _HUE_GAIN], np.float32) / 100
-"""Factors of L, a and b, which span 100 units."""
-_MIDDLE_COLOUR = np.array([0.5, 0, 0], np.float32)
-"""Subtracted from L, a and b then: middle grey is 0, as what a patch fades to at its rim."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -229,7 +215,7 @@ class Appearance:
         grey = np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), np.uint8)
         return [
             self._filter.respond_in_middle(features) / self.usual_response
-            for features in self._features(image, grey, len(sizes))
+            for features in cells_of(self.kernels, image, grey, len(sizes))
         ]
 
     def learn_first(self, frame: Frame, position: Array, size: Array) -> None:
@@ -272,32 +258,5 @@ class Appearance:
     def _spectrum(self, patch: Patch) -> Spectrum:
         wide = patch.side > self._side
         transform = self._filter.wide_spectrum if wide else self._filter.spectrum
-        (features,) = self._features(patch.image, patch.grey)
+        (features,) = cells_of(self.kernels, patch.image, patch.grey)
         return transform(features)
-
-    def _features(self, image: Frame, grey: Grey, images: int = 1) -> Sequence[CellFeatures]:
-        """Describe the cells of images of equal height that lie one below the other."""
-        height, width = grey.shape
-        cells = width // GRADIENT_CELL_PX, height // GRADIENT_CELL_PX
-        # Means of whole cells, so that colours lie on the same grid as gradients. Only images of
-        # floats from 0 to 1 become Lab without rounding.
-        small = cv2.resize(image, cells, interpolation=cv2.INTER_AREA)
-        lab = cv2.cvtColor(small * np.float32(1 / 255), cv2.COLOR_RGB2Lab)
-        # Lightness is 0 to 100, a and b about as much to either side: all within about one. Row by
-        # row: by pixels, most of the loops would be of three steps.
-        gains, middles = _colour_rows(cells[0])
-        colours = lab.reshape(-1, len(gains)) * gains
-        colours -= middles
-        channels = colours.reshape(images, -1, *lab.shape[1:]).transpose(0, 3, 1, 2)
-        described = []
-        for part, own in zip(grey.reshape(images, -1, width), channels, strict=True):
-            features = self.kernels.gradient_cells(part, _COLOURS)
-            features[GRADIENT_CHANNELS:] = own
-            described.append(features)
-        return described
-
-
-@functools.cache
-def _colour_rows(cells: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-    """Factors of a row of colours, and what is subtracted then, (3 * cells,)."""
-    return np.tile(_COLOUR_GAINS, cells), np.tile(_MIDDLE_COLOUR, cells)

@@ -26,7 +26,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.small_grey import small_colour
 from vehicle_pf_tracker.trackers.fusion.moments import Moment, Moments, is_due, moved
-from vehicle_pf_tracker.trackers.fusion.sides import Sides
+from vehicle_pf_tracker.trackers.fusion.sides import moved_box
 
 _NEAR_BORDER = 0.1
 """Distance from the image's border, fraction of the box's longer side, up to which it may have cut
@@ -134,14 +134,14 @@ class Entry(NamedTuple):
             length, road = self._end(end, axis, size, looks=1)
             reaches = length > 0 and road < 0.5
             beyond[end, axis] = max(to_border[end, axis], 0.0) if reaches else length
-        return Sides(beyond).box(position, size)
+        return moved_box(position, size, beyond)
 
     def grown(self, position: Array, size: Array) -> tuple[Array, Array] | None:
         """Centre and size, px, to move the box to; None while too little has come in."""
         beyond, is_whole = self._beyond(size)
         if beyond.max() < (_LEAST_CUT if is_whole else _COME_IN):
             return None
-        return Sides(beyond).box(position, size)
+        return moved_box(position, size, beyond)
 
     def remaining(self, size: Array) -> Entry | None:
         """Go on looking with a new box; None once the end of the vehicle is seen."""

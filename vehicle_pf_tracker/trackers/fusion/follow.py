@@ -11,8 +11,10 @@ from functools import partial
 
 import numpy as np
 
+from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
+from vehicle_pf_tracker.image.patches.side_network import side_cells, side_network
 from vehicle_pf_tracker.trackers.fusion.anchoring import anchored
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
@@ -151,7 +153,10 @@ def _follow_peak(state: State, seen: Observation, step: Step) -> State:
     """Take position, velocity and, of a vehicle that is wholly visible, size from the peak."""
     # Position first, since sizes are compared there; the sighting last, with both.
     state = _centred(state, seen, step)
-    if seen.tasks.follows_size and seen.response > SIZE_RESPONSE and _is_sure(state):
+    # Before a moving camera the filter answers to a turn by the part that it still knows: measured
+    # by it, the box shrinks onto that part.
+    level = SIZE_RESPONSE if step.memory.foreground.is_known else TURNING_RESPONSE
+    if seen.tasks.follows_size and seen.response > level and _is_sure(state):
         state = _sized(state, seen, step)
     response = _response_of_sighting(state, seen, step)
     sightings = state.sightings.added(
@@ -246,15 +251,30 @@ def learn(state: State, seen: Observation, step: Step) -> State:
     return state._replace(
         points=_renewed_points(state, seen, patch),
         surface=state.surface.kept(patch, state.position, state.size),
-        sides=_compared_sides(state, patch, step),
+        sides=_seen_sides(state, patch, step),
     )
 
 
-def _compared_sides(state: State, patch: Patch, step: Step) -> Sides:
-    """Compare a vehicle in full view with earlier frames of a camera that stands."""
-    if not (isinstance(state.verdict, Visible) and step.memory.foreground.stands):
-        return state.sides.parted()
-    return state.sides.compared(patch, state.position, state.size, frame_size(step.frame))
+def _seen_sides(state: State, patch: Patch, step: Step) -> Sides:
+    """Look where a vehicle in full view ends: by the network, and by edges of what moves."""
+    sides = state.sides
+    if not isinstance(state.verdict, Visible):
+        return sides.parted()
+    position = state.position
+    size = state.size
+    if sides.is_unseen:
+        look = partial(_seen_by_network, step)
+        sides = sides.seen(look, side_network().noise_by_side, position, size)
+    if not step.memory.foreground.stands:
+        return sides.parted()
+    return sides.compared(patch, position, size, frame_size(step.frame))
+
+
+def _seen_by_network(step: Step, centre: Array, size: Array) -> Array:
+    """Distances (2, 2) of a vehicle's sides beyond those of a box, as the network sees them."""
+    kernels = step.memory.appearance.kernels
+    cells = side_cells(step.frame, step.inside(centre), step.bounded(size), kernels)
+    return side_network().beyond(cells)
 
 
 def _learn_usual(state: State, seen: Observation, step: Step) -> State:

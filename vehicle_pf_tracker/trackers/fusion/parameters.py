@@ -33,7 +33,7 @@ SIZE_RESPONSE = 0.6
 TURNING_RESPONSE = 0.7
 """Response relative to the usual one below which a visible vehicle turns, if its surface moves with
 it as before: the filter then learns faster the lower it is. From .85 down, turns gain nothing
-(laboratory/notes/fusion_tried.md)."""
+(laboratory/notes/fusion_tried.md). Where no background is known, no size is measured below it."""
 PROOF_FRAMES = 8
 """Frames in a row that prove a motion or a recognition: a quarter of a second at 30 frames per
 second. At a hundredth of the size per frame, the least speed of a side that drives on, that is
