@@ -3,7 +3,7 @@
 
 """Train the network that tells `fusion` where a vehicle ends (`side_network.py`).
 
-    python -m laboratory.train_sides SEQUENCES... -o side_network.npz
+    python -m laboratory.train_sides SEQUENCES... -o side_network.npz [--parts FOLDER]
 
 Around each true box of a vehicle that is wholly in view, boxes are drawn at random, as far off as a
 followed one may be; their cells are the network's input, and how far the vehicle's sides are beyond
@@ -12,7 +12,8 @@ are taken to be of one camera. The package's drawn scenes are learnt from beside
 
 The cameras are dealt into four parts; of each part the errors of a network that was trained on the
 other three are measured, which is how far the one that is written, trained on all of them, is
-believed. The same sequences give the same file.
+believed. `--parts` keeps these four, and which cameras each has not seen: `python -m laboratory
+stress --side-network` judges `fusion` with them. The same sequences give the same files.
 """
 
 from __future__ import annotations
@@ -42,6 +43,7 @@ from vehicle_pf_tracker.image.patches.side_network import (
     mirrored,
     side_cells,
 )
+from vehicle_pf_tracker.results.output_files import make_folder
 from vehicle_pf_tracker.scenes.catalogue import SCENES, make_scene
 
 PROGRAM = "python -m laboratory.train_sides"
@@ -97,17 +99,23 @@ class Examples(NamedTuple):
         Distances of the true sides, left, top, right, bottom, fractions of the box's size.
     camera, vehicle : (N,) arrays
         Numbers of the camera and of the sequence.
+    names : tuple of str
+        Names of the cameras by their numbers.
     """
 
     cells: npt.NDArray[np.float16]
     beyond: npt.NDArray[np.float32]
     camera: npt.NDArray[np.intp]
     vehicle: npt.NDArray[np.intp]
+    names: tuple[str, ...]
 
     def taken(self, chosen: npt.NDArray[np.bool_]) -> Examples:
         """Take those that are chosen."""
-        return Examples(
-            self.cells[chosen], self.beyond[chosen], self.camera[chosen], self.vehicle[chosen]
+        return self._replace(
+            cells=self.cells[chosen],
+            beyond=self.beyond[chosen],
+            camera=self.camera[chosen],
+            vehicle=self.vehicle[chosen],
         )
 
 
@@ -116,17 +124,29 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog=PROGRAM, description="Train the network for the sides.")
     parser.add_argument("sequences", nargs="+", type=Path, help="sequences with truth, or folders")
     parser.add_argument("-o", "--output", type=Path, required=True, help="file of the network")
+    parser.add_argument(
+        "--parts", type=Path, metavar="FOLDER", help="where to keep the networks of the four parts"
+    )
     args = parser.parse_args(argv)
-    return exit_status(lambda: _run(args.sequences, args.output), PROGRAM)
+    return exit_status(lambda: _run(args.sequences, args.output, args.parts), PROGRAM)
 
 
-def _run(locations: Sequence[Path], output: Path) -> int:
+def _run(locations: Sequence[Path], output: Path, kept: Path | None) -> int:
     examples = collected(locations)
-    errors = left_out_errors(examples)
+    part = parts_of(examples.camera)
+    networks = [trained(examples.taken(part != number)) for number in range(PARTS)]
+    errors = left_out_errors(examples, part, networks)
     bias, noise = deviations(errors, examples.vehicle)
-    network = trained(examples)._replace(noise=noise)
-    output.parent.mkdir(parents=True, exist_ok=True)
-    network.write(output)
+    make_folder(output.parent)
+    trained(examples)._replace(noise=noise).write(output)
+    if kept is not None:
+        make_folder(kept)
+        for number, network in enumerate(networks):
+            network._replace(noise=noise).write(kept / f"{number}.npz")
+        pairs = sorted({*zip(part.tolist(), examples.camera.tolist(), strict=True)})
+        lines = [f"{number},{examples.names[camera]}\n" for number, camera in pairs]
+        table = "".join(["part,camera\n", *lines])
+        (kept / "cameras.csv").write_text(table, encoding="utf-8")
     spread = by_output(examples.beyond).std(axis=0)
     rows = [
         [name, *(f"{value:.3f}" for value in values)]
@@ -156,7 +176,7 @@ def collected(locations: Sequence[Path]) -> Examples:
             f"there are {len(near)} boxes of vehicles in full view; {BATCH} are needed"
         )
     cells, beyond, camera_of, vehicle_of = map(np.array, zip(*near, strict=True))
-    return Examples(cells, beyond, camera_of, vehicle_of)
+    return Examples(cells, beyond, camera_of, vehicle_of, tuple(cameras))
 
 
 def _vehicles(locations: Sequence[Path]) -> Iterator[tuple[str, Iterator[_Shot]]]:
@@ -210,29 +230,29 @@ def by_output(beyond: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     return np.concatenate([beyond[:, [0, 1, 3]], beyond[:, [2, 1, 3]]])
 
 
-def left_out_errors(examples: Examples) -> npt.NDArray[np.float32]:
-    """Errors (N, 4) of networks that the camera of each box had no part in."""
-    part = _parts(examples.camera)[examples.camera]
+def left_out_errors(
+    examples: Examples, part: npt.NDArray[np.intp], networks: Sequence[SideNetwork]
+) -> npt.NDArray[np.float32]:
+    """Errors (N, 4) of networks that the camera of each box had no part in.
+
+    `part` (N,) is the number of the one of `networks` that has not seen it.
+    """
     errors = np.zeros_like(examples.beyond)
-    for number in range(PARTS):
-        if not (part == number).any():
-            continue
-        network = trained(examples.taken(part != number))
-        for index in np.flatnonzero(part == number):
-            told = network.beyond(examples.cells[index].astype(np.float32)).ravel()
-            errors[index] = examples.beyond[index] - told
+    for index, number in enumerate(part):
+        told = networks[number].beyond(examples.cells[index].astype(np.float32)).ravel()
+        errors[index] = examples.beyond[index] - told
     return errors
 
 
-def _parts(camera: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
-    """Part of each camera: those with most boxes first, to the part that has fewest."""
+def parts_of(camera: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """Deal cameras into parts, (N,): those with most boxes first, to the part that has fewest."""
     counts = np.bincount(camera)
     parts = np.zeros(len(counts), np.intp)
     total = np.zeros(PARTS)
     for number in np.argsort(-counts, kind="stable"):
         parts[number] = total.argmin()
         total[parts[number]] += counts[number]
-    return parts
+    return parts[camera]
 
 
 def deviations(

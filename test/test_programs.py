@@ -90,7 +90,9 @@ PROGRAMS = {
     ),
     "laboratory.target_contrast": Program("{toy}/sequences", printed="| one |"),
     "laboratory.train_sides": Program(
-        "{toy}/sequences/toy {toy}/clip -o {out}/sides.npz", ("sides.npz",), "| left or right | "
+        "{toy}/sequences/toy {toy}/clip -o {out}/sides.npz --parts {out}/parts",
+        ("sides.npz", "parts/3.npz", "parts/cameras.csv"),
+        "| left or right | ",
     ),
     "laboratory.traffic.clips": Program(
         "{toy}/clip.mp4 0 {toy}/clip/groundtruth.csv --seeds 1", printed="| clip | 0 |"

@@ -18,6 +18,7 @@ from laboratory.stress import (
     run_battery,
 )
 from laboratory.stress.battery import QUICK_FRAMES, QUICK_PER_SEQUENCE
+from laboratory.stress.other_network import with_network
 from laboratory.stress.report import MARKDOWN, table_rows, write_report
 from vehicle_pf_tracker.cli.console import counting, print_rows, tell_notices
 from vehicle_pf_tracker.cli.option_values import positive
@@ -44,6 +45,11 @@ class Request(EvaluationRequest):
     max_frames: int | None = option(
         type=positive, metavar="N", help="at most N frames of each case"
     )
+    side_network: Path | None = option(
+        type=Path, metavar="FILE",
+        help="network that sees the sides in `fusion`, one of laboratory.train_sides --parts: for "
+        "sequences from which the package's own has learnt",
+    )  # fmt: skip
     cameras: Path | None = option(
         type=Path, metavar="FILE",
         help="table sequence,camera (default: cameras.csv in a folder REC; else each its own)",
@@ -74,7 +80,13 @@ def run(request: Request) -> int:
 def _systems(request: Request) -> list[StressSystem]:
     systems, notes = asked_systems(request)
     tell_notices(notes)
-    return [StressSystem.of(system) for system in systems]
+    file = request.side_network
+    return [
+        with_network(system, file)
+        if file is not None and system.kind == "fusion"
+        else StressSystem.of(system)
+        for system in systems
+    ]
 
 
 def _cases(request: Request) -> list[Case]:

@@ -12,6 +12,7 @@ from small_recordings import frame_folder, record
 from laboratory.__main__ import main
 from laboratory.stress import STRESS_KINDS
 from vehicle_pf_tracker.evaluation.systems import BASELINE_PREFIX
+from vehicle_pf_tracker.image.patches.side_network import side_network
 
 PAGE = Path(__file__).parents[2] / "laboratory" / "notes" / "stress.md"
 BASE = ["--variants", "ms", "--workers", "1"]
@@ -72,3 +73,47 @@ def test_the_page_lists_every_kind():
     text = PAGE.read_text()
     for kind in STRESS_KINDS.values():
         assert f"| `{kind.name}` | {kind.group} | {kind.summary} |" in text
+
+
+def estimates_of(out):
+    """Digest of the estimates of the one run."""
+    (line,) = (out / "scores.jsonl").read_text().splitlines()
+    return json.loads(line)["result"]["estimates"]
+
+
+def test_fusion_is_run_with_another_network(footage, tmp_path):
+    """One that sees each side a tenth of the box farther out, and is believed."""
+    words = [
+        "stress",
+        str(footage / "folder"),
+        "--kinds",
+        "plain",
+        "--variants",
+        "fusion",
+        "--seeds",
+        "1",
+    ]
+    own = side_network()
+    file = tmp_path / "other.npz"
+    own._replace(last=own.last + 0.1, noise=own.noise / 10).write(file)
+    same = tmp_path / "same.npz"
+    own.write(same)
+    digests = []
+    for name, more in (
+        ("own", []),
+        ("same", ["--side-network", str(same)]),
+        ("other", ["--side-network", str(file)]),
+    ):
+        out = tmp_path / name
+        assert main([*words, "--workers", "1", *more, "-o", str(out)]) == 0
+        digests.append(estimates_of(out))
+    assert digests[0] == digests[1]
+    assert digests[0] != digests[2]
+
+
+def test_what_is_no_network_is_refused(footage, tmp_path, capsys):
+    file = tmp_path / "a.npz"
+    file.write_text("weights")
+    words = ["stress", str(footage), "--variants", "fusion", "--side-network", str(file)]
+    assert main([*words, "-o", str(tmp_path / "out")]) == 1
+    assert f"{file} is no network for the sides" in capsys.readouterr().err

@@ -10,6 +10,7 @@ from vehicle_pf_tracker.evaluation.cache_key import source_digest
 COUNTS = {
     "core/box.py": True,
     "image/windows/window.py": True,
+    "image/patches/learnt.npz": True,
     "detection/blobs.py": True,
     "trackers/base.py": True,
     "trackers/papers/own.py": True,

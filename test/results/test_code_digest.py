@@ -65,6 +65,15 @@ def test_what_python_executes_counts(tmp_path, before, after):
     assert digest(tmp_path, CODE.replace(before, after, 1)) != digest(tmp_path, CODE)
 
 
+def test_of_what_was_learnt_every_byte_counts(tmp_path):
+    weights = tmp_path / "weights.npz"
+    digests = set()
+    for content in (b"\0\1", b"\0\2", b"# no Python ("):
+        weights.write_bytes(content)
+        digests.add(code_digest([("weights.npz", weights)]))
+    assert len(digests) == 3
+
+
 def test_the_name_of_a_file_counts_and_the_order_of_files_does_not(tmp_path):
     assert digest(tmp_path, CODE, "b.py") != digest(tmp_path, CODE)
     files = [(name, tmp_path / name) for name in ("a.py", "b.py")]

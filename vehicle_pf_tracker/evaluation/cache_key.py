@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from vehicle_pf_tracker.results.code_digest import code_digest
+from vehicle_pf_tracker.results.code_digest import CODE, code_digest
 from vehicle_pf_tracker.results.run_folder import versions
 from vehicle_pf_tracker.trackers.registry import TRAFFIC_VARIANT, Variant
 
@@ -73,7 +73,7 @@ def source_digest(modules: frozenset[str], package: Path = _PACKAGE) -> str:
     package : Path
         Folder of the package that has the shared folders.
     """
-    paths = {path for name in _WHOLE for path in (package / name).rglob("*.py")}
+    paths = {path for name in _WHOLE for kind in CODE for path in (package / name).rglob(kind)}
     paths |= {path for name in _ALONE for path in (package / name).glob("*.py")}
     for name in modules:
         found = importlib.util.find_spec(name)

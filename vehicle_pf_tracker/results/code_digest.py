@@ -1,7 +1,10 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Digest of Python code as Python reads it: comments, docstrings and layout do not count."""
+"""Digest of Python code as Python reads it: comments, docstrings and layout do not count.
+
+What code has learnt, in files beside it, counts byte by byte.
+"""
 
 from __future__ import annotations
 
@@ -11,19 +14,25 @@ import hashlib
 from collections.abc import Iterable
 from pathlib import Path
 
+CODE = ("*.py", "*.npz")
+"""Patterns of the files that decide what code computes: itself, and the weights of networks."""
+
 
 def code_digest(files: Iterable[tuple[str, Path]]) -> str:
-    """Digest Python files, each under a name that counts, too; their order does not.
+    """Digest files of `CODE`, each under a name that counts, too; their order does not.
 
     Raises
     ------
     SyntaxError
-        If a file is not Python.
+        If one of Python is not Python.
     """
     digest = hashlib.sha256()
     # Sorted, as a set of paths has another order in each process.
     for name, path in sorted(files):
-        digest.update(name.encode() + b"\0" + _tree_digest(path.read_bytes()))
+        content = path.read_bytes()
+        is_python = path.suffix == ".py"
+        own = _tree_digest(content) if is_python else hashlib.sha256(content).digest()
+        digest.update(name.encode() + b"\0" + own)
     return digest.hexdigest()
 
 

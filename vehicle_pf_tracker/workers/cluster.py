@@ -22,7 +22,7 @@ from typing import Any, TypeVar
 import cv2
 
 from vehicle_pf_tracker.core.errors import InputError
-from vehicle_pf_tracker.results.code_digest import code_digest
+from vehicle_pf_tracker.results.code_digest import CODE, code_digest
 from vehicle_pf_tracker.results.run_folder import versions
 
 TaskT = TypeVar("TaskT")
@@ -42,7 +42,9 @@ def fingerprint() -> dict[str, str]:
     """Return versions and a digest of our code, which decide the numbers on this machine."""
     # With its place: a module that is moved is other code.
     code = code_digest(
-        (path.relative_to(_PACKAGE).as_posix(), path) for path in _PACKAGE.rglob("*.py")
+        (path.relative_to(_PACKAGE).as_posix(), path)
+        for kind in CODE
+        for path in _PACKAGE.rglob(kind)
     )
     # Not the platform's whole name, which has the kernel's build in it.
     decisive = {name: str(value) for name, value in versions().items() if name != "platform"}

@@ -14,7 +14,7 @@ import numpy as np
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import frame_size
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
-from vehicle_pf_tracker.image.patches.side_network import side_cells, side_network
+from vehicle_pf_tracker.image.patches.side_network import side_cells
 from vehicle_pf_tracker.trackers.fusion.anchoring import anchored
 from vehicle_pf_tracker.trackers.fusion.appearance import View
 from vehicle_pf_tracker.trackers.fusion.hypotheses import (
@@ -264,7 +264,7 @@ def _seen_sides(state: State, patch: Patch, step: Step) -> Sides:
     size = state.size
     if sides.is_unseen:
         look = partial(_seen_by_network, step)
-        sides = sides.seen(look, side_network().noise_by_side, position, size)
+        sides = sides.seen(look, step.memory.network.noise_by_side, position, size)
     if not step.memory.foreground.stands:
         return sides.parted()
     return sides.compared(patch, position, size, frame_size(step.frame))
@@ -274,7 +274,7 @@ def _seen_by_network(step: Step, centre: Array, size: Array) -> Array:
     """Distances (2, 2) of a vehicle's sides beyond those of a box, as the network sees them."""
     kernels = step.memory.appearance.kernels
     cells = side_cells(step.frame, step.inside(centre), step.bounded(size), kernels)
-    return side_network().beyond(cells)
+    return step.memory.network.beyond(cells)
 
 
 def _learn_usual(state: State, seen: Observation, step: Step) -> State:

@@ -15,6 +15,7 @@ from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.core.frame import Frame, frame_size
 from vehicle_pf_tracker.image.motion.camera_flow import CameraFlow
 from vehicle_pf_tracker.image.motion.foreground import Foreground
+from vehicle_pf_tracker.image.patches.side_network import SideNetwork, side_network
 from vehicle_pf_tracker.image.windows.window import keep_inside
 from vehicle_pf_tracker.trackers.fusion.appearance import Appearance, View
 from vehicle_pf_tracker.trackers.fusion.departure import Departure
@@ -36,13 +37,14 @@ class Memory:
     `learn` trains `appearance`, whose level `observe` sets in the first frame after a start, as all
     responses are relative to it. `predict` adds each frame to `camera` and `foreground`, which
     compare it with earlier ones; `follow` lets the latter learn its background where an occlusion
-    begins.
+    begins. `network`, which has learnt from other vehicles, stays.
     """
 
     # The filter's spectra and the kept frames are large: they alone change in place.
     appearance: Appearance
     camera: CameraFlow = field(default_factory=CameraFlow)
     foreground: Foreground = field(default_factory=Foreground)
+    network: SideNetwork = field(default_factory=side_network)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
