@@ -27,6 +27,14 @@ def contrasted(noise, blur=3.0, gain=6.0):
     return np.clip(gain * (smooth - 128) + 128, 0, 255).astype(np.uint8)
 
 
+def driven(time):
+    """A car of 64 x 30 px at 2 px per frame, whose left side is at 60 px in the first one."""
+    picture = texture(1, blur=2.0, gain=3.0)
+    left = 60 + 2 * time
+    picture[100:130, left : left + 64] = texture(2, 64, 30, blur=2.0, gain=3.0)
+    return picture
+
+
 def grey_road(width, height):
     noise = np.random.default_rng(0).integers(60, 140, (height, width)).astype(np.uint8)
     return cv2.GaussianBlur(noise, (0, 0), 2.0)

@@ -5,7 +5,7 @@
 
 import numpy as np
 import pytest
-from fusion_samples import fusion, texture
+from fusion_samples import driven, fusion
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.trackers.fusion.anchoring import anchored
@@ -13,27 +13,16 @@ from vehicle_pf_tracker.trackers.fusion.schedule import Tasks
 from vehicle_pf_tracker.trackers.fusion.sides import moved_box
 from vehicle_pf_tracker.trackers.fusion.step import Step
 
-SMOOTH = {"blur": 2.0, "gain": 3.0}
-ROAD = texture(1, **SMOOTH)
-CAR = texture(2, 64, 30, **SMOOTH)
 BEYOND = np.array([[0.0, 0.0], [1 / 3, 0.0]])
 LAST = 10
-
-
-def frame(time):
-    """The car, at 2 px per frame."""
-    picture = ROAD.copy()
-    left = 60 + 2 * time
-    picture[100:130, left : left + 64] = CAR
-    return picture
 
 
 def followed():
     """A tracker of its left three quarters."""
     tracker = fusion()
-    tracker.start(frame(0), Box(60, 100, 48, 30))
+    tracker.start(driven(0), Box(60, 100, 48, 30))
     for time in range(1, LAST + 1):
-        tracker.step(frame(time), 1.0)
+        tracker.step(driven(time), 1.0)
     return tracker
 
 
@@ -44,7 +33,7 @@ def moved(state):
 
 def step_of(tracker):
     rng = np.random.default_rng(0)
-    return Step(frame(LAST), 1.0, tracker.parameters, rng, tracker.memory, Tasks(), 1 / 30)
+    return Step(driven(LAST), 1.0, tracker.parameters, rng, tracker.memory, Tasks(), 1 / 30)
 
 
 def test_all_that_was_measured_in_the_box_moves_with_it():
@@ -67,7 +56,7 @@ def test_the_filter_keeps_the_box_where_it_was_moved_to():
     tracker = followed()
     tracker.state = anchored(tracker.state, moved(tracker.state), step_of(tracker))
     for time in range(LAST + 1, LAST + 9):
-        estimate = tracker.step(frame(time), 1.0)
+        estimate = tracker.step(driven(time), 1.0)
     # Its middle is 32 px from its left side, at 60 + 2 * 18; without, it would be 24 px.
     assert estimate.box.x + estimate.box.width / 2 == pytest.approx(96 + 32, abs=2)
     assert estimate.box.width == pytest.approx(64, abs=4)

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from fusion_samples import fusion, texture
+from fusion_samples import driven, fusion
 
 from vehicle_pf_tracker.core.box import Box
 from vehicle_pf_tracker.trackers.fusion.follow import follow
@@ -19,20 +19,12 @@ from vehicle_pf_tracker.trackers.fusion.verdict import Visible
 LAST = 10
 
 
-def frame(time):
-    """The car, at 2 px per frame."""
-    picture = texture(1, blur=2.0, gain=3.0)
-    left = 60 + 2 * time
-    picture[100:130, left : left + 64] = texture(2, 64, 30, blur=2.0, gain=3.0)
-    return picture
-
-
 @pytest.fixture(scope="module")
 def tracker():
     tracker = fusion()
-    tracker.start(frame(0), Box(60, 100, 64, 30))
+    tracker.start(driven(0), Box(60, 100, 64, 30))
     for time in range(1, LAST + 1):
-        tracker.step(frame(time), 1.0)
+        tracker.step(driven(time), 1.0)
     return tracker
 
 
@@ -42,7 +34,7 @@ def followed(tracker, response, *, known):
     foreground = SimpleNamespace(is_known=known, around=lambda position, size: None)
     memory = replace(tracker.memory, foreground=foreground)
     rng = np.random.default_rng(0)
-    step = Step(frame(LAST), 1.0, tracker.parameters, rng, memory, Tasks(), 1 / 30)
+    step = Step(driven(LAST), 1.0, tracker.parameters, rng, memory, Tasks(), 1 / 30)
     view = memory.appearance.view(memory.appearance.patch(step.frame, state.position, state.size))
     seen = Observation(view, state.position, response, False, Tasks(follows_size=True))
     after = follow(state, Visible(1.0), seen, step)
