@@ -35,7 +35,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.papers.shared import log_likelihood
 
 

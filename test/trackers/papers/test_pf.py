@@ -13,7 +13,7 @@ from vehicle_pf_tracker.filtering.resampling import RESAMPLING_SCHEMES
 from vehicle_pf_tracker.image.windows.colour import JointColour
 from vehicle_pf_tracker.image.windows.similarity import Reference
 from vehicle_pf_tracker.parameters.table import from_mapping
-from vehicle_pf_tracker.trackers.papers import pf
+from vehicle_pf_tracker.trackers.papers import colour_tracker
 from vehicle_pf_tracker.trackers.papers.pf import PfParameters, PfTracker
 
 
@@ -49,11 +49,11 @@ def test_second_order_particles_go_on_with_their_ancestors_moves(monkeypatch):
     street, tracker = Street(speed=0.0), make(num_particles=3, **SECOND_ORDER)
     started = tracker.start(street.frame(0), street.box(0)).particles
     monkeypatch.setitem(RESAMPLING_SCHEMES, "systematic", lambda *_: np.array([0, 1, 2]))
-    monkeypatch.setattr(pf, "sample_normal", lambda rng, count, sigma: moves)
+    monkeypatch.setattr(colour_tracker, "sample_normal", lambda rng, count, sigma: moves)
     first = tracker.step(street.frame(1)).particles
     assert first == pytest.approx(started + moves)
     monkeypatch.setitem(RESAMPLING_SCHEMES, "systematic", lambda *_: np.array([1, 1, 2]))
-    monkeypatch.setattr(pf, "sample_normal", lambda rng, count, sigma: np.zeros((3, 2)))
+    monkeypatch.setattr(colour_tracker, "sample_normal", lambda rng, count, sigma: np.zeros((3, 2)))
     # Two periods: twice the ancestor's own last move of one.
     second = tracker.step(street.frame(2), 2.0).particles
     assert second == pytest.approx(first[[1, 1, 2]] + 2 * moves[[1, 1, 2]])
@@ -67,7 +67,9 @@ def test_another_number_of_particles_all_have_the_mean_speed(monkeypatch):
     street, tracker = Street(), make(num_particles=3, **SECOND_ORDER)
     *_, before, last = (estimate.particles for estimate in follow(tracker, street, range(3)))
     tracker.reconfigure(replace(tracker.parameters, num_particles=5))
-    monkeypatch.setattr(pf, "sample_normal", lambda rng, count, sigma: np.zeros((count, 2)))
+    monkeypatch.setattr(
+        colour_tracker, "sample_normal", lambda rng, count, sigma: np.zeros((count, 2))
+    )
     moves = tracker.step(street.frame(3)).particles - last[[0, 1, 2, 0, 1]]
     assert moves == pytest.approx(np.array([(last - before).mean(axis=0)] * 5))
     tracker.reconfigure(replace(tracker.parameters, sigma=3.0))

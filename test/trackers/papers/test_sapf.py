@@ -9,7 +9,7 @@ from street import WIDTH, Street, error, follow
 
 from vehicle_pf_tracker.parameters.table import from_mapping
 from vehicle_pf_tracker.trackers.estimate import Mode
-from vehicle_pf_tracker.trackers.papers import pf
+from vehicle_pf_tracker.trackers.papers import colour_tracker
 from vehicle_pf_tracker.trackers.papers.sapf import SapfParameters, SapfTracker
 
 
@@ -53,9 +53,11 @@ def test_finds_a_vehicle_that_jumped():
 
 
 def test_tied_the_variance_shrinks_by_the_share_that_survives(monkeypatch):
-    sigmas, draw = [], pf.sample_normal
+    sigmas, draw = [], colour_tracker.sample_normal
     monkeypatch.setattr(
-        pf, "sample_normal", lambda rng, n, sigma: sigmas.append(sigma) or draw(rng, n, sigma)
+        colour_tracker,
+        "sample_normal",
+        lambda rng, n, sigma: sigmas.append(sigma) or draw(rng, n, sigma),
     )
     values = {"annealing.survival": 0.25, "annealing.largest_rate": 1e6, "annealing.layers": 3}
     follow(make(sigma=8.0, **{"annealing.tied": True, **values}), Street(), range(2))
@@ -70,7 +72,9 @@ def test_the_image_is_left_where_the_last_layer_leaves_it(left, monkeypatch):
     # The first layer leaves by the near border and the second comes back, or the other way round.
     moves = iter((0.0, -0.5 * WIDTH) if left else (-0.5 * WIDTH, 0.5 * WIDTH))
     monkeypatch.setattr(
-        pf, "sample_normal", lambda rng, count, sigma: np.full((count, 2), (next(moves), 0.0))
+        colour_tracker,
+        "sample_normal",
+        lambda rng, count, sigma: np.full((count, 2), (next(moves), 0.0)),
     )
     estimate = tracker.step(Street(hidden=(0, 99)).frame(1))
     assert estimate.mode is (Mode.LOST if left else Mode.OCCLUDED)

@@ -8,8 +8,9 @@ their titles, and by number each interpretation of what they leave open or mispr
 of a variant is its step of one frame, with the paper's numbers of steps and equations.
 
 - P1: `apf`, with `clear_level`, our extension of its occlusion test; and the trackers that it
-  compares itself with: `pf`, the smallest, `sapf`, `hpfms`, `pfcl` and `ms`
+  compares itself with: `pf`, the smallest, `sapf`, `hpfms` and `pfcl`, by the steps of
+  `colour_tracker`, and `ms`
 - P2: `mfpf` and `sfpf`, with `mfpf_parameters` and `feature_weighting`
-- P3: `repeated_resampling`, which has `conventional` and `adaptive`
+- P3: `repeated_resampling`, which has `conventional` and `adaptive`, also by `colour_tracker`
 - `shared`: likelihood, mean velocity and parameters of several papers
 """

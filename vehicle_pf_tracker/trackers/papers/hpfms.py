@@ -19,7 +19,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import from_log
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.papers.shared import log_likelihood
 from vehicle_pf_tracker.trackers.parameters import particles_parameter
 
@@ -63,12 +63,12 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
     def _learn(self) -> None:
         # Mean shift needs a histogram that changes smoothly with the position, which a kernel that
         # falls to 0 at the window's border makes.
-        bits = self.parameters.histogram_bits
+        bits = self._settings.histogram_bits
         self.reference = self.target.kernel_reference(self.window, bits)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         """Take one frame: resample, spread by speed and confidence, climb by mean shift, weigh."""
-        settings = self.parameters
+        settings = self._settings
         parents = self._resample(self._cloud)
         particles, left_image = self._diffuse(frame, parents, self.spread() * elapsed)
         measured_by = self.window, self.reference, settings.histogram_bits
@@ -84,8 +84,8 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
 
     def spread(self) -> float:
         """Adaptive transition model: the Normal's sigma in px per nominal frame."""
-        settings = self.parameters
-        transition = self.parameters.transition
+        settings = self._settings
+        transition = settings.transition
         speed = float(np.hypot(*self._velocity.value))
         # After the start there is no clear level yet: the speed is unknown, and the spread wide.
         confidence = self._judge.confidence(self._evidence)
@@ -96,5 +96,5 @@ class HpfmsTracker(ColourTracker[HpfmsParameters]):
 
     def similarity(self, frame: Frame, positions: Array) -> Array:
         """Bhattacharyya coefficient of each window with the reference, shape (N,)."""
-        bits = self.parameters.histogram_bits
+        bits = self._settings.histogram_bits
         return self.kernels.kernel_similarity(frame, positions, self.window, self.reference, bits)

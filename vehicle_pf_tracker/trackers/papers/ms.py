@@ -19,7 +19,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.windows.similarity import Reference, hellinger_distance
 from vehicle_pf_tracker.parameters.table import parameter
 from vehicle_pf_tracker.trackers.base import BaseTracker, Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.pf import VELOCITY_WINDOW
+from vehicle_pf_tracker.trackers.papers.colour_tracker import VELOCITY_WINDOW
 from vehicle_pf_tracker.trackers.papers.shared import MeanVelocity, histogram_bits_parameter
 from vehicle_pf_tracker.trackers.parameters import CommonParameters
 
@@ -51,7 +51,7 @@ class MsTracker(BaseTracker[MsParameters]):
         self._velocity = MeanVelocity(VELOCITY_WINDOW)
 
     def _learn(self) -> None:
-        bits = self.parameters.histogram_bits
+        bits = self._settings.histogram_bits
         # The target model (eq. 2): its kernel counts the border least, where windows hold road.
         self.reference = self.target.kernel_reference(self.window, bits)
 
@@ -62,7 +62,7 @@ class MsTracker(BaseTracker[MsParameters]):
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         """Take one frame: step from the last position until a step is short (steps 2 to 4)."""
-        settings = self.parameters
+        settings = self._settings
         place = self._cloud.positions
         measured_by = self.window, self.reference, settings.histogram_bits
         # Steps 2 to 4; the bound ends the rare walks between two places of one weight.

@@ -22,7 +22,7 @@ from vehicle_pf_tracker.image.windows.similarity import bhattacharyya_coefficien
 from vehicle_pf_tracker.image.windows.window import bounds
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.papers.shared import LikelihoodParameters, log_likelihood
 
 
@@ -70,7 +70,7 @@ class PfclTracker(ColourTracker[PfclParameters]):
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         """Take one frame: resample, propagate, weigh by colour and by lines."""
-        settings = self.parameters
+        settings = self._settings
         parents = self._resample(self._cloud)
         particles, left_image = self._diffuse(frame, parents, settings.sigma * elapsed)
         # The two features are taken as independent: their likelihoods are multiplied.
@@ -89,7 +89,7 @@ class PfclTracker(ColourTracker[PfclParameters]):
         return bhattacharyya_coefficient(histograms, self.line_reference)
 
     def _line_histograms(self, frame: Frame, positions: Array) -> Array:
-        settings = self.parameters.lines
+        settings = self._settings.lines
         windows = bounds(frame, positions, self.window)
         # Lines are searched once in the frame, and then counted by window: windows overlap.
         segments = find_lines(frame, windows, settings.edge_threshold, settings.shortest)

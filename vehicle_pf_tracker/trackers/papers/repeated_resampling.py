@@ -34,7 +34,7 @@ from vehicle_pf_tracker.image.windows.similarity import hellinger_distance
 from vehicle_pf_tracker.image.windows.window import keep_inside
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.papers.shared import (
     LikelihoodParameters,
     as_printed_switch,

@@ -19,7 +19,7 @@ from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.filtering.weights import Weights, from_log
 from vehicle_pf_tracker.parameters.table import group, parameter
 from vehicle_pf_tracker.trackers.base import Cloud, Outcome
-from vehicle_pf_tracker.trackers.papers.pf import ColourParameters, ColourTracker
+from vehicle_pf_tracker.trackers.papers.colour_tracker import ColourParameters, ColourTracker
 from vehicle_pf_tracker.trackers.papers.shared import log_likelihood
 from vehicle_pf_tracker.trackers.parameters import particles_parameter
 
@@ -129,7 +129,7 @@ class SapfTracker(ColourTracker[SapfParameters]):
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
         """Take one frame in layers: each resamples, spreads less than the last one, and weighs."""
-        settings = self.parameters
+        settings = self._settings
         annealing = settings.annealing
         cloud = self._cloud
         sigma = settings.sigma * elapsed
