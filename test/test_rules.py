@@ -221,6 +221,38 @@ def test_what_breaks_a_rule_is_found():
     assert skips_outside_tables("def f(\n    a,\n):  # fmt: skip\n    pass\n") == [3]
 
 
+def unnamed_modules(package: Path) -> list[str]:
+    """Name the modules and packages in `package` whose names its docstring does not have."""
+    words = ast.get_docstring(ast.parse((package / "__init__.py").read_text(encoding="utf-8")))
+    known = set(re.findall(r"\w+", words or ""))
+    # Verbs of the command line have their names from what a user types.
+    modules = [path.stem for path in package.glob("*.py") if not defines_request(path)]
+    packages = [path.parent.name for path in package.glob("*/__init__.py")]
+    return sorted({*modules, *packages} - known - {"__init__", "__main__"})
+
+
+def defines_request(path: Path) -> bool:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    classes = {node.name for node in tree.body if isinstance(node, ast.ClassDef)}
+    others = {name for node in tree.body if isinstance(node, ast.Assign) for name in names_in(node)}
+    return "Request" in classes | others
+
+
+def test_each_folder_says_what_lies_where_in_it():
+    packages = [path.parent for path in SOURCE.rglob("__init__.py") if path.parent != SOURCE]
+    assert len(packages) > 30
+    unnamed = {str(each.relative_to(SOURCE)): unnamed_modules(each) for each in packages}
+    assert not {package: names for package, names in unnamed.items() if names}
+
+
+def test_a_module_that_its_folder_does_not_name_is_found(tmp_path):
+    (tmp_path / "__init__.py").write_text('"""A folder: `named` does it."""\n')
+    (tmp_path / "named.py").write_text("")
+    (tmp_path / "forgotten.py").write_text("")
+    (tmp_path / "verb.py").write_text("class Request: ...\n")
+    assert unnamed_modules(tmp_path) == ["forgotten"]
+
+
 def test_no_two_modules_of_tests_have_one_name():
     """They stand in no packages: of two, pytest refuses one, and of two samples one is imported."""
     root = Path(__file__).parents[1]

@@ -30,13 +30,13 @@ What lies where, from footage to report:
 - `kinds` are the kinds of cases, and `battery` chooses among them. `occlusion_cases` have an
   `occluder` that `placing` puts before the vehicle, over the motion of the `background`; `painting`
   makes its texture, and `coverage` says what it hides.
-- `systems` are under test, `running` runs them, and `scoring` judges each run, with the
-  `calibration` of its confidence.
+- `systems` are under test, `fusion` also with an `other_network`; `running` runs them; `scoring`
+  judges each run, with the `calibration` of its confidence.
 - `summary` means scores over cameras, `report` writes the files, and `command` is
   ``python -m laboratory stress``.
 
 Cases are frozen and picklable: to save the minute that listing a full battery takes, pickle them.
-`docs/evaluation.md` lists the kinds of cases and the measures.
+`laboratory/notes/stress.md` lists the kinds of cases and the measures.
 """
 
 from laboratory.stress.battery import full_battery, list_cases, quick_battery

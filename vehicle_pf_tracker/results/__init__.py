@@ -8,6 +8,7 @@
 - all vehicles: `traffic_results` writes tables row by row, with `backdating`, and `traffic_tables`
   reads them; `traffic_summary` counts them by a `vehicle_log` each
 - many sources: `source_table`
+- `code_digest`: by which kept results are found again as long as the code is the same
 
 It imports the rooms that track and count, and draws nothing itself.
 """

@@ -3,5 +3,7 @@
 
 """Mapping of pixels to the plane of the road: homography, lens, pose, motion.
 
-Of the other rooms it imports `core` alone.
+`plane` maps, by a `homography` and a `lens`, or by `poses` of the camera; `suspects` are pairs of
+points that do not agree with the others; `motion` is the speed. Of the other rooms it imports
+`core` alone.
 """

@@ -7,6 +7,7 @@
   gives, its mode from `evidence`; `parameters` are those that variants share
 - `session` takes stamped images: `image_stream` admits them, with `continuity`; `attempts` bears a
   tracker's errors; `rehearsal` compiles before the first
-- beside the tracker: `localisation` has `uncertainty` and a `road_follower`
+- beside the tracker: `localisation` has `uncertainty`, calibrated by the `uncertainty_table`, and a
+  `road_follower`
 - the variants: `papers/`, `fusion/`; and `traffic/`, the tracker of many vehicles
 """

@@ -4,5 +4,5 @@
 """The grid of an evaluation: recordings by systems by seeds, each cell one stored run.
 
 `sources` finds the recordings, and `cells` lists the cells. `running` runs those that are missing,
-and stores each under its cache key.
+and stores each under its cache key; `merging` joins parts that ran on several machines.
 """

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""SourcePace of a source: when each of its images is due, and the stamp that it gets."""
+"""Pace of a source: when each of its images is due, and the stamp that it gets."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 
 """`fusion`, the flagship: a correlation particle filter with a posterior over visibility.
 
-`tracker` has its step, in the order of the chart in docs/fusion.md.
+`tracker` has its step, in the order of the chart in docs/fusion.md, by its `parameters`.
 
 - step: `observe` predicts and observes, `flow_evidence` weighs, `visibility` judges, `follow`
   follows and learns; `schedule` says which costly tasks a frame has

@@ -3,7 +3,8 @@
 
 """Every vehicle in view: found, followed through occlusions, with identities that last.
 
-`tracker` has the step and `observe` its part about detections, both as docs/traffic.md has them.
+`tracker` has the step and `observe` its part about detections, both as docs/traffic.md has them;
+`parameters` are the user's.
 
 - state: `state` has the `tracks`, frozen `rows` of arrays: Gaussians (`vehicle_state`), whose edges
   `edge_observation` has, and `paths`; and the `horizon`
