@@ -10,13 +10,14 @@
 - belief: `state` has the `hypotheses`, and the `verdict` on the frame; `step` the frame, and the
   memory that all share
 - measured: `appearance` (filter) and `paint`; `surface_flow`, `surface_points`; `size_search`
-- cut by the image's border at first: `entering`, by `moments` in which the box was followed
+- a first box that the image's border cuts: `entering`, by images of three `moments`
 - hidden: `perspective` predicts, by sightings that `standing_occluder` restores;
   `followed_by_camera` where the camera moves
-- reported: `sides` of the box, by what the network of `image/patches` has learnt; before a standing
-  camera by `moving_edges` between `moments` and by the background, to which `anchoring` moves it
-- where a hidden vehicle cannot be: `exclusion`, `behind`
-- before a standing camera outlines (`outline_boxes`) show what turns (`turning`), comes out beside
-  the path (`emergence`), or covers the vehicle (`hidden_way`)
+- reported: `sides` of the box, measured by the network of `image/patches` and, before a standing
+  camera, by `moving_edges` between `moments` and by edges against the background; `anchoring` moves
+  the followed box and retrains the filter
+- where a hidden vehicle cannot return: `exclusion`, `behind`
+- before a standing camera outlines (`outline_boxes`) show a turn (`turning`), a vehicle that
+  appears beside its path (`emergence`), or that something covers its path (`hidden_way`)
 - gone: `departure`
 """

@@ -1,10 +1,10 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Anchoring: the box that is followed is moved to where the vehicle's sides are.
+"""Anchoring: the followed box is moved to the vehicle's sides, and the filter retrained on it.
 
-A filter that was trained on one end of the vehicle would draw a moved box back to that end. So it
-is trained anew, on the box that was moved, and all that was measured in the old box moves along.
+A filter that was trained on one end of the vehicle would draw a moved box back to that end. All
+that was measured in the old box moves along.
 """
 
 from __future__ import annotations

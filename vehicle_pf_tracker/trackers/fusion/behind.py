@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Places behind a hidden vehicle, where it cannot be back, as it does not reverse."""
+"""Positions behind a hidden vehicle, where it cannot return, because it does not reverse."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ size: an occluder that stands hides a vehicle only until it has moved by about i
 def is_behind(
     positions: Array, motion: PerspectiveMotion, last: Sighting, age: float
 ) -> npt.NDArray[np.bool_]:
-    """Test which positions are against the heading from where a vehicle was last.
+    """Test which positions are behind the one at which a vehicle was last seen, by its heading.
 
     Parameters
     ----------

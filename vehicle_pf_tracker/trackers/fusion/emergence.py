@@ -1,11 +1,11 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""A vehicle that comes out beside its path, before a standing camera.
+"""A hidden vehicle that appears beside its predicted path, before a standing camera.
 
-One that turns while it is hidden comes out where no hypothesis is, with a side that the filter does
-not know. If nothing else has moved around for two seconds before, and one single thing appears then
-away from the border, with the vehicle's size and speed and within its reach, it is the vehicle.
+One that turns while it is hidden appears where no hypothesis is, with a side that the filter does
+not know. A single outline is taken for it if nothing else has moved nearby for two seconds, and if
+it appears away from the border, within the vehicle's reach, with its size and speed.
 """
 
 from __future__ import annotations

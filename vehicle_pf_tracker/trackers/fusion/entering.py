@@ -3,15 +3,15 @@
 
 """A first box that the image's border cuts: how much of the vehicle comes in behind it.
 
-Detectors find a vehicle while it drives into the image. The filter answers to the part that was
-given for as long as that is in view, and the box stays on it. What comes in behind it moves with
-it, and not with the road: an image between an earlier and a later one is compared with both, once
-moved with the box and once with the background. The earlier one alone would take the road that the
-vehicle has just left for a part of it, as a smooth road fits anything. In colour: a red car may be
-as bright as the road.
+Detectors find a vehicle while it drives into the image, and the first box holds a part of it. The
+filter responds to that part for as long as it is in view, so that the box stays on it. The rest of
+the vehicle moves with the box, and not with the road. To find it, an image is compared with an
+earlier and a later one, aligned once with the box and once with the background. The earlier one
+alone would not do: a smooth road matches itself, and road that the vehicle has just left would
+count as a part of it. Colours are compared, since a red car may be as bright as the road.
 
-The box is moved to what has come in, and the filter trained anew, each time that this is half as
-much again, and once road is seen behind the vehicle.
+The box is extended, and the filter retrained, each time that half as much again has come in, and
+once road is seen behind the vehicle.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _LARGEST = 30.0
 """Largest evidence of a cell, levels of a colour, a choice: one reflection must not outweigh a
 side."""
 _CLEAR = 1.0
-"""Least evidence that tells anything, levels of a colour: the noise of an image."""
+"""Least evidence above the noise of an image, levels of a colour."""
 _LEVEL = 0.5
 """Evidence of the vehicle's last cell, fraction of the mean up to it: half. A shadow has less."""
 _SHADOW = 0.15
@@ -56,7 +56,7 @@ _ROAD = 0.4
 bonnet is shorter."""
 _STANDS = 3.0
 """Evidence against the vehicle, levels of a colour, from which a cell counts twice, and the most
-that one comparison gives, a choice: a plain flank tells nothing, road with a kerb stands."""
+that one comparison gives, a choice: a plain flank gives none, road with a kerb stands."""
 _LOOKS = 2
 """Times that a cell has to be compared for the box to move, a choice: once for the reported one."""
 _COME_IN = 0.5

@@ -1,9 +1,9 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Where, and as what, a hidden vehicle cannot be back.
+"""Positions, and paints, that rule out the return of a hidden vehicle.
 
-Each hypothesis there has no evidence for it, and no return is believed.
+Hypotheses there gain no evidence of being visible, and no return is accepted.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Exclusion = Callable[[Array], npt.NDArray[np.bool_]]
 
 
 def exclusion_of(state: State, step: Step) -> Exclusion | None:
-    """Give the places where a hidden vehicle cannot be; None where none are known."""
+    """Return the positions where a hidden vehicle cannot be; None where none are known."""
     if not isinstance(state.verdict, Hidden):
         return None
     way = _way_of(state)
@@ -43,8 +43,9 @@ def exclusion_of(state: State, step: Step) -> Exclusion | None:
     if fitted is None:
         return None
     motion, last = fitted
-    # What is carried along is off by the camera's error: a way that is shorter than what is behind
-    # has to be far tells no heading. Of .34 sizes, one of 13 px came back .58 behind (S0601).
+    # Sightings that were moved with the camera have its error. A predicted displacement below the
+    # limit for what is behind gives no heading: at .34 sizes, one of 13 px returned .58 behind
+    # (S0601).
     moved = float(np.hypot(*(motion.position_at(last.age) - last.position)))
     if moved < BEHIND * float(np.sqrt(last.size.prod())):
         return None
@@ -52,7 +53,7 @@ def exclusion_of(state: State, step: Step) -> Exclusion | None:
 
 
 def is_stranger(state: State, position: Array, step: Step) -> bool:
-    """Test whether what would return is off its way, or of another paint.
+    """Test whether a return at this position would be another vehicle's: by position, or by paint.
 
     Paint is learnt before a standing camera only.
     """
@@ -74,7 +75,7 @@ def is_covered(state: State) -> bool:
 
 
 def _way_of(state: State) -> HiddenWay | None:
-    """Way on which a hidden vehicle is expected, before a standing camera."""
+    """Predicted path of a hidden vehicle, before a standing camera."""
     match state.verdict:
         case Hidden(outlines=outlines):
             return outlines.way

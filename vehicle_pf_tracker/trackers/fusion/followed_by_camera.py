@@ -4,9 +4,9 @@
 """A hidden vehicle that a moving camera follows: it keeps its place in the image.
 
 Who films a vehicle pans along with it, behind occluders too; and the background's motion is seldom
-that of the road below the vehicle. So there are two guesses: that it drives on along the road at
-its velocity, and that it stays where it was in the image. Each counts by how well it would have
-served in the seconds before.
+that of the road below the vehicle. So there are two predictions: that it drives on along the road
+at its velocity, and that it keeps its position in the image. Each is weighted by how well it would
+have predicted the seconds before.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ _LEAST_SQUARE = 1e-9
 
 
 class Followed(NamedTuple):
-    """How far a moving camera follows the vehicle.
+    """Weight of the prediction that a moving camera follows the vehicle.
 
     Attributes
     ----------
     share : float
-        Weight of the guess that it keeps its place in the image, from 0 to 1.
+        Weight of the prediction that it keeps its position in the image, from 0 to 1.
     place : (2,) array
-        Its place in the image at the last sighting, px.
+        Its position in the image at the last sighting, px.
     """
 
     share: float
@@ -37,7 +37,7 @@ class Followed(NamedTuple):
 
     @classmethod
     def measured(cls, ages: Array, positions: Array, places: Array, lag: float) -> Followed:
-        """Weigh both guesses by the inverse of their mean square errors so far.
+        """Weigh both predictions by the inverse of their mean square errors so far.
 
         Parameters
         ----------
@@ -48,9 +48,9 @@ class Followed(NamedTuple):
         places : (N, 2) array
             Where they were in the image, px.
         lag : float
-            Frames ahead that both guesses are tried for.
+            Frames ahead that both are tried for.
         """
-        # One lag tells the velocity, and the next one how far off it leads.
+        # The first lag gives the velocity, the second one the error of predicting by it.
         tried = ages[ages + 2 * lag <= ages[0]]
         if not len(tried):
             return cls(0.0, places[-1])

@@ -1,11 +1,11 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The way of a hidden vehicle before a standing camera: where it cannot be, and whether it shows.
+"""The predicted path of a hidden vehicle before a standing camera.
 
-On its way it is neither behind where it was last, nor far ahead of the prediction, where the
-vehicle ahead in its lane is. Where nothing moves at the predicted place something that stands
-covers it.
+The vehicle is neither behind the position where it was last seen, nor far ahead of the prediction,
+where the vehicle ahead in its lane drives. Where nothing moves at the predicted position, something
+that stands covers it.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ there is the one ahead of it in its lane. Chosen after seven of 14 wrong returns
 right ones, had been seen beyond it; behind the prediction there is no such bound, as vehicles brake
 (laboratory/notes/fusion_tried.md)."""
 _EVERY = 2
-"""Frames from one look at the outlines to the next: half of the cost. A choice."""
+"""Frames from one examination of the outlines to the next: half of the cost. A choice."""
 
 Mask = npt.NDArray[np.bool_]
 
 
 class HiddenWay(NamedTuple):
-    """The way on which a hidden vehicle is expected.
+    """Predicted path of a hidden vehicle, and whether something covers it there.
 
     Attributes
     ----------
@@ -43,10 +43,10 @@ class HiddenWay(NamedTuple):
     age : float
         Periods since that sighting.
     rested : int
-        Frames since the last look at the outlines.
+        Frames since the outlines were last examined.
     is_covered : bool
-        True where nothing moved in the middle of the predicted box in the last look: what covers
-        the vehicle is a part of the background.
+        True where nothing moved in the middle of the predicted box then: what covers the vehicle is
+        a part of the background.
     """
 
     last: Sighting
@@ -70,7 +70,7 @@ class HiddenWay(NamedTuple):
         return self.rested >= _EVERY
 
     def looked(self, boxes: Array) -> HiddenWay:
-        """Look whether one of these bounding boxes (N, 2, 2), px, is where the vehicle would be."""
+        """Test whether one of these bounding boxes (N, 2, 2), px, is at the predicted position."""
         position, size = self.place
         # The middle half of the predicted box: only the vehicle's own rest may be seen there.
         is_there = (boxes[:, 0] < position + size / 4) & (boxes[:, 1] > position - size / 4)

@@ -1,10 +1,11 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Images of three moments, each some way of the box from the one before.
+"""Images of three moments, between which the box moves by a part of its size.
 
-What moves with the box is told from what stands by comparing the middle one with both others, once
-moved with the box and once with the background (`entering.py`, `moving_edges.py`).
+The middle image is compared with both others, aligned once with the box and once with the
+background. That separates what moves with the box from what stands (`entering.py`,
+`moving_edges.py`).
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
 from vehicle_pf_tracker.image.motion.small_grey import SmallColour
 
 _WAY = 0.12
-"""Least way of the box from one moment to the next, fraction of its size: what moves and what
-stands are then two cells apart. A choice."""
+"""Least displacement of the box from one moment to the next, fraction of its size: what moves and
+what stands are then two cells apart. A choice."""
 
 Cells = npt.NDArray[np.uint8]
 

@@ -3,10 +3,10 @@
 
 """Edges of what moves with the box and not with the road, by three images.
 
-They need no background, and so tell from the first frames on where the vehicle ends. What is part
-of it differs less from the other two images once these are moved with the box than where they
-stand. Where the vehicle will be in the later image there was road in the earlier one, and behind it
-there is in the later one.
+They need no model of the background, and so are found from the first frames on. A pixel of the
+vehicle differs less from the two other images when these are aligned with the box than when they
+are aligned with the background. The side in front is judged by the earlier image, in which the road
+ahead was still free, and the one behind by the later image, in which the road there is free again.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ _ALL = _CELLS + 2 * _MARGIN
 _LOW = np.full(2, float(_MARGIN))
 _HIGH = _LOW + _CELLS
 _LEAST_EVIDENCE = 6
-"""Difference where it stands, beyond that where it moves with the box, grey levels, from which a
-cell is part of the vehicle: the noise of an image. With 4, 8 and 10 the mean gain of IoU is .0082,
-.0073 and .0063, not .0081 (laboratory/notes/fusion_tried.md)."""
+"""Excess of the difference aligned with the background over that aligned with the box, grey levels,
+above which a cell is part of the vehicle: the noise of an image. With 4, 8 and 10 the mean gain of
+IoU is .0082, .0073 and .0063, not .0081 (laboratory/notes/fusion_tried.md)."""
 
 
 def moving_edges(moments: Moments, extent: tuple[int, int]) -> Array:

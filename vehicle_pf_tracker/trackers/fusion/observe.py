@@ -48,7 +48,7 @@ _PEAK_REACH = 6
 """Places of the response around the mean within which its peak is the estimate: a third of the
 target's side."""
 _MEASURED_SPREAD = 0.3
-"""Spread of the hypotheses after a first motion was measured, of the one before: about a px.
+"""Factor that narrows the spread of the hypotheses once a first motion was measured, to about a px.
 Without that motion drift-chicane is lost in 6 of 6 runs, and no other of 27 sequences changes."""
 _WIDE_FROM = 0.5
 """Spread of the hypotheses in sizes above which a wide patch is searched. The usual patch reaches
@@ -60,11 +60,11 @@ CLIMB_FREELY = (5, 3.0)
 """Places of the response to each side within which a hypothesis is moved to a better one, a choice
 (a quarter of the target's side), and standard deviation that a move is paid for with."""
 CLIMB_ON_PATH = (3, 1.0)
-"""Reach and deviation of a move while hidden, where the path is known better than the place: all
-would else gather at clutter. The reach is a choice."""
+"""Reach and deviation of a move while hidden. The predicted path is trusted more than responses off
+it: hypotheses would gather at clutter. The reach is a choice."""
 STAY = (0, 1.0)
-"""Reach and deviation of a move after a measured first motion, which is kept to exactly: a standing
-part of the first box answers better than the vehicle, and the filter cannot tell the two apart."""
+"""Reach and deviation of a move after a measured first motion, which is kept exactly: a standing
+part of the first box answers better than the vehicle, and the filter cannot distinguish the two."""
 
 
 def predict(state: State, step: Step) -> tuple[State, Prediction]:
@@ -195,7 +195,7 @@ def _weighed(state: State, climb: tuple[int, float], step: Step) -> tuple[State,
     is visible.
     """
     scales = (1.0,) if state.is_visible else HIDDEN_SCALES
-    # The way costs time: it is asked for seldom, and is the same for all sizes.
+    # It costs time, so that it is computed where it is asked for only, and once for all sizes.
     exclusion = functools.cache(functools.partial(exclusion_of, state, step))
     results = [(*_searched(state, climb, step, scale, exclusion), scale) for scale in scales]
     # The size of the highest marginal likelihood, summed over positions and visibility: the highest
@@ -204,8 +204,8 @@ def _weighed(state: State, climb: tuple[int, float], step: Step) -> tuple[State,
     if len(results) > 1:
         best = max(results, key=lambda result: state.particles.evidence(result[2]))
     view, positions, ratios, scale = best
-    # Where something moves at the predicted place it may be the vehicle, in doubt in full view, and
-    # they move to it; what answers on an occluder stands, and would hold them back.
+    # What moves at the predicted position may be the vehicle, in doubt though in full view: the
+    # hypotheses move to it. What answers on an occluder stands, and would hold them back.
     covered = is_covered(state)
     particles = state.particles.climbed(positions, ratios, keeps_mean=covered)
     # While hidden it stays the predicted one: taken over from clutter, it would drift.
@@ -222,7 +222,7 @@ def _searched(
 ) -> tuple[View, Array, Array]:
     """Judge the hypotheses by the response to a vehicle `scale` times as large as believed.
 
-    `exclusion` gives the places where a hidden one cannot be.
+    `exclusion` returns the positions where a hidden one cannot be.
     """
     particles = state.particles
     appearance = step.memory.appearance

@@ -29,7 +29,7 @@ from vehicle_pf_tracker.trackers.fusion.verdict import (
 
 
 class Wholeness(NamedTuple):
-    """Belief that all of a vehicle is visible, and the size of one of which only a part is.
+    """Belief that all of a vehicle is visible, and the size of a partly hidden one.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class State(NamedTuple):
     drift : CameraDrift
         How far the camera has moved on of late.
     sides : Sides
-        Sides of the vehicle relative to the box, which only the reported box has.
+        Sides of the vehicle relative to the followed box; only the reported box uses them.
     """
 
     particles: Hypotheses

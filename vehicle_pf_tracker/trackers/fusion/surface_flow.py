@@ -97,10 +97,10 @@ class SurfaceFlow(NamedTuple):
     usual, latest : float
         Usual share of the box that moves with the vehicle, and the share when last judged.
     share : float
-        Ratio of the two, at most 1; 1 where flow tells nothing.
+        Ratio of the two, at most 1; 1 where too little usually moves with the vehicle.
     is_reliable : bool
-        True where enough usually moves with the vehicle, when last judged, and where flow did not
-        have to tell more than it can.
+        True where `share` is evidence: enough usually moves with the vehicle, and flow was
+        informative where the filter hardly responded (see `judged`).
     """
 
     patches: tuple[_Kept, ...] = ()
@@ -138,8 +138,8 @@ class SurfaceFlow(NamedTuple):
         position, size : (2,) arrays
             Estimated centre, and width and height, px.
         is_low : bool
-            True where the filter hardly responds. Flow that then speaks for the vehicle has to tell
-            it from the background, and to explain what is seen.
+            True where the filter hardly responds. Then flow is evidence for the vehicle only if
+            both have moved apart from the background, and it explains what is seen.
         """
         if not self.patches:
             return self
@@ -153,8 +153,9 @@ class SurfaceFlow(NamedTuple):
         is_reliable = usual >= _LEAST_USUAL_SHARE
         # More than usual is no better than visible; an unreliable share must not speak against it.
         share = min(latest / usual, 1.0) if is_reliable else 1.0
-        # Patches are centred on the vehicle. So flow takes what stands in front of one that hardly
-        # moves for its surface, and what covers it within few frames, as flow finds none and is 0.
+        # Patches are centred on the vehicle: no flow counts as its motion. So an occluder may count
+        # as its surface, before a vehicle that hardly moves, or where it covers one within few
+        # frames, as flow finds nothing then.
         if is_low and share > EVEN_SHARE:
             cells = _cells(middle, position, size)
             explained = explained_variance(middle.grey, kept.patch.grey, flow, cells)

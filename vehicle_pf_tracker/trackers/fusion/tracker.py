@@ -11,13 +11,13 @@ on, and `step.py` the frame and the memory that they share.
 - Partly hidden: climb to the peak, predict the size, learn nothing unless flow shows a turn.
 - Turning: follow the outline of what moves, learn fast.
 - Hidden: predict along the road, or with the camera that follows (`followed_by_camera.py`), learn
-  nothing, and wait until hypotheses gather evidence on the way (`hidden_way.py`), or an outline
-  comes out beside it (`emergence.py`).
-- Gone: learn nothing, and wait until something comes back from where the vehicle left.
+  nothing, and wait until hypotheses gather evidence on the predicted path (`hidden_way.py`), or an
+  outline appears beside it (`emergence.py`).
+- Gone: learn nothing, and wait until something enters where the vehicle left.
 
 The filter response at each hypothesis is a calibrated log-likelihood ratio of visible against
-hidden; flow on the surface gives a second one for all of them. docs/fusion.md draws these steps as
-a chart; what it calls occluded, the code calls hidden.
+hidden; flow on the surface gives a second one, the same for all of them. docs/fusion.md draws these
+steps as a chart; what it calls occluded, the code calls hidden.
 """
 
 from __future__ import annotations
@@ -136,16 +136,16 @@ class FusionTracker(ParticleTracker[FusionParameters]):
             self.state = state._replace(particles=particles)
 
     def _advance(self, frame: Frame, elapsed: float) -> Outcome:
-        """Take one frame: predict, observe, weigh by flow, judge, follow, learn; come in, resample.
+        """Take one frame: predict, observe, weigh by flow, judge, follow, learn, resample.
 
-        What comes in is the rest of a vehicle whose first box was cut.
+        Before it resamples it extends a first box that the image's border had cut.
         """
         state, memory = self._track
         # The order is the model's: only what was predicted can be weighed. Flow needs the peak that
         # the response found, the verdict both pieces of evidence; and nothing is learnt before the
         # verdict, as an occluder that was learnt once would answer from then on.
         elapsed = min(elapsed, _LONGEST_STEP)
-        if state.frames == 0:  # the first displacement is a velocity: stamps that repeat tell none
+        if state.frames == 0:  # the first displacement is a velocity, also where stamps repeat
             elapsed = max(elapsed, 1.0)
         step = Step(
             frame, elapsed, self.parameters, self._rng, memory, self._tasks, self.frame_period
@@ -156,8 +156,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         verdict = judge(state, seen, prediction, step)
         state = follow(state, verdict, seen, step)
         state = learn(state, seen, step)
-        state, has_grown = _come_in(state, step)
-        if has_grown:  # what new parameters learn anew has to be all of it
+        state, has_grown = _extend_cut_box(state, step)
+        if has_grown:  # new parameters relearn the reference from it, which has to be whole
             self._target = Target(frame, state.box)
         # Last, so that the estimate and the next prediction have the same set of hypotheses.
         particles = state.particles.resampled(self._rng, self.parameters.num_particles)
@@ -167,8 +167,8 @@ class FusionTracker(ParticleTracker[FusionParameters]):
         return _outcome(state, seen.response, step, has_left=has_left)
 
 
-def _come_in(state: State, step: Step) -> tuple[State, bool]:
-    """Move a first box that was cut to what has come in behind it; also tell whether it has."""
+def _extend_cut_box(state: State, step: Step) -> tuple[State, bool]:
+    """Extend a cut first box by what has come into the image; also True if it has grown."""
     entry = state.whole.entry
     if entry is None:
         return state, False
