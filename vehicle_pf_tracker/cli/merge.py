@@ -30,7 +30,7 @@ class Request(ReportParts):
 
 
 def run(request: Request) -> int:
-    """Join the parts, write the report, and tell what is missing."""
+    """Join the parts, write the report, and print what is missing."""
     output = request.output.resolve()
     others = [part for part in request.parts if part.resolve() != output]
     with claimed([Products(request.output)], others, overwrite=True):

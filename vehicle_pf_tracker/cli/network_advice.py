@@ -52,7 +52,7 @@ def network_advice(command: Sequence[str], folder: Path, detected: DetectionTota
 
 
 def joined_vehicles(detected: DetectionTotals) -> list[str]:
-    """Return a sentence about vehicles that motion cannot tell apart; none where there are few."""
+    """Return a sentence about vehicles that motion cannot separate; none where there are few."""
     mean = detected.mean_unresolved
     if mean is not None and mean >= _WORTH_SAYING:
         return [

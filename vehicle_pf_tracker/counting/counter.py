@@ -189,7 +189,7 @@ class Counter:
         if self._last_ns is not None and stamp_ns < self._last_ns:
             self.forget_vehicles()
         self.withdrawn = ()
-        # 1. Shift the stamps first: `_follow` tells by them who was in the image before.
+        # 1. Shift the stamps first: `_follow` finds by them who was in the image before.
         self._before_ns = self._last_ns
         self._last_ns = stamp_ns
         self._occupancy = {zone.name: 0 for zone in self.plan.zones}

@@ -47,7 +47,7 @@ _SHADE = 20.0
 """Largest distance in colour, levels, of a shadow from the darkened background, by its share of the
 brightness. A choice: several times the noise of a channel, and less than another paint."""
 _COMPARED = 3
-"""Every this many of the samples make the background that shadows are told by: a mean is enough."""
+"""One of this many samples makes the background that shadows are found by: a mean is enough."""
 _EDGE = 0.04
 """Largest change per px of the brightness, of the background's, inside a shadow: noise is half of
 it. At .03 noisy shadows are vehicles; at .06 half the dark cars of a cloudy day are shadows."""

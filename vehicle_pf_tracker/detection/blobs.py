@@ -154,7 +154,7 @@ class BlobReader:
         return Blobs(boxes[:, :4], boxes[:, 4] / areas(boxes[:, :4]), ambiguous, crowds)
 
     def _expect_aspect(self, velocities: Array) -> None:
-        """Find the usual aspect: until it is learnt, the motion tells which side is seen."""
+        """Find the usual aspect: until it is learnt, the motion decides which side is seen."""
         motion = np.abs(velocities[:, 0]).sum(), np.hypot(*velocities.T).sum()
         self._motion = MEMORY * self._motion + motion
         # After hours without a vehicle nothing is left of either.

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""A detector, and what it is told of the vehicles that are followed."""
+"""A detector, and what it learns of the vehicles that are followed."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@
 """Holes that vehicles leave in the background when they drive off.
 
 A vehicle that stood in the first images, or for long, is background; what it uncovers differs from
-it, and looks like a vehicle that stands. Its outline tells: a vehicle has an edge there in the
+it, and looks like a vehicle that stands. Its outline decides: a vehicle has an edge there in the
 image, a hole in the background.
 """
 
@@ -39,7 +39,7 @@ def standing_parts(
 ) -> Iterator[tuple[Section, Mask]]:
     """Find parts of a change that have been there for `least` images: sections, and their pixels.
 
-    Those that the border cuts are left out, as half an outline tells nothing.
+    Those that the border cuts are left out, as half an outline decides nothing.
 
     Parameters
     ----------

@@ -115,7 +115,7 @@ class MotionDetector:
             return Detections.none()
         # 4. Clean the mask, and learn the background with it.
         moving = self._learnt(small, changed, _covered(covered, small), period)
-        # 5. Read blobs. All tracks tell how vehicles drive here, also tentative ones.
+        # 5. Read blobs. All tracks show how vehicles drive here, also tentative ones.
         velocities = np.array([one.velocity for one in tracks]).reshape(-1, 2)
         blobs = self._blobs.read(moving, predicted, velocities)
         # 6. Boxes are of the image as it came.

@@ -48,7 +48,7 @@ choice, ten times `MOST_DETECTIONS`: those that are suppressed are among them.""
 
 
 class NetworkDetector:
-    """Detector by a network, whose form is told from its outputs.
+    """Detector by a network, whose form is recognised by its outputs.
 
     Boxes that overlap are suppressed across classes, since a van that is a car and a truck at once
     is one vehicle.
@@ -165,8 +165,8 @@ class NetworkDetector:
         return dict(zip(names, outputs, strict=True))
 
     def _class_names(self, count: int | None) -> dict[int, str]:
-        """Return the names of the classes by their numbers; empty where nothing tells them."""
-        # A user's names win, then the file's, then what the form or the count tells.
+        """Return the names of the classes by their numbers; empty where none are known."""
+        # A user's names win, then the file's, then those that the form or the count implies.
         words = [word.strip() for word in self._parameters.names.split(",") if word.strip()]
         if words:
             if count is not None and len(words) != count:

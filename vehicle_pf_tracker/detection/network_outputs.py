@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Outputs of detection networks, told apart by names and shapes.
+"""Outputs of detection networks, recognised by names and shapes.
 
 =========  ================================================  =======================================
 form       outputs                                           input it is given
@@ -86,7 +86,7 @@ def form_of(outputs: Mapping[str, Array], width: int, height: int) -> str:
 
 
 def class_count(form: str, outputs: Mapping[str, Array]) -> int | None:
-    """Return the number of classes; None where the outputs do not tell."""
+    """Return the number of classes; None where the outputs leave it open."""
     if form == SSD:
         return None
     (output,) = outputs.values()

@@ -40,7 +40,7 @@ _RENEWED_AFTER = 300
 each time a rounding error of the registration goes into the reference."""
 # Larger than for a vehicle's points: only the latest shake predicts, and it may be of many px.
 _FLOW = PointFlow(window=15, levels=3, steps=10, precision=0.03)
-# One object: that the camera stands is told by identity.
+# One object: identity shows that the camera stands.
 _STILL = np.eye(2, 3)
 
 

@@ -16,7 +16,7 @@ class Style(NamedTuple):
     marker: str
 
 
-# The colours are Okabe and Ito's. Lines tell series apart over time, markers on paths.
+# The colours are Okabe and Ito's. Lines distinguish series over time, markers on paths.
 LINE_STYLES = (
     Style("#0072B2", "-", "o"),
     Style("#D55E00", "--", "s"),

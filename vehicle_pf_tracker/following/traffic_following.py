@@ -120,7 +120,7 @@ class TrafficRun(CountedVehicles):
                 crossings = self._step(number, stamped)
                 if stamped.frame is None or crossings is None:
                     continue
-                # With the first image that was used: only it tells the size.
+                # With the first image that was used: the size is known from then on.
                 if not self.summary.frames:
                     self._check_plan_and_detections(frame_size(stamped.frame))
                 estimates = self.estimates

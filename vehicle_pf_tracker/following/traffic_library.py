@@ -59,7 +59,7 @@ class TrafficTracker(CountedVehicles):
     Parameters
     ----------
     frame_rate : float
-        Images per second; stamps, where they are given, tell the time between two images.
+        Images per second; stamps, where they are given, determine the time between two images.
     parameters : mapping of str to Any
         Parameters of `traffic`, by their names in its parameter file.
     lines : str or Path

@@ -9,5 +9,5 @@
 - `correlation/`: one target at a canonical size, and the filter that finds it again
 - `motion/`: motion of points, of a box and of the camera, and what moves before a standing one
 - `patches/`: patches described by cells, in which a network sees where a vehicle ends
-- `target_checks/`: doubts about a target, told to the user
+- `target_checks/`: doubts about a target, reported to the user
 """

@@ -273,7 +273,7 @@ def _tried(kind: Callable[[str], Decoder], name: str) -> tuple[str, str]:
         decoder = kind(name)
     except InputError as error:
         return "", str(error)
-    # A frame, not the header, tells whether the codec is there.
+    # A frame, not the header, shows whether the codec is there.
     is_decoded = decoder.read() is not None
     decoder.close()
     return decoder.codec, "" if is_decoded else "cannot decode it"

@@ -132,7 +132,7 @@ def _by_order(paths: Sequence[Path], notices: list[str]) -> NamedImages:
 
 def _by_count(numbers: Sequence[int], paths: Sequence[Path], notices: list[str]) -> NamedImages:
     steps = [after - before for before, after in pairwise(numbers)] or [1]
-    # Gaps may be dropped images or every n-th one: the stamps keep them, and the user is told.
+    # Gaps may be dropped images or every n-th one: the stamps keep them, and a notice says so.
     if (usual := statistics.mode(steps)) != 1:
         notices.append(
             f"the numbers of the images in {paths[0].parent} usually go up by {usual}, and so many "

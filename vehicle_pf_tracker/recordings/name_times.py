@@ -17,7 +17,7 @@ Numeral: TypeAlias = tuple[int, str]
 _UNITS: Mapping[str, int] = {"s": 10**9, "ms": 10**6, "µs": 10**3, "ns": 1}
 """Length of each unit, ns."""
 _SMALLER_UNITS = ("ms", "µs", "ns")
-"""Units of integers from a start: whole seconds tell no images apart."""
+"""Units of integers from a start: whole seconds are the same for many images."""
 _EPOCH_S = (1_000_000_000, 2_000_000_000)
 """Seconds since 1970 that are taken for such: from 2001 to 2033. The ranges of the four units do
 not overlap, and a number that begins with 20 may be a date, YYYYMMDD..."""
@@ -87,7 +87,7 @@ def times_of(values: Sequence[Numeral], fps: float | None) -> Times | None:
     # 2. Counters have no fraction.
     if any(fraction for _, fraction in values):
         return _of_fractions(values)
-    # 3. Integers are told apart by their steps.
+    # 3. The unit of integers is known by their steps.
     integers = [integer for integer, _ in values]
     steps = [after - before for before, after in pairwise(integers)]
     unit = _unit_of(steps, fps) if steps else None

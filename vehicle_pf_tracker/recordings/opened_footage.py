@@ -48,7 +48,7 @@ def open_footage(
     # A file that is called 0 is a file.
     is_index = text.isdecimal() and not Path(text).exists()
     if is_index or is_url(text):
-        # A URL may be a live stream or a file: only an open one tells.
+        # A URL may be a live stream or a file: that is known once it is open.
         camera = LiveCamera(int(text) if is_index else text)
         if not is_index and not camera.is_endless:
             return VideoFile(text, truth, fps, identity)

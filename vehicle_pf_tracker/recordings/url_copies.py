@@ -79,7 +79,7 @@ def fetched(url: str, folder: Path) -> Path:
         If it cannot be fetched.
     """
     system, path = _file_system(url)
-    # The name is kept: readers tell recordings by their suffix.
+    # The name is kept: readers recognise recordings by their suffix.
     target = folder / path.rstrip("/").rsplit("/", 1)[-1]
 
     def fetch() -> Path:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _VIDEO = "video_source"
 """Name of the one executable that is no tracker."""
 _ANY = "vehicle"
-"""``vehicle_tracker`` without its ending: runs the variant, or the cameras, that it is told."""
+"""``vehicle_tracker`` without its ending: runs the variant, or cameras, that its options name."""
 _USAGE = "usage: vehicle_tracker (--variant NAME | --cameras FILE) [--ros-args ...]"
 _NO_ROS = (
     "ROS 2 was not found (no module {}): source its setup.bash, or install this package with the "

@@ -30,7 +30,7 @@ def all_round(faces: Sequence[Face]) -> list[Face]:
     x = [point[0] for face in faces for point in face.points]
     width = max(point[1] for face in faces for point in face.points)
     # Flanks lean by 20 degrees at most, so that y of their normal is below -0.9; of roofs, screens
-    # and ends it is 0. Any limit between tells them apart.
+    # and ends it is 0. Any limit between separates them.
     both = [
         half
         for face in faces

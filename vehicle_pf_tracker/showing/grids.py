@@ -28,7 +28,7 @@ _LINES = 12
 _PIECES = 60
 """Pieces that a line of the road is drawn in, which the lens may bend: over a right angle, two
 pieces differ by 1.5 degrees."""
-# Colours of the grids, which are told apart on grey roads and green verges.
+# Colours of the grids, which stand out on grey roads and green verges.
 _LINE = (255, 240, 80)
 _TEXT = (255, 255, 255)
 _POINT = (255, 60, 60)

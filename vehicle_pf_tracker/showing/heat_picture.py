@@ -31,7 +31,7 @@ _COLOURS: tuple[tuple[str, drawing.Colour], ...] = (
     ("drove", (40, 160, 255)),
     ("stood", (255, 60, 30)),
 )
-"""Words and colour of each layer: blue and red, which the colour-blind tell apart."""
+"""Words and colour of each layer: blue and red, which the colour-blind distinguish."""
 _MOST_OPAQUE = 0.8
 """Opacity of the place with the longest time, so that the road can be seen below it."""
 _LEAST_SCALE = 1.0

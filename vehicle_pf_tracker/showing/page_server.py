@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Server of pages on this machine, under an address that only its user is told."""
+"""Server of pages on this machine, under an address that only its user knows."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _EVERYWHERE = frozenset({"0.0.0.0", "::"})  # noqa: S104 - only where it is aske
 
 
 class PageServer(ThreadingHTTPServer):
-    """Server of a page under a path that nobody can guess, to this machine unless told otherwise.
+    """Server of a page under a path that nobody can guess, to this machine unless set otherwise.
 
     Each connection has a thread: browsers open some ahead and leave them idle. One that does not
     ask under the path in time is closed.

@@ -205,7 +205,7 @@ def complete(plan: Plan, folder: Path, runner: Runner, on_progress: ShowCount) -
     """
     with output_errors(folder):
         for left in make_folder(folder).glob("**/.seed-*"):  # half written by a run that was killed
-            # What is begun is hidden until it is whole, and so easily told.
+            # A folder that is begun is hidden until it is whole: the name shows which are not.
             shutil.rmtree(left, ignore_errors=True)
     plan.write(folder)
     # After the plan: a folder without results is still one that can be gone on with.

@@ -26,10 +26,10 @@ TURN_INERTIA = 0.3
 """Resistance of the turn's fit, as the sum of the squared places of five points: the few that an
 occluder leaves must not turn all."""
 FEWEST_POINTS = 12
-"""Fewest tracked points that tell a change of size, a choice: of six pairs along an axis two may
+"""Fewest tracked points that give a change of size, a choice: of six pairs along an axis two may
 err without moving the median far."""
 POINTS_APART = 0.25
-"""Least distance of two points that tell a change of size, as a share of the box's side: 5 px of
+"""Least distance of two points that give a change of size, as a share of the box's side: 5 px of
 20, of which half a px is a tenth."""
 LARGEST_STRETCH = 0.15
 """Bound of the change of log size per frame: vehicles that pass a camera at 10 images a second

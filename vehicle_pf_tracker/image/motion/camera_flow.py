@@ -28,7 +28,7 @@ _GRID = (8, 6)
 they are square in an image of 4 to 3."""
 _ENOUGH = 16
 """Corners followed below which others are found, a third of the grid's: fewer may all be on one
-side of the image, and tell no zoom."""
+side of the image, and show no zoom."""
 _BORDER = 6
 """Margin in px without corners: a flow window, or most of one."""
 _LEAST_STRENGTH = 1e-4

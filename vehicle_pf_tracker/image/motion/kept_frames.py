@@ -82,7 +82,7 @@ class KeptFrames:
             for grey in {each.grey for each in (*self.spread, *self.lasting, *self.latest)}:
                 grey.carry(camera)
         kept = Kept(CarriedGrey(small), self._time)
-        # Frames in a row show the same vehicles: those farther apart tell road from traffic.
+        # Frames in a row show the same vehicles: those farther apart separate road from traffic.
         if self.number % _KEPT_EVERY == 0:
             self.spread.append(kept)
         if self.number % self._spacing == 0:

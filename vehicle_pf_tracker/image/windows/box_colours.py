@@ -17,8 +17,8 @@ Rectangles: TypeAlias = npt.NDArray[np.int64]
 Counts: TypeAlias = npt.NDArray[np.int32]
 
 LEVELS = 4
-"""Levels of each channel: enough to tell colours, few enough for a box of 100 px to fill its 64
-joint bins."""
+"""Levels of each channel: enough to distinguish colours, few enough for a box of 100 px to fill its
+64 joint bins."""
 COLOUR_BINS = LEVELS**3
 """Joint bins of the three channels."""
 _CHANNELS = [0, 1, 2]

@@ -109,7 +109,7 @@ class RecordingWriter:
             (self._partial / "metadata.yaml").write_text(text, encoding="utf-8")
 
     def _close(self) -> None:
-        # What could not be written was told already; closing tries to flush it once more.
+        # What could not be written was reported already; closing tries to flush it once more.
         with suppress(OSError):
             self._stream.close()
 

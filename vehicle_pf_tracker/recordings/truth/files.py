@@ -25,7 +25,7 @@ from vehicle_pf_tracker.recordings.truth.labels import OTHER_SHAPES, Images, Lab
 _IDS_SHOWN = 20
 """Identities that an error lists: more are hard to read on a terminal."""
 _LARGEST_INTEGER = 2**53
-"""Largest integer up to which a float tells all apart; frames and targets are read as floats."""
+"""Largest integer up to which floats are exact; frames and targets are read as floats."""
 _OWN = "groundtruth.csv"
 _ANYTHING = ("*groundtruth*", "*annotation*")
 """Files that may hold truth; those that do are read."""

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The formats of truth, told apart by the first line of a file.
+"""The formats of truth, recognised by the first line of a file.
 
 Each reader yields the labels that a file states, in our coordinates: the first pixel begins at 0.
 """
@@ -43,7 +43,7 @@ MARKS: Mapping[str, Reader] = {"<": cvat, "[": label_studio, "{": label_studio}
 """The readers of documents, by the first letter."""
 FORMATS: Mapping[Reader, Test] = {
     # In this order: eight numbers are a polygon rather than MOTChallenge's, but in ``gt.txt``; and
-    # KITTI's third cell is a word, which tells it from all of them.
+    # KITTI's third cell is a word, unlike that of all others.
     kitti: _is_kitti,
     own: _is_own,
     in_order: _is_in_order,

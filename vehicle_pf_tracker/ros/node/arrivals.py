@@ -59,7 +59,7 @@ class Arrivals:
             Time from the image's stamp to now, in s.
         count_publishers : callable
             Returns the number of publishers on the topic; is called where images seem to be
-            missing, as the numbers of several publishers cannot be told apart.
+            missing, as the numbers of several publishers cannot be separated.
         """
         self.images += 1
         self._heard = self._clock()

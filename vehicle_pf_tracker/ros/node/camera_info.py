@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Lens of a camera as its camera_info tells it."""
+"""Lens of a camera as its camera_info states it."""
 
 from __future__ import annotations
 

@@ -72,7 +72,7 @@ class ImageNode(LifecycleNode, ABC):  # type: ignore[misc]
 
     def __init__(self, name: str, **options: Any) -> None:
         super().__init__(name, automatically_declare_parameters_from_overrides=True, **options)
-        # Before any declaration: afterwards what a user gave cannot be told from a default.
+        # Before any declaration: afterwards a value that a user gave looks like a default.
         self.overrides = take_overrides(self)
         self.failure = ""
         self.path = None

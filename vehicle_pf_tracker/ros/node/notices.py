@@ -16,7 +16,7 @@ screen of lines holds minutes of it."""
 class Notices:
     """Writes a sentence unless one of its kind was written a moment ago.
 
-    rclpy throttles by the line of code that logs, and so cannot tell kinds apart.
+    rclpy throttles by the line of code that logs, and so cannot separate kinds.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ _COMMON: Topics = MappingProxyType(
         "box": (PolygonStamped, RELIABLE_QOS),
         "velocity": (Vector3Stamped, RELIABLE_QOS),
         "overlay": (Image, BEST_EFFORT_QOS),
-        # Last, here and for every image: it tells a lock-step replay that the image is done with.
+        # Last, here and for every image: a lock-step replay takes it as the end of the image.
         "mode": (DiagnosticArray, RELIABLE_QOS),
     }
 )

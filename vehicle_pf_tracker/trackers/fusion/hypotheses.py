@@ -217,7 +217,7 @@ class Hypotheses(NamedTuple):
     def weighed_alike(self, log_ratio: float) -> Hypotheses:
         """Take evidence on visibility that is the same for all hypotheses; weights stay."""
         # By Bayes' rule those that are likelier visible would gain weight, too. But flow is
-        # measured at one position, and does not tell which of them is right.
+        # measured at one position, and does not show which of them is right.
         seen = self.visible * np.exp(log_ratio)
         return self._replace(visible=seen / (seen + (1 - self.visible)))
 

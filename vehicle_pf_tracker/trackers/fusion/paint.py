@@ -27,7 +27,7 @@ _OTHER_LIGHTNESS = 18.0
 """Difference in Lab's L above which two paints are not the same, by the same sequences."""
 _SHADED = 2.0
 """Factor of `_OTHER_LIGHTNESS` for single spots: sides of one vehicle differ more than medians. Two
-is a choice; chroma alone has to tell the rest."""
+is a choice; the rest is left to chroma alone."""
 
 
 class Paint(NamedTuple):

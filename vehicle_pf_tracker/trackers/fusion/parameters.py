@@ -19,11 +19,11 @@ from vehicle_pf_tracker.trackers.parameters import (
 )
 
 EVEN_RESPONSE = 0.5
-"""Response relative to the usual one that tells nothing of visibility: as much differs as agrees.
+"""Response relative to the usual one at which both are equally likely: as much differs as agrees.
 Fits on ten of eleven cameras moved it by 16 % at most. Nothing is learnt below it: else walls are,
 and white_van is claimed in half of its hidden frames (laboratory/notes/fusion_tried.md)."""
 EVEN_SHARE = 0.5
-"""Share of the surface relative to the usual one that tells nothing of visibility: half of the
+"""Share of the surface relative to the usual one at which both are equally likely: half of the
 points move with the vehicle. Fits on ten of eleven cameras moved it by 16 % at most. Above it a
 stretch that both axes have in common is believed: from .8 on only, .926 instead of .964 of the
 frames are on vehicles that shrink fast (laboratory/notes/fusion_tried.md)."""

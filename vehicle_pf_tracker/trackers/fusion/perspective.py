@@ -185,7 +185,7 @@ class Sightings(NamedTuple):
         return self.camera_stood > KEPT_FRAMES
 
     def followed(self) -> Followed | None:
-        """Tell how far a camera that moves follows the vehicle; None where it stands."""
+        """Weigh how far a camera that moves follows the vehicle; None where it stands."""
         clear = self.rows[self.rows[:, 5] >= CLEAR_RESPONSE]
         if self.are_steady or not len(clear):
             return None
@@ -214,7 +214,7 @@ class Sightings(NamedTuple):
         ages = ages[clear]
         last = Sighting(float(ages[-1]), positions[-1], sizes[-1], whole is not None)
         times = last.age - ages
-        # Too few believed sizes tell no rate; then all clear ones count.
+        # Too few believed sizes give no rate; then all clear ones count.
         believed = responses[clear] >= UNDISTURBED
         if believed.sum() < PROOF_FRAMES:
             believed[:] = True
@@ -244,7 +244,7 @@ def fit_motion(
         Its position is the mean of the fitted and the last one.
     """
     # 1. For each rate the path is linear in t / (1 - r t): only the rate needs a grid. Few
-    # sightings tell no rate.
+    # sightings give no rate.
     rates = _RATES if len(times) >= PROOF_FRAMES else np.zeros(1)
     weights = np.exp(times / _MEMORY)
     total = weights.sum()

@@ -48,7 +48,7 @@ def restored_sightings(
     -------
     positions, sizes : (N, 2) arrays
         With the side that drives on where it was seen, and the other one as far away as the whole
-        vehicle's ratio of width and height tells.
+        vehicle's ratio of width and height says.
     """
     # 1. The last clear frames show whether a side stands; as many again show the whole vehicle.
     judged = np.flatnonzero(responses >= SIZE_RESPONSE)[-PROOF_FRAMES:]

@@ -192,10 +192,10 @@ def _moving_share(
 ) -> float:
     """Share of the box that has moved with the vehicle since the earlier patch.
 
-    `flow` leads there; `box` is its present centre and size. `camera` is the motion since, if the
-    background tells anything. All maps are from the present patch's px: a point p is mapped to
-    p * map[0] + map[1] where a map has two rows, and the background's to p @ map[:2] + map[2],
-    since the camera may roll.
+    `flow` leads there; `box` is its present centre and size. `camera` is the motion since, None if
+    the background has moved too nearly as the vehicle. All maps are from the present patch's px: a
+    point p is mapped to p * map[0] + map[1] where a map has two rows, and the background's to
+    p @ map[:2] + map[2], since the camera may roll.
     """
     position, size = box
     # 1. Maps from the patch to the frame, and on to the box: positions as fractions of its size.

@@ -71,7 +71,7 @@ def annealing_rate(log_weights: Weights, survival: float, largest: float) -> flo
     """
     low = 0.0
     high = largest
-    # Never sharper than `largest`: a likelihood that is flat everywhere tells nothing, and the
+    # Never sharper than `largest`: a likelihood that is flat everywhere is no evidence, and the
     # sharpest rate would make peaks of its noise.
     if survival_rate(log_weights, high) >= survival:
         return high

@@ -11,8 +11,8 @@
 - step: `prediction`, `occlusion`, `observe`, `pixel_hold`, `ending`, `recognition`
 - detections: `candidates` weighs them by `detection_evidence`, and `association` pairs them;
   `parts` divides boxes, and `correction` measures their edges (`box_edges`)
-- evidence: `existence` adds that of detections, `driving` tells drives, `misses` takes off that of
-  missed detections by the `detection_rate`
+- evidence: `existence` adds that of detections, `driving` tests for drives, `misses` takes off that
+  of missed detections by the `detection_rate`
 - births: `births` begins tracks, whose `first_state` is by the road's `speeds`
 - one number for one vehicle: `identity`, by `colours`, and `bodies`
 - results: `report` makes an `estimate` of each; `session` follows a stream of images, and keeps

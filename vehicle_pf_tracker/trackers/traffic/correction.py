@@ -113,7 +113,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verdict:
-    """Which edges of N detections tell where their vehicles end.
+    """Verdict on the edges of N detections: which are where their vehicles end.
 
     Attributes
     ----------
@@ -136,7 +136,7 @@ class Verdict:
 
 
 def correct(tracks: Tracks, edges: Array, measurement: MeasurementModel) -> tuple[Tracks, Bools]:
-    """Correct the drives of vehicles, each by its detection; and tell which were seen whole.
+    """Correct the drives of vehicles, each by its detection; also return which were seen whole.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def correct(tracks: Tracks, edges: Array, measurement: MeasurementModel) -> tupl
 
 
 def which_edges(tracks: Tracks, compared: Comparison) -> Verdict:
-    """Judge which edges of detections tell where vehicles end; see `correct`."""
+    """Judge which edges of detections are where vehicles end; see `correct`."""
     # Residuals in their standard deviations, inward positive.
     normal = compared.inward / compared.expected
     opposite = opposites(normal)
@@ -191,7 +191,7 @@ def _recede(tracks: Tracks, compared: Comparison) -> Bools:
 
 
 def apply_verdict(drives: Drives, compared: Comparison, verdict: Verdict) -> Drives:
-    """Apply a verdict: measure the edges that tell where the vehicles end."""
+    """Apply a verdict: measure the edges that are where the vehicles end."""
     residuals = np.where(verdict.left_out, 0.0, -compared.inward)
     drives = _widened(drives, compared, residuals, verdict.recede)
     # An infinite deviation is a gain of zero: the edge moves by its correlations only.
@@ -225,7 +225,7 @@ def _widened(drives: Drives, compared: Comparison, residuals: Array, recede: Boo
     compared : Comparison
         Their predictions, and their detections.
     residuals : (N, 4) array
-        Detection less prediction, outward, zero of edges that tell nothing, px.
+        Detection less prediction, outward, zero of edges that are not measured, px.
     recede : (N,) array
         True where the vehicle drives away.
     """

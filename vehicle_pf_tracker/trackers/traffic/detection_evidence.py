@@ -24,7 +24,7 @@ _PLACES_FOR = 2000
 """Images after which what is known of places is halved: light and wind change in a minute."""
 _NEIGHBOURS = 40
 """Detections of about the same score, by rank, that a probability is taken from: of 40 the share
-has a standard deviation of .08 at most, and rarer scores are still told apart."""
+has a standard deviation of .08 at most, and rarer scores are still distinguished."""
 _PRIOR = 2.0
 """Weight of the prior on each side, in detections. A choice: one outcome then moves even odds by
 .4, and forty outweigh it."""

@@ -1,7 +1,7 @@
 # Copyright 2026 vehicle_pf_tracker maintainers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Drives that tell vehicles from the scene: far enough, and straight at constant speed."""
+"""Drives that prove a vehicle: far enough, and straight at constant speed."""
 
 from __future__ import annotations
 

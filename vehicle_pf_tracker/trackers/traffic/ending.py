@@ -25,7 +25,7 @@ _LEAVES = 0.5
 _LEFT = 0.1
 """Share in the image below which a vehicle is forgotten: none of it will be seen."""
 _DRIVE_MATCHES = 4
-"""Detections of a track below which its path tells no drive: fewer lie on a line by chance."""
+"""Detections of a track below which its path shows no drive: fewer lie on a line by chance."""
 _PATIENCE = 4
 """Detections that a tentative track may expect to have missed in a row before it is given up. By
 looks: a detector may look at every third image only."""

@@ -52,7 +52,7 @@ def position_evidence(
 ) -> Array:
     """Bound the log odds (N,) that detections at `columns` are their tracks', by position.
 
-    Where a vehicle stands, any false alarm there would fit: only a drive tells. Nor does a fit tell
+    Where a vehicle stands, any false alarm there would fit: only a drive is evidence. Nor is a fit
     where the detector says the same of nothing, as of lights far behind: some of it always fits.
     """
     stands = tracks.beliefs.has_driven & ~are_moving(tracks)
@@ -81,7 +81,7 @@ def add_evidence(
     experience: Experience,
     step: Step,
 ) -> tuple[Tracks, Bools]:
-    """Add the evidence of a detection to each track; and tell which it proves to be vehicles.
+    """Add the evidence of a detection to each track; also return which it proves to be vehicles.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def add_evidence(
         The frame, and inputs that all parts of a step share.
     """
     edges = candidates.edges[columns]
-    # 1. Add what this detection tells.
+    # 1. Add the evidence of this detection.
     tracks = _end_absences(tracks, edges)
     tracks, lengths = _with_log_odds(tracks, candidates, columns, fits, step)
     # 2. All evidence makes it ripe, a drive or sure scores prove it.
@@ -129,7 +129,7 @@ def add_evidence(
 def _with_log_odds(
     tracks: Tracks, candidates: Candidates, columns: Integers, fits: Array, step: Step
 ) -> tuple[Tracks, Array]:
-    """Add what scores, places and paths of the detections tell; and the paths' lengths (N,).
+    """Add the evidence of scores, places and paths; also return the paths' lengths (N,).
 
     See `add_evidence`.
     """

@@ -19,10 +19,10 @@ from vehicle_pf_tracker.road.plane import RoadPlane
 from vehicle_pf_tracker.trackers.traffic.rows import Bools, Rows, columns
 
 _LEAST_BOXES = 20
-"""Boxes below which a vehicle does not tell how it grows: few, as the horizon has to be known
+"""Fewest boxes of a vehicle that give its growth: few, as the horizon has to be known
 soon."""
 _LEAST_SPARSE = 6
-"""Boxes below which a vehicle does not tell how it grows where images are sparse: a second of them
+"""Fewest boxes of a vehicle that give its growth where images are sparse: a second of them
 has fewer boxes, whose errors are independent. The first value tried."""
 _REMEMBERED = 50
 """Vehicles that are remembered. A choice: enough to average `_TURN` out, to a seventh, and few
@@ -92,7 +92,7 @@ class Growths(Rows):
         sums = self.sums[(self.sums[:, 0] >= least) & (self.sums[:, 3] > 0)]
         count, total, squares, widths, products = sums.T
         scatter = squares - total * total / count
-        # A vehicle that drives across stays at one height, and tells nothing.
+        # A vehicle that drives across stays at one height, and shows no horizon.
         kept = scatter > 0
         # Least squares, over the mean width: relative growth, the same for cars and lorries.
         slope = (products - total * widths / count) / np.where(kept, scatter, 1.0) * count / widths

@@ -141,7 +141,7 @@ def body_of(state: State, row: int, least_drive: float = SHORT_DRIVE) -> int | N
     for pair, together in state.companions.items():
         if own in pair and together.is_one(least_drive):
             (other,) = np.flatnonzero(names.serial == sum(pair) - own).tolist() or (None,)
-            # Numbers tell who is the elder: a track that began first may be confirmed last.
+            # The lower number is the elder: a track that began first may be confirmed last.
             if other is not None and 0 < names.identity[other] < (names.identity[row] or np.inf):
                 return int(other)
     return None

@@ -98,7 +98,7 @@ class Paths(Rows):
         stays = (away < _STANDS_WITHIN * (edges[:, 2] - edges[:, 0])) & ~is_first
         stood = np.where(stays, self.stood + 1, 1)
         halt = np.where(stays[:, np.newaxis], self.halt, here)
-        # Detections of one place tell nothing about the drive that follows, however many they are.
+        # Detections of one place say nothing about the drive that follows, however many they are.
         sums = np.where((stood >= _STANDS_FROM)[:, np.newaxis], 0.0, self.sums) + terms
         is_full = (self.matches % _BLOCK == 0)[:, np.newaxis]
         before = np.where(is_full, self.blocks[:, :8], self.blocks[:, 8:])

@@ -150,7 +150,7 @@ def measure(tracks: Tracks, before: Grey, step: Step) -> tuple[Integers, Array, 
             places[rows],
             step.normals,
         )
-    # 4. Flow follows whatever is there: the colours tell that it is still the vehicle.
+    # 4. Flow follows whatever is there: the colours show whether it is still the vehicle.
     kept = np.flatnonzero(agree)
     alike = _alike(tracks.take(kept), edges[kept], step)
     kept = kept[alike]
@@ -235,7 +235,7 @@ def _standing(old: Array, new: Array, before: Array, predicted: Array) -> Bools:
     length = np.hypot(*drive.T)[:, np.newaxis]
     moves = new - old
     stands = np.hypot(moves[..., 0], moves[..., 1]) < _STANDS * length
-    # Else standing and driving are not to be told apart yet.
+    # Else standing and driving cannot be distinguished yet.
     return np.asarray(stands & (length >= PIXEL_NOISE))
 
 

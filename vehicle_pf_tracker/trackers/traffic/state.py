@@ -103,7 +103,7 @@ class Step:
     parameters : TrafficParameters
         Parameters.
     road : RoadPlane or None
-        Calibrated road; None: what it tells is taken from the boxes.
+        Calibrated road; None: horizon and depth are estimated from the boxes.
     period : float
         Nominal frame period in s.
     elapsed : float
@@ -132,7 +132,7 @@ class Step:
 
     @property
     def sparsity(self) -> float:
-        """Interval of images over the longest dense one, at least 1: how much more each tells."""
+        """Interval of images over the longest dense one, at least 1: what each counts for."""
         return max(self.period / DENSE, 1.0)
 
     @property

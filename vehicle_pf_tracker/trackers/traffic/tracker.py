@@ -42,7 +42,7 @@ class MultiVehicleTracker:
     parameters : TrafficParameters, optional
         Parameters; None: the defaults.
     road : RoadPlane, optional
-        Calibrated road, which tells the horizon and which vehicle is nearer; None: both are taken
+        Calibrated road, which gives the horizon and the order in depth; None: both are estimated
         from the boxes.
 
     Attributes
@@ -185,7 +185,7 @@ def _advance(state: State, step: Step, detections: Detections | None) -> State:
     state = predict(state, step)
     # 2. Find who hides whom by the predictions: a missed detection counts only in plain sight.
     state = find_occlusions(state, step)
-    # 3. Correct by detections, which tell more than pixels.
+    # 3. Correct by detections, which are better evidence than pixels.
     if detections is not None:
         state = observe(state, step, detections)
     # 4. Hold by pixels what nothing detected. Even without such vehicles the frame is kept for the
