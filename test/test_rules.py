@@ -253,6 +253,35 @@ def test_a_module_that_its_folder_does_not_name_is_found(tmp_path):
     assert unnamed_modules(tmp_path) == ["forgotten"]
 
 
+def absent_constants(texts: dict[str, list[str]]) -> list[str]:
+    """Name constants in backticks that no module has: `_NAME` in its own, `module._NAME` there."""
+    absent = []
+    for module, own in texts.items():
+        words = {name: text.replace(f"`{name}`", "") for text in own for name in quoted(text)}
+        for name, rest in words.items():
+            home, _, constant = name.rpartition(".")
+            known = texts.get(home, []) if home else [rest]
+            if not any(re.search(rf"\b{constant}\b", text) for text in known):
+                absent.append(f"{module}: {name}")
+    return sorted(absent)
+
+
+def quoted(text: str) -> set[str]:
+    return set(re.findall(r"`((?:[a-z_]+\.)?_[A-Z][A-Z_]+)`", text))
+
+
+def test_constants_that_are_referred_to_exist():
+    texts: dict[str, list[str]] = {}
+    for path in FILES:
+        texts.setdefault(path.stem, []).append(path.read_text(encoding="utf-8"))
+    assert not absent_constants(texts)
+
+
+def test_a_constant_that_is_gone_is_found():
+    texts = {"one": ["`_HERE` `two._THERE` `two._GONE` `_MOVED`\n_HERE = 1"], "two": ["_THERE = 2"]}
+    assert absent_constants(texts) == ["one: _MOVED", "one: two._GONE"]
+
+
 def test_no_two_modules_of_tests_have_one_name():
     """They stand in no packages: of two, pytest refuses one, and of two samples one is imported."""
     root = Path(__file__).parents[1]

@@ -27,7 +27,7 @@ from vehicle_pf_tracker.image.motion.small_grey import SmallGrey
 
 _LOOKED_AT = 4
 """Step between kept frames that are searched for other vehicles when one is hidden: with
-`_KEPT_EVERY` half a second at 30 Hz."""
+`kept_frames._KEPT_EVERY` half a second at 30 Hz."""
 _AROUND = 1.5
 """Half side of the square that is looked at around a box, in longer sides of it, a choice: the box
 may have moved by its length, and what reaches the rim has no outline."""
