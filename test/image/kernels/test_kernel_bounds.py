@@ -19,6 +19,7 @@ from vehicle_pf_tracker.image.windows.colour import JointColour, RgbMarginals
 from vehicle_pf_tracker.image.windows.gradients import GradientDirections
 from vehicle_pf_tracker.image.kernels import (
     numba_box_colours,
+    numba_box_motion,
     numba_cells,
     numba_counts,
     numba_map_search,
@@ -95,6 +96,13 @@ for _ in range(1500):
     boxes, covers = (rng.integers(-90, 150, (int(rng.integers(4)), 4)) for _ in range(2))
     ends = np.sort(rng.integers(-1, 5, int(rng.integers(4))))
     attempt(numba_box_colours.count_colours, frame, boxes, covers, ends)
+    flow = rng.normal(size=(height, width, 2)).astype(np.float32)
+    block = rng.integers(-1, 15, (2, 2))
+    maps = [rng.normal(size=(int(rng.choice([2, 2, 2, 0, 3])), 2)) for _ in range(3)]
+    attempt(numba_box_motion.carried_share, flow, block, *maps)
+    alive = rng.random(int(rng.integers(9))) < 0.5
+    ends = [rng.random((int(rng.choice([len(alive), 7])), 2)) for _ in range(2)]
+    attempt(numba_box_motion.staying, *ends, alive, 0.2)
 assert outcomes["refused"] > 2000 < outcomes["done"], outcomes
 print("done")
 """

@@ -16,6 +16,7 @@ from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.core.frame import Frame
 from vehicle_pf_tracker.image.correlation import gradient_cells, map_search
 from vehicle_pf_tracker.image.correlation.row_waves import RowWaves
+from vehicle_pf_tracker.image.motion import box_motion
 from vehicle_pf_tracker.image.windows import box_colours, mean_shift
 from vehicle_pf_tracker.image.windows.similarity import Histogram, Reference
 from vehicle_pf_tracker.image.windows.window import Coefficients, Positions, Window, WindowFeature
@@ -41,12 +42,14 @@ class Kernels:
 
     name = "opencv"
 
+    carried_share = staticmethod(box_motion.carried_share)
     climbed = staticmethod(map_search.climbed)
     count_colours = staticmethod(box_colours.count_colours)
     gradient_cells = staticmethod(gradient_cells.gradient_cells)
     kernel_similarity = staticmethod(mean_shift.kernel_similarity)
     mean_shift = staticmethod(mean_shift.mean_shift)
     row_waves = RowWaves()
+    staying = staticmethod(box_motion.staying)
 
     def __init__(self, notices: Sequence[str] = ()) -> None:
         self.notices = notices
@@ -94,6 +97,9 @@ class Kernels:
         """
         return np.asarray(feature.histograms(frame, np.asarray([position]), window)[0])
 
+
+BY_NUMPY = Kernels()
+"""Implementation where none is given."""
 
 KERNEL_CHOICES = ("auto", "opencv", "numba")
 """Values of the parameter `kernels`."""

@@ -18,6 +18,7 @@ from vehicle_pf_tracker.image.correlation.gradient_cells import CellFeatures
 from vehicle_pf_tracker.image.correlation.map_search import Places
 from vehicle_pf_tracker.image.kernels import (
     numba_box_colours,
+    numba_box_motion,
     numba_cells,
     numba_counts,
     numba_edges,
@@ -66,6 +67,7 @@ _MODULES = (
     numba_row_waves,
     numba_map_search,
     numba_box_colours,
+    numba_box_motion,
 )
 
 _LANES = 16
@@ -193,12 +195,14 @@ class NumbaKernels(Kernels):
 
     name = "numba"
 
+    carried_share = staticmethod(numba_box_motion.carried_share)
     climbed = staticmethod(climbed)
     count_colours = staticmethod(count_colours)
     gradient_cells = staticmethod(gradient_cells)
     kernel_similarity = staticmethod(kernel_similarity)
     mean_shift = staticmethod(mean_shift)
     row_waves = numba_row_waves.CompiledRowWaves()
+    staying = staticmethod(numba_box_motion.staying)
 
     def __init__(self) -> None:
         super().__init__(kernel.notices())

@@ -23,14 +23,15 @@ def weigh_by_flow(state: State, seen: Observation, step: Step) -> State:
     if seen.was_hidden:  # what was kept of the frame before shows an occluder
         return state
     patch = step.memory.appearance.usual_patch(seen.view.patch)
+    kernels = step.memory.appearance.kernels
     # At the peak, not at the prediction: points and flow have to be looked for on the vehicle.
     points = state.points
     surface = state.surface
     if seen.tasks.follows_size:
-        points = points.tracked(patch, seen.position, state.size)
+        points = points.tracked(patch, seen.position, state.size, kernels)
     if seen.tasks.trains_filter:
         is_low = seen.response < TURNING_RESPONSE
-        surface = surface.judged(patch, seen.position, state.size, is_low=is_low)
+        surface = surface.judged(patch, seen.position, state.size, kernels, is_low=is_low)
     particles = state.particles
     # A vehicle whose surface never moved with it, of a few px, is judged by the response alone; so
     # is one whose flow has failed.

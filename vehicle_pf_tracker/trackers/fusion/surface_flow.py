@@ -19,11 +19,11 @@ import numpy as np
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
+from vehicle_pf_tracker.image.kernels.interface import BY_NUMPY, Kernels
 from vehicle_pf_tracker.image.motion.box_motion import (
     FLOW_CELL_PX,
     CellBlock,
     Flow,
-    carried_share,
     solved,
 )
 from vehicle_pf_tracker.image.motion.camera_motion import CameraMotion
@@ -127,7 +127,13 @@ class SurfaceFlow(NamedTuple):
         return self._replace(patches=patches[-_KEPT:])
 
     def judged(
-        self, patch: Patch, position: Array, size: Array, *, is_low: bool = False
+        self,
+        patch: Patch,
+        position: Array,
+        size: Array,
+        kernels: Kernels = BY_NUMPY,
+        *,
+        is_low: bool = False,
     ) -> SurfaceFlow:
         """Judge how much of the vehicle still moves with it.
 
@@ -137,6 +143,8 @@ class SurfaceFlow(NamedTuple):
             Shows the present frame.
         position, size : (2,) arrays
             Estimated centre, and width and height, px.
+        kernels : Kernels
+            Implementation that counts what moves with the vehicle.
         is_low : bool
             True where the filter hardly responds. Then flow is evidence for the vehicle only if
             both have moved apart from the background, and it explains what is seen.
@@ -147,7 +155,7 @@ class SurfaceFlow(NamedTuple):
         background = camera if apart >= _TELLING_PX else None
         middle = _middle(patch)
         flow = _flow(middle, kept.patch)
-        latest = _moving_share(middle, flow, kept, (position, size), background)
+        latest = _moving_share(middle, flow, kept, (position, size), background, kernels)
         # The first share is its own usual one: no other is known.
         usual = self.usual or latest
         is_reliable = usual >= _LEAST_USUAL_SHARE
@@ -189,6 +197,7 @@ def _moving_share(
     kept: _Kept,
     box: tuple[Array, Array],
     camera: CameraMotion | None,
+    kernels: Kernels,
 ) -> float:
     """Share of the box that has moved with the vehicle since the earlier patch.
 
@@ -215,7 +224,7 @@ def _moving_share(
         background = np.array([*(to_frame[0][:, np.newaxis] * back), shift])  # (3, 2)
     # 4. A point counts for the vehicle if flow leads nearer to the second map than to the third.
     cells = _cells(patch, position, size)
-    return carried_share(flow, cells, to_box, vehicle, background)
+    return kernels.carried_share(flow, cells, to_box, vehicle, background)
 
 
 def _middle(patch: Patch) -> Patch:

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from vehicle_pf_tracker.core.array import Array
 from vehicle_pf_tracker.image.correlation.canonical_patch import Patch
+from vehicle_pf_tracker.image.kernels.interface import BY_NUMPY, Kernels
 from vehicle_pf_tracker.image.motion import box_motion
 from vehicle_pf_tracker.image.motion.point_flow import PointFlow, PointMask, Points
 from vehicle_pf_tracker.trackers.fusion.surface_flow import BOX_REACH
@@ -116,7 +117,9 @@ class SurfacePoints(NamedTuple):
             return None
         return np.asarray(np.median(moves[largest], axis=0) / patch.zoom)
 
-    def tracked(self, patch: Patch, position: Array, size: Array) -> SurfacePoints:
+    def tracked(
+        self, patch: Patch, position: Array, size: Array, kernels: Kernels = BY_NUMPY
+    ) -> SurfacePoints:
         """Track all points into the present patch, measure how they spread, and end strays.
 
         Parameters
@@ -126,6 +129,8 @@ class SurfacePoints(NamedTuple):
         position, size : (2,) arrays
             Estimated centre, and width and height, px; the search starts from the displacement
             since the patch that was kept.
+        kernels : Kernels
+            Implementation that tells strays.
         """
         if self.previous is None or self.points is None:
             return self
@@ -150,7 +155,7 @@ class SurfacePoints(NamedTuple):
         living = alive.copy()
         positions[alive] = after
         living[alive] = found
-        living = box_motion.staying(places, (positions - position) / size, living, _STRAYED)
+        living = kernels.staying(places, (positions - position) / size, living, _STRAYED)
         return SurfacePoints(self.previous, _Points(places, positions, living, age + 1), stretch)
 
     def renewed(self, position: Array, size: Array, *, whole: bool = True) -> SurfacePoints:
