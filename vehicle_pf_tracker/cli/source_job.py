@@ -133,7 +133,7 @@ def store(job: Job, outcome: Outcome, folder: Path) -> None:
 
 
 def is_done(job: Job, folder: Path) -> bool:
-    """Tell whether the folder has whole results of the job; a failed one is tried again."""
+    """Test whether the folder has whole results of the job; a failed one is tried again."""
     try:
         stored = read_document(folder / SOURCE_FILE)
     except InputError:  # it is not there, or nothing that can be read

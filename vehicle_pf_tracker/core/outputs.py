@@ -204,7 +204,7 @@ def _lock(path: Path) -> int | None:
 
 @contextmanager
 def whole_folder(target: Path) -> Iterator[Path]:
-    """Give a hidden folder beside `target` to fill; if the block ends well it takes its place.
+    """Yield a hidden folder beside `target` to fill; if the block ends well it takes its place.
 
     What is there under its name is replaced; after an error the hidden folder is removed.
 

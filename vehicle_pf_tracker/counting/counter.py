@@ -106,7 +106,7 @@ class Counter:
         return self._occupancy
 
     def is_vehicle(self, label: str) -> bool:
-        """Tell whether this class, "" where it is unknown, belongs to the totals of vehicles."""
+        """Test whether this class, "" where it is unknown, belongs to the totals of vehicles."""
         return label not in self._apart
 
     def by_class(self, place: str, direction: str) -> Tally[str]:

@@ -44,7 +44,7 @@ class LineEdge:
         return self._normal
 
     def has(self, point: Position) -> bool:
-        """Tell whether a point on the endless line lies between its ends."""
+        """Test whether a point on the endless line lies between its ends."""
         return 0 <= self.line.share(point) <= 1
 
 

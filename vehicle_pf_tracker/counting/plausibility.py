@@ -74,7 +74,7 @@ class Life:
         return self.detected < self.images / 2
 
     def precedes(self, other: Life) -> bool:
-        """Tell whether the other began where this one must still have been, and it was not seen."""
+        """Test whether the other began where this one must still have been, and it was not seen."""
         gap_ns = other.first.stamp_ns - self.last.stamp_ns
         if gap_ns <= 0:
             # Both were seen at once, and so are two.

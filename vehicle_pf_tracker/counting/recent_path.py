@@ -70,7 +70,7 @@ class RecentPath:
         self._scatter = None
 
     def ends_at(self, foot: FootPoint) -> bool:
-        """Tell whether this is its latest point, and none between two images."""
+        """Test whether this is its latest point, and none between two images."""
         # By identity: points that `towards` makes between two images may share its stamp.
         return bool(self._points) and self._points[-1] is foot
 

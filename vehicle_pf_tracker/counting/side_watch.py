@@ -57,7 +57,7 @@ class Edge(Protocol):
         ...
 
     def has(self, point: Position) -> bool:
-        """Tell whether a passage at this point is one over the edge, and not past its ends."""
+        """Test whether a passage at this point is one over the edge, and not past its ends."""
         ...
 
 
@@ -230,7 +230,7 @@ class SideWatch:
         return side if side * self.edge.distance(end) > margin else 0
 
     def _may_change(self, side: int, foot: FootPoint, distance: float, path: RecentPath) -> bool:
-        """Tell whether the vehicle has really driven from its present side to this one."""
+        """Test whether the vehicle has really driven from its present side to this one."""
         if not self.side or (self._is_forecast and foot.is_seen):
             return True
         # From the furthest point, not from the edge: noise around a standing vehicle spans little.

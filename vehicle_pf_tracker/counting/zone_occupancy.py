@@ -113,7 +113,7 @@ class ZoneOccupancy:
         return ended
 
     def _spend(self, stamp_ns: int, inside: Mapping[str, int]) -> Iterator[ZoneInterval]:
-        """Give the time of an image to its intervals, and yield those that have ended."""
+        """Assign the time of an image to its intervals, and yield those that have ended."""
         end_ns = stamp_ns + self._period_ns
         while stamp_ns < end_ns:
             start_ns = stamp_ns - stamp_ns % self._length_ns

@@ -102,7 +102,7 @@ class Background:
 
     @property
     def is_known(self) -> bool:
-        """Tell whether there are as many samples as it takes."""
+        """Test whether there are as many samples as it takes."""
         return len(self._samples) == _SAMPLES
 
     def begin(self, image: Colours, period: float) -> None:

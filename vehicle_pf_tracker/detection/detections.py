@@ -125,7 +125,7 @@ class Detections:
 
 
 def _are_within(boxes: Array, regions: Sequence[Region]) -> npt.NDArray[np.bool_]:
-    """Tell which boxes have their centre in an inner region, if any, and in no outer one."""
+    """Find which boxes have their centre in an inner region, if any, and in no outer one."""
     # Centres decide, so that a box on the rim is in or out as a whole.
     centres = (boxes[:, :2] + boxes[:, 2:] / 2).astype(np.float32)
     kept = np.ones(len(boxes), bool)

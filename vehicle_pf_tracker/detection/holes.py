@@ -66,7 +66,7 @@ def standing_parts(
 
 
 def is_hole(image: Levels, background: Levels, part: Mask) -> bool:
-    """Tell whether a part that has changed is where a vehicle was, and not where one is.
+    """Test whether a part that has changed is where a vehicle was, and not where one is.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ class NetworkBoxes:
 
 
 def form_of(outputs: Mapping[str, Array], width: int, height: int) -> str:
-    """Tell the form of a network's outputs for an input of this size in px.
+    """Recognise the form of a network's outputs for an input of this size in px.
 
     Raises
     ------

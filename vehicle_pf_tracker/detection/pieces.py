@@ -45,7 +45,7 @@ class Piece(NamedTuple):
         return np.array(self[:4])
 
     def is_free(self, shape: tuple[int, ...]) -> bool:
-        """Tell whether no border of the image cuts the box."""
+        """Test whether no border of the image cuts the box."""
         height, width = shape
         inside = self.right < width - 1 and self.bottom < height - 1
         return min(self.left, self.top) > 1 and inside

@@ -53,7 +53,7 @@ class UsualSize:
 
     @property
     def is_roughly_known(self) -> bool:
-        """Tell whether enough is learnt to estimate how many vehicles a blob holds."""
+        """Test whether enough is learnt to estimate how many vehicles a blob holds."""
         return bool(self._slopes)
 
     def learn(self, piece: Piece) -> None:

@@ -135,7 +135,7 @@ def read_yaml(path: Path, node_name: str) -> dict[str, object]:
 
 
 def _is_for(section: str, node_name: str) -> bool:
-    """Tell whether a section is one of a node's."""
+    """Test whether a section is one of a node's."""
     parts = section.strip("/").split("/")
     if not node_name.startswith("/"):
         return parts[-1] in {node_name, "*", "**"}

@@ -43,7 +43,7 @@ def make_folder(path: Path) -> Path:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Give a path beside `path` to write to; it takes the place of `path` if all goes well.
+    """Yield a path beside `path` to write to; it takes the place of `path` if all goes well.
 
     Raises
     ------

@@ -86,7 +86,7 @@ class TrafficSummary:
             )
 
     def _is_outside(self, point: Position) -> bool:
-        """Tell whether a point lies outside the regions."""
+        """Test whether a point lies outside the regions."""
         regions = self.counter.plan.regions
         if not regions:
             return False
@@ -213,7 +213,7 @@ def _intervals_of(counter: Counter, line: CountingLine) -> str:
 
 
 def _intervals(counter: Counter, place: str, direction: str) -> Iterator[dict[str, Any]]:
-    """Return the intervals of the true count: of vehicles, and of each class that crossed."""
+    """Yield the intervals of the true count: of vehicles, and of each class that crossed."""
     for label in (None, *sorted(filter(None, counter.by_class(place, direction)))):
         low, high = counter.interval(place, direction, label)
         yield {"class": label, "low": low, "high": high, "probability": HELD_SHARE}

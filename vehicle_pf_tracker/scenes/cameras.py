@@ -37,7 +37,7 @@ class Camera:
     seed: int
 
     def offset(self, index: int) -> tuple[float, float]:
-        """Give the image's top-left corner on the stage, px: it shows the whole stage."""
+        """Return the image's top-left corner on the stage, px: it shows the whole stage."""
         return 0.0, 0.0
 
     def capture(self, picture: Image, index: int) -> Frame:
@@ -91,7 +91,7 @@ class OutdoorCamera:
     seed: int
 
     def offset(self, index: int) -> tuple[float, float]:
-        """Give the image's top-left corner on the stage in frame `index`, px.
+        """Return the image's top-left corner on the stage in frame `index`, px.
 
         The mast swings at two rates in each direction, and trembles.
         """
@@ -119,7 +119,7 @@ class OutdoorCamera:
         return _quantised(image)
 
     def gain(self, index: int) -> Colour:
-        """Give the gains of red, green and blue in frame `index`."""
+        """Return the gains of red, green and blue in frame `index`."""
         noise = float(stream(self.seed, "flicker", index).standard_normal())
         flicker = 1.0 + self.disturbance.flicker * noise
         return flicker, flicker, flicker

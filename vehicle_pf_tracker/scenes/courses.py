@@ -72,7 +72,7 @@ class Pace:
         return cls(((0.0, speed),))
 
     def __call__(self, frame: float) -> float:
-        """Give the distance covered from the first knot to `frame`, px."""
+        """Return the distance covered from the first knot to `frame`, px."""
         start, speed = self.knots[0]
         end, last_speed = self.knots[-1]
         # Outside of the knots; before the first the distance is negative, so that a pace may begin
@@ -85,7 +85,7 @@ class Pace:
         return distance
 
     def arrival(self, distance: float) -> float:
-        """Give the frame in which `distance` (px, at least 0) is covered, for speeds over 0."""
+        """Return the frame in which `distance` (px, at least 0) is covered, for speeds over 0."""
         low = self.knots[0][0]
         high = self.knots[0][0] + 1.0
         # Doubled until it is passed, then halved to the rounding: a pace has no inverse in closed

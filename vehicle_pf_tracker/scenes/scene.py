@@ -86,7 +86,7 @@ class Actor:
             region += layer[..., :3]
 
     def seen(self, frame: float) -> Sprite:
-        """Give the sprite it shows in `frame`."""
+        """Return the sprite it shows in `frame`."""
         return self.sprite if isinstance(self.sprite, Sprite) else self.sprite(frame)
 
 
@@ -120,7 +120,7 @@ class Stage(ABC):
 
     @abstractmethod
     def painted(self, index: int) -> Iterable[Actor]:
-        """Give the actors of frame `index` in painting order."""
+        """Return the actors of frame `index` in painting order."""
 
     def images(self, indices: Iterable[int] | None = None) -> Iterator[Frame]:
         """Render every frame in order, or those with the given indices."""
@@ -149,7 +149,7 @@ class Scene(Stage):
     target: int
 
     def painted(self, index: int) -> Iterable[Actor]:
-        """Give all actors."""
+        """Return all actors."""
         return self.actors
 
     def frames(self, indices: Iterable[int] | None = None) -> Iterator[SceneFrame]:
@@ -158,7 +158,7 @@ class Scene(Stage):
         return map(SceneFrame, self.images(chosen), map(self.truth, chosen))
 
     def truths(self) -> Iterator[Truth]:
-        """Give the truth of every frame, as `frames` does, without rendering a pixel."""
+        """Return the truth of every frame, as `frames` does, without rendering a pixel."""
         return map(self.truth, range(self.frame_count))
 
     def truth(self, index: int) -> Truth:

@@ -81,7 +81,7 @@ class Pictures:
 
     @contextmanager
     def drawing(self, frames: Numbered) -> Iterator[tuple[Take, Numbered]]:
-        """Give a function that takes each of the `frames`, and these again.
+        """Yield a function that takes each of the `frames`, and these again.
 
         A video or a sheet that fails is one of the `side` products, and is not left.
         """
@@ -121,7 +121,7 @@ def _nothing(*_: object) -> None:
 
 @contextmanager
 def _film(path: Path, rate: float) -> Iterator[Callable[[Draw, tuple[int, int], int], None]]:
-    """Give a function that appends a frame to a video, shown as long as the stamps say.
+    """Yield a function that appends a frame to a video, shown as long as the stamps say.
 
     It takes the drawing, the size of the first frame in px, and the stamp in ns. `rate` is the
     usual number of frames per second.

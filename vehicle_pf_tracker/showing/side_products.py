@@ -36,7 +36,7 @@ class SideProducts:
     def growing(
         self, product: str, making: AbstractContextManager[Callable[..., object]]
     ) -> Iterator[Callable[..., None]]:
-        """Give the function that adds to a product, which does nothing once it has failed.
+        """Yield the function that adds to a product, which does nothing once it has failed.
 
         Parameters
         ----------

@@ -52,7 +52,7 @@ def check_video(path: Path) -> None:
 
 @contextmanager
 def video_writer(path: Path, size: tuple[int, int], rate: float) -> Iterator[Write]:
-    """Give a function that writes a frame; the video appears when it is complete.
+    """Yield a function that writes a frame; the video appears when it is complete.
 
     Parameters
     ----------

@@ -80,7 +80,7 @@ class SourceFootage:
         self._kept = list(self._decoded()) if size <= FRAMES_BYTES else None
 
     def frames(self) -> Iterator[tuple[int, Frame | None]]:
-        """Give the stamp (ns) and the frame of each image, in order."""
+        """Return the stamp (ns) and the frame of each image, in order."""
         return self._decoded() if self._kept is None else iter(self._kept)
 
     def _decoded(self) -> Iterator[tuple[int, Frame | None]]:

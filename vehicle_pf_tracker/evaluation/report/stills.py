@@ -113,7 +113,7 @@ def worst_moments(evaluation: ScoredEvaluation, aggregates: Aggregates) -> list[
 
 
 def peaks(values: Array, apart: int) -> Iterator[int]:
-    """Give the indices of the largest finite values, at most `_STILLS`, each from its neighbours.
+    """Yield the indices of the largest finite values, at most `_STILLS`, each from its neighbours.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def write_stills(evaluation: ScoredEvaluation, aggregates: Aggregates) -> None:
 
 
 def _frames(source: Source, wanted: set[int]) -> Iterator[tuple[int, Frame]]:
-    """Give the frames of a recording by their number; none where it is not here any more."""
+    """Yield the frames of a recording by their number; none where it is not here any more."""
     if is_url(source.path):  # a report fetches nothing
         return
     try:

@@ -224,7 +224,7 @@ class _Download:
 
 @contextmanager
 def _reserved(part: Path | None) -> Iterator[Path | None]:
-    """Give a part to resume from; None where there is none, or another process writes it."""
+    """Yield a part to resume from; None where there is none, or another process writes it."""
     if part is None:
         yield None
         return

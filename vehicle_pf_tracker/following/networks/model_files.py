@@ -65,7 +65,7 @@ def model_file(model: str, progress: ShowShare = silent) -> tuple[Path, str]:
 
 
 def is_fetched(model: str) -> bool:
-    """Tell whether a network is one that is fetched, by a URL or a name."""
+    """Test whether a network is one that is fetched, by a URL or a name."""
     return model in KNOWN_NETWORKS or is_url(model)
 
 

@@ -78,7 +78,7 @@ class Health:
             self._step_ms = step_ms
 
     def report(self) -> dict[str, object]:
-        """Give the values for `/diagnostics` by name, and begin the next interval."""
+        """Return the values for `/diagnostics` by name, and begin the next interval."""
         arrivals = self.arrivals
         return {
             "mode": self.mode,

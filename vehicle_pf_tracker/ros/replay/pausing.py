@@ -98,7 +98,7 @@ def pressed_keys() -> str:
 
 
 def is_at_terminal() -> bool:
-    """Tell whether this process has the keyboard: reading in the background would stop it."""
+    """Test whether this process has the keyboard: reading in the background would stop it."""
     try:
         return os.tcgetpgrp(sys.stdin.fileno()) == os.getpgrp()
     except (OSError, ValueError, AttributeError):  # no terminal, closed, or none at all

@@ -81,7 +81,7 @@ class Moment(NamedTuple):
         return place
 
     def background_in(self, other: Moment, position: Array) -> Array:
-        """Give the place in another image of the background that is at a position here, px."""
+        """Return the place in another image of the background that is at a position here, px."""
         if self.camera.still and other.camera.still:
             return position
         back = np.linalg.inv(other.camera.turn)
@@ -101,7 +101,7 @@ def moved(moments: Moments, camera: CameraMotion) -> Moments:
 
 
 def is_due(moments: Moments, position: Array, size: Array) -> bool:
-    """Tell whether a box of this centre and size, px, has come far from the last moment."""
+    """Test whether a box of this centre and size, px, has come far from the last moment."""
     if not moments:
         return True
     last = moments[-1]

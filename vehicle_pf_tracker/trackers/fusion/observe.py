@@ -111,7 +111,7 @@ def _moved_with_camera(state: State, step: Step) -> State:
 
 
 def _set_off(state: State, step: Step) -> State | None:
-    """Give the hypotheses the velocity of what moves in the first box; None if nothing does."""
+    """Set the hypotheses to the velocity of what moves in the first box; None if nothing does."""
     patch = step.memory.appearance.patch(step.frame, state.position, state.size)
     move = state.points.first_motion(patch, state.size)
     if move is None:

@@ -98,7 +98,7 @@ class Step:
         return share
 
     def hidden_velocity_sigma(self, sightings: Sightings) -> float:
-        """Give the deviation of a hidden vehicle's change of velocity, sizes per frame squared.
+        """Return the deviation of a hidden vehicle's change of velocity, sizes per frame squared.
 
         Larger where sightings were carried along with a camera that moved: the background's motion
         is not quite that of the road under the vehicle.

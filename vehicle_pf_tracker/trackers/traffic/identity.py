@@ -77,7 +77,7 @@ def number_proven(state: State, proven: Bools, *, returning: bool) -> State:
 
 
 def number_by_hand(state: State) -> State:
-    """Give the last track its number by hand, without a doubt."""
+    """Give the last track, which a user has added, its number."""
     row = len(state.tracks) - 1
     identity = state.last_identity + 1
     tracks = _numbered(state.tracks, row, identity)
