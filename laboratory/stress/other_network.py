@@ -37,14 +37,14 @@ def with_network(system: System, file: Path) -> StressSystem:
     Raises
     ------
     InputError
-        If the file is not there, or is no network.
+        If the file is not there, or is not a network.
     """
     try:
         SideNetwork.read(file)
         digest = hashlib.sha256(file.read_bytes()).hexdigest()
     except (OSError, ValueError, KeyError) as error:
         raise InputError(
-            f"{file} is no network for the sides: `laboratory.train_sides` writes them"
+            f"{file} is not a network for the sides: `laboratory.train_sides` writes them"
         ) from error
     own = StressSystem.of(system)
     facts = {**own.facts, "side network": digest}

@@ -116,4 +116,4 @@ def test_what_is_no_network_is_refused(footage, tmp_path, capsys):
     file.write_text("weights")
     words = ["stress", str(footage), "--variants", "fusion", "--side-network", str(file)]
     assert main([*words, "-o", str(tmp_path / "out")]) == 1
-    assert f"{file} is no network for the sides" in capsys.readouterr().err
+    assert f"{file} is not a network for the sides" in capsys.readouterr().err

@@ -426,7 +426,7 @@ def test_a_target_that_stands_while_others_drive_is_a_notice(run, tmp_path, caps
     notes = [line for line in capsys.readouterr().err.splitlines() if "has not moved" in line]
     assert notes == [
         "vehicle-pf-tracker: note: 1: frame 11: the target has not moved for 5 s while other "
-        "things did: it stands, or it is no vehicle"
+        "things did: it stands, or it is not a vehicle"
     ]
 
 

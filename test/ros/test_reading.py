@@ -26,5 +26,7 @@ def test_a_message_comes_back():
 @pytest.mark.parametrize("read", [lambda data: read_message(data, CompressedImage), decompressed])
 @pytest.mark.parametrize("length", [0, 3, 20, 26])
 def test_what_is_cut_off_is_a_mistake_of_whoever_sent_it(read, length):
-    with pytest.raises(InputError, match=f"^{length} bytes came that are no CompressedImage"):
+    with pytest.raises(
+        InputError, match=f"^{length} bytes came that are not of the type CompressedImage"
+    ):
         read(serialize_message(MESSAGE)[:length])

@@ -69,5 +69,5 @@ def test_the_other_order_of_bytes_is_left_to_rclpy():
 
 @pytest.mark.parametrize("length", [2, 14, 30, 50, 60])
 def test_bytes_that_are_cut_off_are_no_image(length):
-    with pytest.raises(InputError, match=f"{length} bytes came that are no Image"):
+    with pytest.raises(InputError, match=f"{length} bytes came that are not of the type Image"):
         read_serialized_image(serialize_message(image())[:length])

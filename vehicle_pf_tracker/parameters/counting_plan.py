@@ -183,7 +183,7 @@ def _named(section: Any, what: str) -> Mapping[str, Any]:
         raise InputError(f"{what} must be a mapping by name, as {what}: {{north: …}}")
     for name in section:
         if not (isinstance(name, str) and name.strip() and name.isprintable()):
-            raise InputError(f"{what} has the name {name!r}, which is no text; put it in quotes")
+            raise InputError(f"{what} has the name {name!r}, which is not text; put it in quotes")
         if len(name) > _LONGEST_NAME:
             raise InputError(f"{what} has a name of more than {_LONGEST_NAME} letters")
     return section

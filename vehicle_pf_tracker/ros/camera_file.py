@@ -99,7 +99,7 @@ def _check_entry(name: str, entry: Any) -> None:
     except InvalidTopicNameException:  # ROS's own words are of a remap rule, from each respawn
         raise InputError(f"its topic {entry['topic']!r} is not a topic name") from None
     if not name.replace("_", "a").isalnum() or name[0].isdigit():
-        raise InputError("its name is no name of a namespace: letters, digits and _ are")
+        raise InputError("its name cannot name a namespace: use letters, digits and _")
 
 
 def _camera(name: str, entry: dict[str, Any], folder: Path) -> CameraEntry:

@@ -27,7 +27,7 @@ def read_message(serialized: bytes, kind: type[MessageT]) -> MessageT:
         message: MessageT = deserialize_message(serialized, kind)
     except RuntimeError:
         raise InputError(
-            f"{len(serialized)} bytes came that are no {kind.__name__}: they are cut off, or of "
-            "another type"
+            f"{len(serialized)} bytes came that are not of the type {kind.__name__}: they are cut "
+            "off, or of another type"
         ) from None
     return message

@@ -43,7 +43,7 @@ def test_parts_have_each_cell_once(plan, count):
 
 @pytest.mark.parametrize("text", ["", "0/2", "3/2", "1", "a/b", "1/0", "-1/2", "1/2/3", "1.5/2"])
 def test_what_is_no_part_is_refused(text):
-    with pytest.raises(InputError, match="no part: 2/4 is the second of four"):
+    with pytest.raises(InputError, match="not a part: 2/4 is the second of four"):
         Part.parse(text)
 
 
@@ -81,7 +81,7 @@ def test_a_failed_cell_gives_way_to_a_result(plan, parts, tmp_path):
 def test_parts_of_two_evaluations_are_refused_by_what_differs(plan, parts, tmp_path):
     other = replace(plan, systems=[system("ms")], seeds=(0,))
     complete(other, tmp_path / "other", here, silent)
-    with pytest.raises(InputError, match=r"other is no part .* differ in systems, seeds"):
+    with pytest.raises(InputError, match=r"other is not a part .* differ in systems, seeds"):
         merge([parts[0], tmp_path / "other"], tmp_path / "joined")
     replace(plan, restart=None).write(tmp_path / "other")
     with pytest.raises(InputError, match=r"differ in options;"):

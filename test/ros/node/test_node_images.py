@@ -122,7 +122,7 @@ def test_messages_that_are_no_images_are_left_out_and_counted(bench):
     for count in range(1, 26):  # more than the failures that end a node
         rig.camera.publish(whole[: 30 + count])
         bench.wait_for(lambda: rejections.count == count)  # noqa: B023 - called at once
-    assert "bytes came that are no Image: they are cut off" in rejections.last
+    assert "bytes came that are not of the type Image: they are cut off" in rejections.last
     assert rig.play(frames[2:], 2) == ["TRACKING"] * 3
 
 

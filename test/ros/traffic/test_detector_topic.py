@@ -164,7 +164,7 @@ def test_messages_that_are_no_detections_are_told_once(rig):
         rig.detector.publish(whole[:80])
         rig.bench.wait_for(lambda: len(rig.modes) > before)  # noqa: B023 - called at once
     assert {one.identity for one in rig.vehicles.estimates} == numbers
-    words = "80 bytes came that are no Detection2DArray"
+    words = "80 bytes came that are not of the type Detection2DArray"
     assert sum(words in line for line in rig.said) == 1
 
 

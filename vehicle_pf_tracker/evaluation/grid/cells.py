@@ -88,12 +88,12 @@ class Part(NamedTuple):
         Raises
         ------
         InputError
-            If it is no part.
+            If it is not a part.
         """
         number, _, total = text.partition("/")
         if number.isdecimal() and total.isdecimal() and 1 <= int(number) <= int(total):
             return cls(int(number), int(total))
-        raise InputError(f"{text!r} is no part: 2/4 is the second of four")
+        raise InputError(f"{text!r} is not a part: 2/4 is the second of four")
 
 
 ALL_CELLS = Part(1, 1)

@@ -58,7 +58,7 @@ def _check_alike(first: Path, one: Mapping[str, Any], part: Path, other: Mapping
         differing.append("recordings")
     if differing:
         raise InputError(
-            f"{part} is no part of the evaluation in {first}: they differ in "
+            f"{part} is not a part of the evaluation in {first}: they differ in "
             f"{', '.join(differing)}; run the same command with another --part"
         )
 

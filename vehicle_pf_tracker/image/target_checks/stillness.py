@@ -19,7 +19,7 @@ STILLNESS_PATIENCE = 5.0
 pass rarely stands longer, but for a red light; then the warning is true, and ends as it drives."""
 STILLNESS_SENTENCE = (
     f"the target has not moved for {STILLNESS_PATIENCE:g} s while other things did: it stands, "
-    "or it is no vehicle"
+    "or it is not a vehicle"
 )
 _DRIVEN = 0.5
 """Way from the first position, in widths of the box, that only a vehicle drives: that of a box on
