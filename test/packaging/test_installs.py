@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 import setuptools
+from unmeasured import unmeasured_environment
 
 from tools.release.commands import run
 from tools.release.installation import check_installation
@@ -32,6 +33,15 @@ ASK = "import vehicle_pf_tracker; print(vehicle_pf_tracker.__file__)"
 needs_colcon = pytest.mark.skipif(
     find_spec("colcon_core") is None, reason="needs colcon: `make .venv/colcon`"
 )
+
+
+@pytest.fixture(scope="module", autouse=True)
+def unmeasured():
+    """pip and colcon run nothing of the package, and coverage would follow each of their lines."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name in os.environ.keys() - unmeasured_environment().keys():
+            patch.delenv(name)
+        yield
 
 
 def pip(*words, cwd, python=None, **variables):
