@@ -9,6 +9,8 @@ import os
 import shutil
 import signal
 
+import cv2
+import numpy as np
 import pytest
 from dask_processes import scheduler, workers
 from small_recordings import COUNT, TARGET, frame_of, record, write_video
@@ -64,6 +66,12 @@ def contents(folder):
     return found
 
 
+def shown(path):
+    """Frames of a video, as numbers whose difference has a sign."""
+    video = cv2.VideoCapture(str(path))
+    return np.array([video.read()[1] for _ in range(COUNT)], float)
+
+
 def table(folder):
     return list(csv.DictReader((folder / "sources.csv").read_text().splitlines()))
 
@@ -74,7 +82,12 @@ def test_each_source_has_what_its_own_command_gives(videos, tmp_path, done, caps
     assert done == ["east", "north", "west"]
     assert follow("run", videos[1], *PF, "--video", tmp_path / "v.mp4", "-o", tmp_path / "one") == 0
     of_one, of_many = contents(tmp_path / "one"), contents(out / "north")
-    assert of_many.pop("seen.mp4") == (tmp_path / "v.mp4").read_bytes()
+    del of_many["seen.mp4"]
+    # x264 now and then makes other bytes of the same frames, 2 levels of 256 apart; the next
+    # frame's are 5 apart and more.
+    apart = np.abs(shown(out / "north" / "seen.mp4") - shown(tmp_path / "v.mp4"))
+    assert apart.shape[0] == COUNT
+    assert max(apart.mean(axis=(1, 2, 3))) < 4
     assert of_many == of_one
     assert [
         (row["source"], row["frames"], row["tracked"], row["failed"]) for row in table(out)
