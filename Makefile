@@ -12,6 +12,9 @@ FIGURES = all
 RELEASE_ARGS =
 # Where `bench` and `reproduce` write their pages.
 PAGES = docs
+# How many targets `test-all` runs side by side, and which others than its parts.
+JOBS = 2
+BESIDE =
 
 BIN := .venv/bin
 INSTALL := -m pip install --quiet --disable-pip-version-check --no-deps
@@ -23,6 +26,7 @@ KILTED := $(addprefix test/ros/,test_rclpy_internals.py test_transport.py node/t
 	node/test_several_nodes.py node/test_node_requests.py replay/test_replay_lockstep.py)
 # What each part of the tests but test-rest runs, which has the rest.
 test-ros := ros
+test-trackers := trackers
 test-footage := scenes recordings
 test-programs := test_programs.py
 # Folders beside the package have their tests beside themselves: a change of the package does not wait for them.
@@ -37,7 +41,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
 # Each target that says of itself what it does, with two hashes, is listed by `make help`.
-.PHONY: help demo test test-all test-research mutants test-rest test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs detector dist release-check clean
+.PHONY: help demo test test-all covered test-research mutants test-rest test-trackers test-footage test-programs test-ros test-noble test-kilted kernels lint types format config colcon baselines bench reproduce docs detector dist release-check clean
 
 demo: .venv/installed  ## run the whole chain on a synthetic scene, into results/demo
 	$(BIN)/vehicle-pf-tracker demo -o results/demo --overwrite
@@ -46,9 +50,12 @@ help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*  ## \(.*\)/\1|\2/p' $(firstword $(MAKEFILE_LIST)) | \
 		while IFS='|' read -r target words; do printf '%-12s %s\n' "$$target" "$$words"; done
 
-# Three parts side by side on two cores: the tests through ROS mostly wait, and the others compute.
-PARTS := test-ros test-rest test-footage
-RUN := $(BIN)/python -m pytest -m "not slow"
+# Three parts side by side on two cores: the tests through ROS mostly wait, and the others compute. The longest
+# begin first.
+PARTS := test-ros test-rest test-trackers test-footage
+RUN = $(BIN)/python -m pytest -m "not slow"
+# What computes leaves the cores to the nodes of tests beside it, which have to answer in time.
+CALMLY := nice
 
 ifdef PYTEST_ARGS
 test: .venv/installed
@@ -63,7 +70,10 @@ endif
 # Everything, with branch coverage; the slow tests try every way to install, colcon's too.
 test-all: .venv/installed .venv/colcon kernels  ## every test of the package, with branch coverage
 	$(BIN)/coverage erase
-	$(MAKE) --no-print-directory --jobs=2 --keep-going $(PARTS) test-programs RUN="$(BIN)/coverage run -m pytest"
+	$(MAKE) --no-print-directory --jobs=$(JOBS) --keep-going covered $(BESIDE)
+
+covered: RUN = $(BIN)/coverage run -m pytest
+covered: $(PARTS) test-programs
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report --fail-under=$(COVERED)
 
@@ -72,23 +82,24 @@ kernels: .venv/installed
 	$(BIN)/python -c "from vehicle_pf_tracker.image.kernels.interface import compile_all; compile_all('auto')"
 
 test-rest: .venv/installed
-	$(RUN) test $(addprefix --ignore test/,$(test-ros) $(test-footage) $(test-programs))
+	$(CALMLY) $(RUN) test $(addprefix --ignore test/,$(test-ros) $(test-trackers) $(test-footage) $(test-programs))
 
+test-trackers test-footage test-programs: MANNER := $(CALMLY)
 # Shown when they have ended, so that the parts do not mix.
-test-ros test-footage test-programs: .venv/installed
-	@log=$$(mktemp); $(RUN) $(addprefix test/,$($@)) > $$log 2>&1; \
+test-ros test-trackers test-footage test-programs: .venv/installed
+	@log=$$(mktemp); $(MANNER) $(RUN) $(addprefix test/,$($@)) > $$log 2>&1; \
 	status=$$?; cat $$log; rm -f $$log; exit $$status
 
 test-research: .venv/installed kernels  ## tests of reproduction, laboratory and benchmarks, slow ones too
-	$(BIN)/python -m pytest $(or $(PYTEST_ARGS),$(RESEARCH))
+	$(CALMLY) $(BIN)/python -m pytest $(or $(PYTEST_ARGS),$(RESEARCH))
 
 # Hours for a room of trackers, and a fifth of that with ROOMS="papers --sample 37"; the toy is one module,
 # so that the target is known to work.
 mutants: .venv/mutants  ## mutation testing of ROOMS=toy, filtering, road, counting or papers
-	$(BIN)/python -m tools.mutants $(or $(ROOMS),toy)
+	$(CALMLY) $(BIN)/python -m tools.mutants $(or $(ROOMS),toy)
 
 test-noble: .venv-noble/installed  ## numbers, pixels and messages with the NumPy and OpenCV of Ubuntu 24.04
-	.venv-noble/bin/python -m pytest -m "not slow" $(PYTEST_ARGS) $(VERSIONED)
+	$(CALMLY) .venv-noble/bin/python -m pytest -m "not slow" $(PYTEST_ARGS) $(VERSIONED)
 
 test-kilted: .venv-kilted/installed  ## some tests of the nodes with the ROS 2 after Jazzy
 	.venv-kilted/bin/python -m pytest -m "not slow" $(KILTED)
