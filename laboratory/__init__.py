@@ -8,7 +8,8 @@
 - `faults/`: faults given to nodes and commands (`python -m laboratory faults`)
 - `scenes/`: synthetic scenes that only these programs and the papers' experiments need
 - `uncertainty/`: fit of the covariances, and how often their ellipses hold the truth
-- `train_sides`: training of the network that sees the sides of vehicles
+- `train_sides`: the network that sees the sides of vehicles, by `side_examples` and
+  `side_training`
 - `count_trust`: fit of how far a count can be trusted
 - `road_speed`, `target_contrast`: errors of speeds, and contrast of true and of thrown boxes
 - `readme_table`: README's table

@@ -6,14 +6,9 @@
 import numpy as np
 import pytest
 
-from laboratory.train_sides import (
-    Examples,
-    by_output,
-    deviations,
-    left_out_errors,
-    parts_of,
-    trained,
-)
+from laboratory.side_examples import Examples, by_output
+from laboratory.side_training import trained
+from laboratory.train_sides import deviations, left_out_errors, parts_of
 from vehicle_pf_tracker.image.patches.side_network import CELLS, CHANNELS
 
 
