@@ -18,12 +18,15 @@ import pytest
 from small_recordings import COUNT, TARGET, box_of, frame_folder, frame_of, record, write_video
 
 import vehicle_pf_tracker.cli.run as run_verb
+from vehicle_pf_tracker.cli.console import counting
 from vehicle_pf_tracker.cli.main import main
-from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, stopping
+from vehicle_pf_tracker.cli.source_part import numbered_part
+from vehicle_pf_tracker.cli.stopping import StillAtWork, Stop, Terminated, stopping
 from vehicle_pf_tracker.core.errors import InputError
 from vehicle_pf_tracker.recordings.bags.messages import IMAGE_ANNOTATIONS, deserialize
 from vehicle_pf_tracker.recordings.bags.reader import Recording, StampedFrame
 from vehicle_pf_tracker.recordings.frame_folder import FrameFolder
+from vehicle_pf_tracker.recordings.source import open_source
 from vehicle_pf_tracker.results.estimates import read_estimates
 from vehicle_pf_tracker.showing import pictures
 from vehicle_pf_tracker.showing.video_file import video_writer
@@ -255,6 +258,30 @@ def test_a_signal_is_noted_and_a_second_one_acts_as_ever():
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+@pytest.mark.usefixtures("interrupts")
+@pytest.mark.parametrize(
+    "words", [(), ("--start", 5)], ids=["at the first", "on the way to --start"]
+)
+def test_a_signal_before_the_first_image_is_no_fault_of_the_source(
+    run, video, tmp_path, monkeypatch, capsys, words
+):
+    def signalled(word):
+        os.kill(os.getpid(), signal.SIGINT)
+        return counting(word)
+
+    monkeypatch.setattr(run_verb, "counting", signalled)
+    assert run(video, "--target", TARGET, *words) == 128 + signal.SIGINT
+    assert capsys.readouterr().err == ""
+    assert not (tmp_path / "out").exists()
+
+
+def test_what_ends_a_process_ends_it_before_the_first_image_too(video):
+    stop = Stop()
+    stop.number = signal.SIGTERM
+    with pytest.raises(Terminated):
+        numbered_part(open_source(str(video)), None, None, stop, lambda *_: None)
 
 
 def test_a_computation_that_does_not_end_after_a_signal_is_left():

@@ -73,10 +73,13 @@ def numbered_part(
     ------
     InputError
         If there is none.
+    KeyboardInterrupt, Terminated
+        If there is none because `stop` came.
     """
     frames = _numbered(source, start, end, stop, progress)
     first = next(frames, None)
     if first is None:
+        stop.end_unbegun()
         raise InputError("the source ended before its first image")
     return first, itertools.chain([first], frames)
 
@@ -102,7 +105,7 @@ def _numbered(
         is_empty = False
         progress(number, source.frame_count)
         yield number, stamped
-    if is_empty and (start is not None or end is not None):
+    if is_empty and not stop.came and (start is not None or end is not None):
         raise InputError(
             f"no frame lies between --start and --end; {number} frames were read from the source"
         )

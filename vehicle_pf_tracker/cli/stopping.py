@@ -85,6 +85,19 @@ class Stop:
         """Exit status by the signal; 0 if none has come."""
         return 0 if self.number is None else SIGNALS_STATUS + self.number
 
+    def end_unbegun(self) -> None:
+        """End a command whose signal came before there was anything to keep.
+
+        Raises
+        ------
+        KeyboardInterrupt, Terminated
+            As without a `Stop`; neither if no signal has come.
+        """
+        if self.number == signal.SIGINT:
+            raise KeyboardInterrupt
+        if self.number is not None:
+            raise Terminated(self.number)
+
     def ended(self, status: int) -> int:
         """Return the exit status, or end the process with it where a computation was left."""
         if self.has_left:
