@@ -136,6 +136,7 @@ def test_cameras_have_parameters_as_they_are_declared(tmp_path):
         ("cameras: {a: {variant: apf}}", "it needs a topic"),
         ("cameras: {a: {topic: /i, varriant: apf}}", "there is no parameter 'varriant'"),
         ("cameras: {a: {topic: /i, variant: best}}", "there is no variant 'best'"),
+        ("cameras: {a: {topic: /i//j}}", "its topic '/i//j' is not a topic name"),
         ("cameras: {a-b: {topic: /i}}", "cannot name a namespace"),
         # A remap rule that cannot be parsed ended each node, and its respawn, for ever.
         ("cameras: {a: {topic: ///}}", "the camera a in .*: its topic '///' is not a topic name"),

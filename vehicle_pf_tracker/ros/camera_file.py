@@ -13,6 +13,8 @@ from typing import Any
 
 import yaml
 from rclpy.exceptions import InvalidTopicNameException
+from rclpy.expand_topic_name import expand_topic_name
+from rclpy.validate_full_topic_name import validate_full_topic_name
 from rclpy.validate_topic_name import validate_topic_name
 
 from vehicle_pf_tracker.core.errors import InputError
@@ -95,7 +97,9 @@ def _check_entry(name: str, entry: Any) -> None:
         if key not in _KEYS:
             raise InputError(unknown_name(str(key), _KEYS))
     try:
-        validate_topic_name(str(entry["topic"]))
+        validate_topic_name(topic := str(entry["topic"]))
+        # Only this refuses two slashes side by side.
+        validate_full_topic_name(expand_topic_name(topic, "node", "/"))
     except InvalidTopicNameException:  # ROS's own words are of a remap rule, from each respawn
         raise InputError(f"its topic {entry['topic']!r} is not a topic name") from None
     if not name.replace("_", "a").isalnum() or name[0].isdigit():
