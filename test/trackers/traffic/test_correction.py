@@ -100,6 +100,27 @@ def test_an_edge_cut_by_the_border_is_not_measured():
     assert below.edges[Edge.BOTTOM] == pytest.approx(250, abs=0.2)
 
 
+@pytest.mark.parametrize("side", [Edge.LEFT, Edge.RIGHT])
+def test_a_vehicle_that_comes_in_is_as_long_as_the_image_shows(side):
+    # 120 px long, taken for less until its end has come in; 4 px in each frame.
+    width = SIZE[0]
+    length = 120
+    fronts = np.arange(30, 180, 4.0)
+    boxes = np.array([(max(front - length, 0.0), 100, front, 140) for front in fronts])
+    if side is Edge.RIGHT:
+        boxes[:, [Edge.LEFT, Edge.RIGHT]] = width - boxes[:, [Edge.RIGHT, Edge.LEFT]]
+    first = first_gaussians(boxes[:1], MEASUREMENT, np.array([-1e4]), ROAD)
+    tracks = track_of(first, confirmed=True)
+    for number, box in enumerate(boxes[1:], start=1):
+        tracks = driven_on(tracks, number)
+        # It stays as unsure of the end as it takes to be given the next box.
+        predicted = tracks.drives.gaussians
+        reach = np.sqrt(predicted.edge_variances[0, side]) + MEASUREMENT.deviations(box)[side]
+        assert abs(predicted.edges[0, side] - box[side]) < 3 * reach
+        tracks, _ = correct(tracks, box[None], MEASUREMENT)
+    assert tracks.edges[0] == pytest.approx(boxes[-1], abs=6)
+
+
 def test_what_was_shown_of_a_vehicle_grows_with_it(vehicle):
     twice = np.array([80.0, 80, 160, 140])
     resized = vehicle.tracks.drives.gaussians.resized(twice[None])

@@ -56,8 +56,8 @@ class Comparison:
         Edges of the predictions and of the detections, px.
     unknown : (N, 4) array
         Edges that the border of the image cuts in both.
-    is_cut : (N,) array
-        True where it cuts any.
+    bounds : (N, 4) array
+        Left and right edges that it cuts in the detection only: the vehicle ends there or beyond.
     own, sides : (N, 2) arrays
         Width and height of the predictions and of the detections, px.
     latest : (N, 2) array
@@ -74,7 +74,7 @@ class Comparison:
     predicted: Array
     detected: Array
     unknown: Bools
-    is_cut: Bools
+    bounds: Bools
     own: Array
     sides: Array
     latest: Array
@@ -89,8 +89,12 @@ class Comparison:
         """Compare with detections (N, 4) in px; see `correct`."""
         predicted = drives.gaussians.edges
         # Cut in both, an edge is unknown. Where only one is cut, the vehicle comes in or leaves,
-        # and the edge is measured.
-        unknown = measurement.cut_edges(edges) & measurement.cut_edges(predicted)
+        # and the edge is measured, at a side as a bound.
+        cut = measurement.cut_edges(edges)
+        also_cut = measurement.cut_edges(predicted)
+        bounds = cut & ~also_cut
+        # At the upper border vehicles come in small, where a row is a long way of the road.
+        bounds[:, Edge.TOP :: 2] = False
         own = sides_of(predicted)
         sides = sides_of(edges)
         variances = drives.gaussians.edge_variances
@@ -98,8 +102,8 @@ class Comparison:
         return cls(
             predicted=predicted,
             detected=edges,
-            unknown=unknown,
-            is_cut=np.asarray(unknown.any(axis=1)),
+            unknown=cut & also_cut,
+            bounds=bounds,
             own=own,
             sides=sides,
             latest=np.maximum(sides, own * drives.extents.shown),
@@ -163,7 +167,7 @@ def which_edges(tracks: Tracks, compared: Comparison) -> Verdict:
     jumped = (normal > _JUMP) & (opposite > 0)  # a vehicle that brakes pushes it out
     # Of two edges that are drawn in, the one that is more so.
     crept = both_ends(shrunk) & (normal > np.maximum(opposite, 0.0))
-    recede = _recede(tracks, compared) & ~compared.is_cut
+    recede = _recede(tracks, compared) & ~compared.unknown.any(axis=1)
     covered = (jumped | crept) & ~(compared.unknown | recede[:, np.newaxis])
     patient = _patient(tracks)
     return Verdict(compared.unknown | (covered & patient[:, np.newaxis]), covered, recede)
@@ -192,11 +196,19 @@ def _recede(tracks: Tracks, compared: Comparison) -> Bools:
 
 def apply_verdict(drives: Drives, compared: Comparison, verdict: Verdict) -> Drives:
     """Apply a verdict: measure the edges that are where the vehicles end."""
-    residuals = np.where(verdict.left_out, 0.0, -compared.inward)
+    bounds = compared.bounds & ~verdict.left_out
+    inexact = verdict.left_out | bounds
+    residuals = np.where(inexact, 0.0, -compared.inward)
     drives = _widened(drives, compared, residuals, verdict.recede)
     # An infinite deviation is a gain of zero: the edge moves by its correlations only.
-    exact = np.where(verdict.left_out, np.inf, compared.spread)
+    exact = np.where(inexact, np.inf, compared.spread)
     gaussians = drives.gaussians.measured(compared.detected, exact)
+    if bounds.any():
+        # The edge is there or beyond, so that the state is moved but made no surer: else a long
+        # vehicle that comes in keeps the length which was assumed, until no detection fits it.
+        bounding = np.where(bounds, compared.spread, np.inf)
+        moved = gaussians.measured(compared.detected, bounding)
+        gaussians = replace(moved, covariance=gaussians.covariance)
     # Successive residuals agree: states stay behind.
     lag = _FOLLOWED * np.where(verdict.left_out, 0.0, compared.detected - gaussians.edges)
     extents = replace(
