@@ -126,6 +126,7 @@ LIBRARIES = {
     "laboratory.traffic.decisions", "laboratory.traffic.trials",
     "laboratory.__init__", "laboratory.fusion.__init__", "laboratory.traffic.__init__",
     "laboratory.__main__", "laboratory.figure_files", "laboratory.result_store",
+    "laboratory.side_examples", "laboratory.side_training",
     "laboratory.uncertainty.__init__", "laboratory.uncertainty.coverage",
     "laboratory.uncertainty.fit", "laboratory.uncertainty.picture", "laboratory.uncertainty.runs",
     "laboratory.uncertainty.table_module", "laboratory.uncertainty.tracking",
