@@ -6,7 +6,7 @@
 import numpy as np
 import pytest
 from measured_vehicle import BOX, SIZE, Vehicle
-from traffic_samples import changed, step_of, track_of
+from traffic_samples import changed, step_of, together, track_of
 
 from vehicle_pf_tracker.core.overlaps import overlaps
 from vehicle_pf_tracker.trackers.traffic.box_edges import MeasurementModel
@@ -101,24 +101,26 @@ def test_an_edge_cut_by_the_border_is_not_measured():
 
 
 @pytest.mark.parametrize("side", [Edge.LEFT, Edge.RIGHT])
-def test_a_vehicle_that_comes_in_is_as_long_as_the_image_shows(side):
-    # 120 px long, taken for less until its end has come in; 4 px in each frame.
-    width = SIZE[0]
+def test_two_vehicles_that_come_in_side_by_side_are_as_long_as_the_image_shows(side):
+    # 120 px long, taken for less until their ends have come in; 4 px in each frame.
     length = 120
     fronts = np.arange(30, 180, 4.0)
-    boxes = np.array([(max(front - length, 0.0), 100, front, 140) for front in fronts])
+    far = np.array([(max(front - length, 0.0), 100, front, 140) for front in fronts])
     if side is Edge.RIGHT:
-        boxes[:, [Edge.LEFT, Edge.RIGHT]] = width - boxes[:, [Edge.RIGHT, Edge.LEFT]]
-    first = first_gaussians(boxes[:1], MEASUREMENT, np.array([-1e4]), ROAD)
-    tracks = track_of(first, confirmed=True)
-    for number, box in enumerate(boxes[1:], start=1):
+        far[:, [Edge.LEFT, Edge.RIGHT]] = SIZE[0] - far[:, [Edge.RIGHT, Edge.LEFT]]
+    both = np.stack([far, far + (0, 15, 0, 15)], axis=1)
+    first = first_gaussians(both[0], MEASUREMENT, np.full(2, -1e4), ROAD)
+    rows = (track_of(first.take(np.array([row])), row + 1, confirmed=True) for row in range(2))
+    tracks = together(*rows)
+    for number, boxes in enumerate(both[1:], start=1):
         tracks = driven_on(tracks, number)
-        # It stays as unsure of the end as it takes to be given the next box.
+        # They stay as unsure of the end as it takes to be given the next box.
         predicted = tracks.drives.gaussians
-        reach = np.sqrt(predicted.edge_variances[0, side]) + MEASUREMENT.deviations(box)[side]
-        assert abs(predicted.edges[0, side] - box[side]) < 3 * reach
-        tracks, _ = correct(tracks, box[None], MEASUREMENT)
-    assert tracks.edges[0] == pytest.approx(boxes[-1], abs=6)
+        spread = MEASUREMENT.deviations(predicted.edges)[:, side]
+        reach = np.sqrt(predicted.edge_variances[:, side] + spread**2)
+        assert (np.abs(predicted.edges[:, side] - boxes[:, side]) < 4 * reach).all()
+        tracks, _ = correct(tracks, boxes, MEASUREMENT)
+    assert tracks.edges == pytest.approx(both[-1], abs=6)
 
 
 def test_what_was_shown_of_a_vehicle_grows_with_it(vehicle):
