@@ -33,7 +33,7 @@ these a choice."""
 
 SAME = 1e-12
 """Relative difference within which processors agree on an error: where the runs were made, it is
-repeated to the last bit, and where exponentials have other instructions, to 12 digits."""
+repeated to the last bit, and on another processor errors were 5e-15 off."""
 
 
 def scene_of(run):
