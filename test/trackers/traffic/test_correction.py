@@ -108,7 +108,7 @@ def test_two_vehicles_that_come_in_side_by_side_are_as_long_as_the_image_shows(s
     far = np.array([(max(front - length, 0.0), 100, front, 140) for front in fronts])
     if side is Edge.RIGHT:
         far[:, [Edge.LEFT, Edge.RIGHT]] = SIZE[0] - far[:, [Edge.RIGHT, Edge.LEFT]]
-    both = np.stack([far, far + (0, 15, 0, 15)], axis=1)
+    both = np.stack([far, far + np.array([0, 15, 0, 15])], axis=1)
     first = first_gaussians(both[0], MEASUREMENT, np.full(2, -1e4), ROAD)
     rows = (track_of(first.take(np.array([row])), row + 1, confirmed=True) for row in range(2))
     tracks = together(*rows)
